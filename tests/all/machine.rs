@@ -5,8 +5,8 @@ use dwell_dynamics::{
     StepControl, integrate,
 };
 use dwell_kinetostatics::{
-    Drive, DriveKind, Friction, FrictionContact, Guide, Load, LoadKind, Magnitude, Model, Motor,
-    SpeedController,
+    Drive, DriveKind, Friction, FrictionContact, Guide, Load, LoadKind, MachineModel as _,
+    Magnitude, Model, Motor, SpeedController,
 };
 use dwell_scene::Scene;
 use dwell_tests::cases::CASES;

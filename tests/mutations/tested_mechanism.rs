@@ -9,7 +9,9 @@ use super::positions::{POSITIONS, poses_along, positions};
 use super::to_f64::{accelerations, pose_to_f64, result_to_f64};
 use dwell_findings::Finding;
 use dwell_geometry::{BodyId, Vec2};
-use dwell_kinetostatics::{EvaluatedState, InverseDynamics as Kinetostatic, KinematicState, Model};
+use dwell_kinetostatics::{
+    EvaluatedState, InverseDynamics as Kinetostatic, KinematicState, MachineModel as _, Model,
+};
 use dwell_scene::Scene;
 use dwell_verify::{
     Case, ClaimedState, Subject, check_energies, check_states, load_wrenches, verify_all,

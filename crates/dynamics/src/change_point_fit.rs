@@ -296,11 +296,9 @@ fn derivative_gap(
         plan.accelerations(&pose, &[0.0], &mut motion);
         fit.eval(direction * half_width, &mut Vec::new(), &mut values);
         let scaled = |rates, factor: f64| (rates, [factor, coordinate_scale]);
-        let frames = motion
-            .angular_velocity
-            .iter()
-            .zip(&motion.angular_acceleration);
-        let slides = motion.slide_velocity.iter().zip(&motion.slide_acceleration);
+        let (velocity, acceleration) = (&motion.velocity, &motion.acceleration);
+        let frames = velocity.angular.iter().zip(&acceleration.angular);
+        let slides = velocity.slide.iter().zip(&acceleration.slide);
         let frames = frames.map(|rates| scaled(rates, coordinate_scale));
         let rates = frames.chain(slides.map(|rates| scaled(rates, 1.0)));
         for ([_, first, second], ((velocity, acceleration), [one, two])) in values.iter().zip(rates)
@@ -332,8 +330,8 @@ impl<T: Scalar> FitWorkspace<T> {
     pub(crate) fn new(model: &Model) -> Self {
         let plan = model.plan();
         let unit_motion = plan.motion();
-        let frames = unit_motion.angular_velocity.len();
-        let slides = unit_motion.slide_velocity.len();
+        let frames = unit_motion.velocity.angular.len();
+        let slides = unit_motion.velocity.slide.len();
         Self {
             basis_values: Vec::with_capacity(MAX_DEGREE + 1),
             values: vec![[T::from_f64(0.0); 3]; frames + slides],
@@ -360,10 +358,10 @@ pub(crate) fn set_motion<T: Scalar>(
     [q_dot, q_ddot]: [T; 2],
     motion: &mut Motion<T>,
 ) {
-    let velocities = motion.angular_velocity.iter_mut();
-    let velocities = velocities.chain(&mut motion.slide_velocity);
-    let rates = motion.angular_acceleration.iter_mut();
-    let rates = velocities.zip(rates.chain(&mut motion.slide_acceleration));
+    let velocities = motion.velocity.angular.iter_mut();
+    let velocities = velocities.chain(&mut motion.velocity.slide);
+    let rates = motion.acceleration.angular.iter_mut();
+    let rates = velocities.zip(rates.chain(&mut motion.acceleration.slide));
     for ((velocity, acceleration), [_, first, second]) in rates.zip(values) {
         *velocity = *first * q_dot;
         *acceleration = *first * q_ddot + *second * q_dot * q_dot;

@@ -27,7 +27,8 @@ use dwell_geometry::PositionError;
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_kinetostatics::table::{Bound, IntegratedCurve, PiecewiseColumns, Result, TableBuilder};
 use dwell_kinetostatics::{
-    CompiledSignal, ExactModel, Load, LoadKind, Magnitude, TableDomain, TableError, TableQuantity,
+    CompiledSignal, ExactModel, Load, LoadKind, MachineModel as _, Magnitude, TableDomain,
+    TableError, TableQuantity,
 };
 use dwell_laws::Features;
 use source::{AuxiliaryColumns, TotalInertia, TotalPotential};

@@ -3,7 +3,6 @@
 use crate::mechanism::{BodyId, Mechanism};
 use crate::plan::{Plan, Pose};
 use crate::plane::Vec2;
-use crate::structure::frames::RotationSource;
 use dwell_numerics::Scalar;
 
 impl Plan {
@@ -40,22 +39,15 @@ impl Plan {
     }
 
     /// The angle of a frame that actuators alone rotate from the ground's, rad.
-    fn actuated_angle<T: Scalar>(&self, mut frame: usize, pose: &Pose<T>) -> Option<T> {
-        let mut angle = T::from_f64(0.0);
-        loop {
-            match self.frames.frames[frame].rotation_source {
-                RotationSource::Ground => return Some(angle),
-                RotationSource::Unknown => return None,
-                RotationSource::Actuated {
-                    parent,
-                    actuator,
-                    sign,
-                } => {
-                    angle += T::from_f64(sign) * pose.q[actuator];
-                    frame = parent;
-                }
-            }
+    fn actuated_angle<T: Scalar>(&self, frame: usize, pose: &Pose<T>) -> Option<T> {
+        if self.frames.frames[frame].orientation_class != 0 {
+            return None;
         }
+        let mut angle = T::from_f64(0.0);
+        for (actuator, sign) in self.frames.turned_by(frame) {
+            angle += T::from_f64(sign) * pose.q[actuator];
+        }
+        Some(angle)
     }
 
     /// The frame of every body, the ground's included: origin x, y (m) and

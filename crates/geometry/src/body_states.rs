@@ -3,7 +3,7 @@
 //! A [`BodyStates`] is filled once for a pose and a motion; each query afterwards costs a few multiplications and
 //! allocates nothing.
 
-use crate::mechanism::{BodyId, Coordinate, JointId, Mechanism};
+use crate::mechanism::{BodyId, Coordinate, Guide, JointId, Mechanism};
 use crate::motion::Motion;
 use crate::plan::{Plan, Pose};
 use crate::plane::{Vec2, vec2};
@@ -85,14 +85,7 @@ pub enum CoordinateFunction {
     /// Angle of the second body from the first.
     Angle([BodyId; 2]),
     /// Travel t·(P₂ − P₁).
-    Travel {
-        /// The joint's bodies.
-        bodies: [BodyId; 2],
-        /// Its point on each, m.
-        points: [Vec2; 2],
-        /// The axis t in the first body's frame.
-        axis: Vec2,
-    },
+    Travel(Guide),
     /// Distance of two points.
     Length {
         /// The bodies.
@@ -110,13 +103,8 @@ impl CoordinateFunction {
         match coordinate {
             Coordinate::Angle(bodies) => exist(bodies).then_some(Self::Angle(bodies)),
             Coordinate::Travel(joint) => {
-                let joint = mechanism.joints.get(joint.0)?;
-                let axis = joint.kind.travel_axis()?;
-                exist(joint.bodies).then_some(Self::Travel {
-                    bodies: joint.bodies,
-                    points: joint.points,
-                    axis,
-                })
+                let guide = mechanism.joints.get(joint.0)?.guide()?;
+                exist(guide.bodies).then_some(Self::Travel(guide))
             }
             Coordinate::Length { bodies, points } => {
                 exist(bodies).then_some(Self::Length { bodies, points })
@@ -190,14 +178,14 @@ impl<T: Scalar> BodyStates<T> {
             let rotation = pose.rotation[orientation.frame];
             let angle = plan.counted_angle(body, pose);
             let state = &mut self.bodies[body];
-            state.angular_velocity = motion.angular_velocity[orientation.frame];
+            state.angular_velocity = motion.velocity.angular[orientation.frame];
             state.angle = angle;
             state.rotation = orientation.offset.cast().rotate(rotation);
             (state.joint_origin, state.velocity) = (joint_origin, velocity);
             if let Some((slide, direction)) = moving_body.slide {
                 let along = pose.vector[direction];
                 let travel_vector = along * pose.slide_travel[slide];
-                let speed = motion.slide_velocity[slide];
+                let speed = motion.velocity.slide[slide];
                 state.velocity = state.velocity_at(travel_vector) + along * speed;
                 state.joint_origin += travel_vector;
             }
@@ -217,14 +205,14 @@ impl<T: Scalar> BodyStates<T> {
             let frame = plan.frames().orientations[body].frame;
             let state = &mut self.bodies[body];
             state.acceleration = acceleration;
-            state.angular_acceleration = motion.angular_acceleration[frame];
+            state.angular_acceleration = motion.acceleration.angular[frame];
             if let Some((slide, direction)) = moving_body.slide {
                 let along = pose.vector[direction];
                 let travel_vector = along * pose.slide_travel[slide];
-                let speed = motion.slide_velocity[slide];
+                let speed = motion.velocity.slide[slide];
                 let coriolis = T::from_f64(2.0) * state.angular_velocity * speed;
                 state.acceleration = state.acceleration_at(travel_vector)
-                    + along * motion.slide_acceleration[slide]
+                    + along * motion.acceleration.slide[slide]
                     + along.perp() * coriolis;
             }
         }
@@ -300,14 +288,10 @@ impl<T: Scalar> BodyStates<T> {
     pub fn coordinate(&self, function: CoordinateFunction) -> [T; 3] {
         match function {
             CoordinateFunction::Angle(bodies) => self.angle(bodies),
-            CoordinateFunction::Travel {
-                bodies,
-                points,
-                axis,
-            } => {
-                let between = self.separation(bodies, points);
-                let first = self.body(bodies[0]);
-                let along = axis.cast().rotate(first.rotation);
+            CoordinateFunction::Travel(guide) => {
+                let between = self.separation(guide.bodies, guide.points);
+                let first = self.body(guide.bodies[0]);
+                let along = guide.axis.cast().rotate(first.rotation);
                 let (w, a) = (first.angular_velocity, first.angular_acceleration);
                 // The separation as the first body sees it.
                 let velocity = between.velocity - between.gap.perp() * w;

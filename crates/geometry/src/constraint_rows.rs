@@ -65,31 +65,13 @@ pub enum ConstraintRowsError {
         /// Number of bodies.
         bodies: usize,
     },
-    /// A joint names a body that does not exist.
-    #[error("joint {joint} names body {body}, but there are {bodies} bodies")]
-    JointBody {
-        /// Index of the joint.
-        joint: usize,
-        /// Index it names.
-        body: usize,
-        /// Number of bodies.
-        bodies: usize,
-    },
-    /// An actuator names a body that does not exist.
-    #[error("actuator {actuator} names body {body}, but there are {bodies} bodies")]
-    ActuatorBody {
-        /// Index of the actuator.
-        actuator: usize,
-        /// Index it names.
-        body: usize,
-        /// Number of bodies.
-        bodies: usize,
-    },
-    /// A coupling names a body that does not exist.
-    #[error("coupling {coupling} names body {body}, but there are {bodies} bodies")]
-    CouplingBody {
-        /// Index of the coupling.
-        coupling: usize,
+    /// A joint, an actuator or a coupling names a body that does not exist.
+    #[error("{what} {index} names body {body}, but there are {bodies} bodies")]
+    NoBody {
+        /// What names it.
+        what: &'static str,
+        /// Which of them.
+        index: usize,
         /// Index it names.
         body: usize,
         /// Number of bodies.
@@ -143,28 +125,16 @@ impl ConstraintRows {
         let mut joints = mechanism.joints.iter();
         let counts_revolutions = joints.any(|j| joint_counts_revolutions(mechanism, j));
         for (joint, described) in mechanism.joints.iter().enumerate() {
-            if let Some(body) = writer.missing_body(described.bodies) {
-                return Err(ConstraintRowsError::JointBody {
-                    joint,
-                    body,
-                    bodies,
-                });
-            }
+            writer.check_bodies(("joint", joint), described.bodies)?;
         }
         let mut rows = Vec::with_capacity(2 * mechanism.joints.len() + mechanism.actuators.len());
         for (joint, described) in mechanism.joints.iter().enumerate() {
             rows.extend(writer.joint(joint, described)?);
         }
         for (actuator, described) in mechanism.actuators.iter().enumerate() {
-            let broken = |body| ConstraintRowsError::ActuatorBody {
-                actuator,
-                body,
-                bodies,
-            };
-            if let Some(body) = writer.missing_body(described.bodies) {
-                return Err(broken(body));
-            }
-            rows.push(match writer.term(described.coordinate(), broken)? {
+            let named_by = ("actuator", actuator);
+            writer.check_bodies(named_by, described.bodies)?;
+            rows.push(match writer.term(named_by, described.coordinate())? {
                 ConstraintTerm::RelativeAngle(angle_columns) if !counts_revolutions => {
                     ConstraintRow::periodic_angle(angle_columns, 0.0)
                 }

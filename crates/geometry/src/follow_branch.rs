@@ -195,7 +195,7 @@ impl Plan {
     fn limit_near(
         &self,
         (pose, margin): (&Pose<f64>, &Dual),
-        (direction, group, mut change_point): (f64, usize, bool),
+        (direction, group, change_point): (f64, usize, bool),
         anchor: Option<&Pose<f64>>,
     ) -> (RangeLimit, Option<NearBranch>) {
         // Where the determinant crosses zero, the last step is Newton's.
@@ -209,22 +209,14 @@ impl Plan {
         let behind = found.and_then(|found| self.branch_beyond(group, found));
         let smallest = MIN_FOLD_HALF_WIDTH * self.coordinate_unit();
         let folds = found.is_some_and(|found| found.square < -smallest * smallest);
-        let mut limit = RangeLimit {
-            q,
+        // Where both branches fold back, it is a limit position of each.
+        let meets = change_point && !folds;
+        let limit = RangeLimit {
+            q: if meets == change_point { q } else { pose.q[0] },
             group,
-            change_point,
-            separation: behind.filter(|_| change_point).map(|b| b.half_width),
+            change_point: meets,
+            separation: behind.filter(|_| meets).map(|b| b.half_width),
         };
-        if change_point && folds {
-            // Both branches fold back: it is a limit position of each.
-            change_point = false;
-            limit = RangeLimit {
-                q: pose.q[0],
-                separation: None,
-                change_point,
-                ..limit
-            };
-        }
         (limit, behind)
     }
 
@@ -311,7 +303,7 @@ impl Plan {
                 match unknown {
                     Unknown::ClassAngle(c) => {
                         let f = self.class_frame(c);
-                        let by = motion.angular_velocity[f] * step;
+                        let by = motion.velocity.angular[f] * step;
                         if self.revolution_counted[f] {
                             self.set_class_angle(c, from.angle[f] + by, pose);
                         } else {
@@ -320,7 +312,7 @@ impl Plan {
                     }
                     Unknown::SlideTravel(s) => {
                         pose.slide_travel[s] =
-                            from.slide_travel[s] + motion.slide_velocity[s] * step;
+                            from.slide_travel[s] + motion.velocity.slide[s] * step;
                     }
                 }
             }
@@ -372,10 +364,10 @@ impl Plan {
                 let derivatives = |unknown: &Unknown| match *unknown {
                     Unknown::ClassAngle(c) => {
                         let f = self.class_frame(c);
-                        (motion.angular_velocity[f], motion.angular_acceleration[f])
+                        (motion.velocity.angular[f], motion.acceleration.angular[f])
                     }
                     Unknown::SlideTravel(s) => {
-                        (motion.slide_velocity[s], motion.slide_acceleration[s])
+                        (motion.velocity.slide[s], motion.acceleration.slide[s])
                     }
                 };
                 let values = unknowns.clone().map(value).collect();

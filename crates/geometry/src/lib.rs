@@ -49,6 +49,7 @@ pub mod motion;
 pub mod plan;
 pub mod plane;
 mod positions;
+mod rates;
 pub mod space;
 pub mod structure;
 mod variants;
@@ -56,11 +57,12 @@ mod variants;
 pub use error::{AssemblyError, PositionError, StructureError};
 pub use mechanism::{
     Actuator, ActuatorId, ActuatorKind, Body, BodyId, BranchHint, Component, Coordinate, Coupling,
-    Joint, JointId, JointKind, Mechanism, Reaction,
+    Guide, Joint, JointId, JointKind, Mechanism, Reaction,
 };
 pub use motion::{ForceBalance, Motion};
 pub use plan::range::{NearBranch, Range, RangeLimit};
 pub use plan::{AssemblyConfiguration, Plan, Pose};
 pub use plane::{Vec2, vec2};
+pub use rates::Rates;
 pub use structure::{coupling, frames, groups, lower, tree};
 pub use variants::ModeGuess;

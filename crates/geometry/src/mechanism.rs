@@ -112,6 +112,17 @@ pub enum JointKind {
     Coupling(usize),
 }
 
+/// The line along which a joint slides, in the plane or in [space](crate::space).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Guide<V = Vec2> {
+    /// The joint's bodies.
+    pub bodies: [BodyId; 2],
+    /// Its point on each, m.
+    pub points: [V; 2],
+    /// Unit vector t of its axis in the first body's frame.
+    pub axis: V,
+}
+
 /// A coordinate of a mechanism that can be measured, driven, or coupled to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Coordinate {

@@ -146,14 +146,6 @@ impl DenseConstraints {
         if column % 3 == 2 { 1.0 } else { self.size }
     }
 
-    fn rank(&self, svd: &Svd) -> usize {
-        let largest = svd.values.first().copied().unwrap_or(0.0);
-        let values = svd.values.iter();
-        values
-            .filter(|&&s| s > self.rank_tolerance * largest)
-            .count()
-    }
-
     /// A configuration near the approximate angles that closes all rows, or comes nearest, and its residual, m.
     fn assemble(
         &mut self,
@@ -270,7 +262,7 @@ impl DenseConstraints {
     fn other_configuration(&self, x: &[f64]) -> Option<Vec<f64>> {
         let jacobian = self.jacobian(x);
         let svd = jacobian.first_rows(self.joint_rows).svd()?;
-        let (rank, v) = (self.rank(&svd), svd.v);
+        let (rank, v) = (svd.rank(self.rank_tolerance), svd.v);
         let mut other = x.to_vec();
         for k in rank..v.columns() {
             for (j, value) in other.iter_mut().enumerate() {
@@ -295,10 +287,10 @@ impl DenseConstraints {
             gap: None,
         };
         if let Some(svd) = all.first_rows(self.joint_rows).svd() {
-            found.rank = self.rank(&svd);
+            found.rank = svd.rank(self.rank_tolerance);
         }
         if let Some(svd) = all.svd() {
-            let rank = self.rank(&svd);
+            let rank = svd.rank(self.rank_tolerance);
             found.redundant_count = self.rows.len() - rank;
             let part = |m: &Matrix, i: usize| -> f64 {
                 (rank..m.columns()).map(|k| m[(i, k)] * m[(i, k)]).sum()

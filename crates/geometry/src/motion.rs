@@ -7,22 +7,20 @@
 mod multipliers;
 
 use crate::plan::{ActuatedFrame, AssurGroup, FactoredGroup, GroupKind, LoopClosure, Plan, Pose};
-use crate::plane::Vec2;
+use crate::plane::{Vec2, vec2};
+use crate::rates::Rates;
+use crate::structure::coupling::CouplingEquation;
 use crate::structure::groups::Unknown;
 use dwell_numerics::Scalar;
 pub use multipliers::ForceBalance;
 
-/// Rates of every frame and slide at a pose.
+/// Velocities and accelerations at a pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion<T> {
-    /// By frame: angular velocity, rad/s.
-    pub angular_velocity: Vec<T>,
-    /// By slide: its speed, m/s.
-    pub slide_velocity: Vec<T>,
-    /// By frame: angular acceleration, rad/s².
-    pub angular_acceleration: Vec<T>,
-    /// By slide: its acceleration, m/s².
-    pub slide_acceleration: Vec<T>,
+    /// The velocities.
+    pub velocity: Rates<T>,
+    /// The accelerations.
+    pub acceleration: Rates<T>,
     workspace: Vec<T>,
 }
 
@@ -30,11 +28,13 @@ impl Plan {
     /// A motion with the right sizes.
     pub fn motion<T: Scalar>(&self) -> Motion<T> {
         let zero = T::from_f64(0.0);
+        let rest = Rates {
+            angular: vec![zero; self.frames.frames.len()],
+            slide: vec![zero; self.tree.slide_pairs.len()],
+        };
         Motion {
-            angular_velocity: vec![zero; self.frames.frames.len()],
-            slide_velocity: vec![zero; self.tree.slide_pairs.len()],
-            angular_acceleration: vec![zero; self.frames.frames.len()],
-            slide_acceleration: vec![zero; self.tree.slide_pairs.len()],
+            velocity: rest.clone(),
+            acceleration: rest,
             workspace: self.workspace(),
         }
     }
@@ -47,7 +47,7 @@ impl Plan {
     /// Velocities for the actuators' speeds `q_dot` (rad/s).
     #[inline(always)]
     pub fn velocities<T: Scalar>(&self, pose: &Pose<T>, q_dot: &[T], motion: &mut Motion<T>) {
-        self.actuated_velocities(q_dot, motion);
+        self.set_actuated(q_dot, &mut motion.velocity);
         for (assur, &inverse) in self.groups.iter().zip(&pose.inverse_determinant) {
             if !assur.pruned {
                 self.group_velocities((assur, inverse), pose, q_dot, motion);
@@ -55,11 +55,15 @@ impl Plan {
         }
     }
 
-    /// The velocities that the actuators alone determine.
+    /// Sets the rates that those of the actuators alone determine.
     #[inline(always)]
-    pub(crate) fn actuated_velocities<T: Scalar>(&self, q_dot: &[T], motion: &mut Motion<T>) {
-        propagate_actuated(&self.actuated_frames, q_dot, &mut motion.angular_velocity);
-        self.set_actuated_slides(q_dot, &mut motion.slide_velocity);
+    pub(crate) fn set_actuated<T: Scalar>(&self, rate: &[T], rates: &mut Rates<T>) {
+        propagate_actuated(&self.actuated_frames, rate, &mut rates.angular);
+        for (value, actuated) in rates.slide.iter_mut().zip(&self.actuated_slides) {
+            if let Some(actuator) = *actuated {
+                *value = rate[actuator];
+            }
+        }
     }
 
     /// The velocities of a group, after those before it; `inverse` is one over the determinant of a closed form.
@@ -75,33 +79,28 @@ impl Plan {
             GroupKind::RrrDyad(dyad) => {
                 let rate = vector_velocity(&dyad.known, pose, motion);
                 let [r1, r2] = dyad.vectors.map(|a| pose.vector[a]);
-                motion.angular_velocity[dyad.frames[0]] = -(rate.dot(r2) * inverse);
-                motion.angular_velocity[dyad.frames[1]] = rate.dot(r1) * inverse;
+                motion.velocity.angular[dyad.frames[0]] = -(rate.dot(r2) * inverse);
+                motion.velocity.angular[dyad.frames[1]] = rate.dot(r1) * inverse;
             }
             GroupKind::GuidedPoint(guided) => {
-                motion.angular_velocity[guided.frame] = T::from_f64(0.0);
+                motion.velocity.angular[guided.frame] = T::from_f64(0.0);
                 let rate = vector_velocity(&guided.vectors, pose, motion);
                 let travel = pose.closure_travel[guided.closure];
                 let rate = normal_gap_velocity(rate, guided.axis, travel, pose, motion);
-                motion.angular_velocity[guided.frame] = -(rate * inverse);
+                motion.velocity.angular[guided.frame] = -(rate * inverse);
             }
             GroupKind::Factored(factored_group) => {
                 self.factored_velocities(assur, factored_group, pose, q_dot, motion);
             }
         }
-        propagate_actuated(&assur.actuated_frames, q_dot, &mut motion.angular_velocity);
+        propagate_actuated(&assur.actuated_frames, q_dot, &mut motion.velocity.angular);
     }
 
     /// Accelerations for the actuators' accelerations `q_ddot` (rad/s²), at the velocities that
     /// [`Plan::velocities`] left in `motion`.
     #[inline(always)]
     pub fn accelerations<T: Scalar>(&self, pose: &Pose<T>, q_ddot: &[T], motion: &mut Motion<T>) {
-        propagate_actuated(
-            &self.actuated_frames,
-            q_ddot,
-            &mut motion.angular_acceleration,
-        );
-        self.set_actuated_slides(q_ddot, &mut motion.slide_acceleration);
+        self.set_actuated(q_ddot, &mut motion.acceleration);
         for (assur, &inverse) in self.groups.iter().zip(&pose.inverse_determinant) {
             if assur.pruned {
                 continue;
@@ -110,27 +109,24 @@ impl Plan {
                 GroupKind::RrrDyad(dyad) => {
                     let (_, known) = vector_velocity_and_acceleration(&dyad.known, pose, motion);
                     let [r1, r2] = dyad.vectors.map(|a| pose.vector[a]);
-                    let [w1, w2] = dyad.frames.map(|f| motion.angular_velocity[f]);
+                    let [w1, w2] = dyad.frames.map(|f| motion.velocity.angular[f]);
                     let rest = known - (r1 * (w1 * w1) + r2 * (w2 * w2));
-                    motion.angular_acceleration[dyad.frames[0]] = -(rest.dot(r2) * inverse);
-                    motion.angular_acceleration[dyad.frames[1]] = rest.dot(r1) * inverse;
+                    motion.acceleration.angular[dyad.frames[0]] = -(rest.dot(r2) * inverse);
+                    motion.acceleration.angular[dyad.frames[1]] = rest.dot(r1) * inverse;
                 }
                 GroupKind::GuidedPoint(guided) => {
-                    motion.angular_acceleration[guided.frame] = T::from_f64(0.0);
+                    motion.acceleration.angular[guided.frame] = T::from_f64(0.0);
                     let rates = vector_velocity_and_acceleration(&guided.vectors, pose, motion);
                     let travel = pose.closure_travel[guided.closure];
                     let rate = normal_gap_acceleration(rates, guided.axis, travel, pose, motion);
-                    motion.angular_acceleration[guided.frame] = -(rate * inverse);
+                    motion.acceleration.angular[guided.frame] = -(rate * inverse);
                 }
                 GroupKind::Factored(factored_group) => {
                     self.factored_accelerations(assur, factored_group, pose, q_ddot, motion);
                 }
             }
-            propagate_actuated(
-                &assur.actuated_frames,
-                q_ddot,
-                &mut motion.angular_acceleration,
-            );
+            let angular = &mut motion.acceleration.angular;
+            propagate_actuated(&assur.actuated_frames, q_ddot, angular);
         }
     }
 
@@ -146,43 +142,21 @@ impl Plan {
         q_dot: &[T],
         motion: &mut Motion<T>,
     ) {
-        self.zero_unknowns(
-            assur,
-            &mut motion.angular_velocity,
-            &mut motion.slide_velocity,
-        );
-        propagate_actuated(&assur.actuated_frames, q_dot, &mut motion.angular_velocity);
+        self.start_rates(assur, q_dot, &mut motion.velocity);
         let mut workspace = std::mem::take(&mut motion.workspace);
-        let mut row = 0;
-        for &l in &assur.group.loops {
+        let loop_rate = |l: usize| {
             let rate = gap_velocity(&self.loop_closures[l], pose, motion);
-            if let Some(axis) = self.loop_closures[l].axis {
-                workspace[row] =
-                    -normal_gap_velocity(rate, axis, pose.closure_travel[l], pose, motion);
-                row += 1;
-            } else {
-                workspace[row] = -rate.x;
-                workspace[row + 1] = -rate.y;
-                row += 2;
-            }
-        }
-        for &r in &assur.group.couplings {
-            let rate = self.couplings[r].rate(
-                &pose.angle,
-                &pose.slide_travel,
-                &motion.angular_velocity,
-                &motion.slide_velocity,
-            );
-            workspace[row] = -rate * assur.coupling_weight::<T>(&self.couplings[r]);
-            row += 1;
-        }
-        factored_group.solve(pose, &mut workspace[..row]);
-        self.store_solution(
-            assur,
-            &workspace,
-            &mut motion.angular_velocity,
-            &mut motion.slide_velocity,
-        );
+            let travel = pose.closure_travel[l];
+            let normal = |axis| normal_gap_velocity(rate, axis, travel, pose, motion);
+            let along_normal = self.loop_closures[l].axis.map(normal);
+            along_normal.map_or(rate, |rate| vec2(rate, T::from_f64(0.0)))
+        };
+        let coupling_rate = |coupling: &CouplingEquation| {
+            coupling.rate(&pose.angle, &pose.slide_travel, &motion.velocity)
+        };
+        self.fill_rates(assur, loop_rate, coupling_rate, &mut workspace);
+        factored_group.solve(pose, &mut workspace[..factored_group.rows]);
+        self.store_solution(assur, &workspace, &mut motion.velocity);
         motion.workspace = workspace;
     }
 
@@ -195,86 +169,68 @@ impl Plan {
         q_ddot: &[T],
         motion: &mut Motion<T>,
     ) {
-        self.zero_unknowns(
-            assur,
-            &mut motion.angular_acceleration,
-            &mut motion.slide_acceleration,
-        );
-        propagate_actuated(
-            &assur.actuated_frames,
-            q_ddot,
-            &mut motion.angular_acceleration,
-        );
+        self.start_rates(assur, q_ddot, &mut motion.acceleration);
         let mut workspace = std::mem::take(&mut motion.workspace);
-        let mut row = 0;
-        for &l in &assur.group.loops {
+        let loop_rate = |l: usize| {
             let rates = gap_velocity_and_acceleration(&self.loop_closures[l], pose, motion);
-            if let Some(axis) = self.loop_closures[l].axis {
-                workspace[row] =
-                    -normal_gap_acceleration(rates, axis, pose.closure_travel[l], pose, motion);
-                row += 1;
-            } else {
-                workspace[row] = -rates.1.x;
-                workspace[row + 1] = -rates.1.y;
-                row += 2;
-            }
-        }
-        for &r in &assur.group.couplings {
-            let value = self.couplings[r].acceleration(
-                &pose.angle,
-                &pose.slide_travel,
-                (&motion.angular_velocity, &motion.slide_velocity),
-                (&motion.angular_acceleration, &motion.slide_acceleration),
-            );
-            workspace[row] = -value * assur.coupling_weight::<T>(&self.couplings[r]);
-            row += 1;
-        }
-        factored_group.solve(pose, &mut workspace[..row]);
-        self.store_solution(
-            assur,
-            &workspace,
-            &mut motion.angular_acceleration,
-            &mut motion.slide_acceleration,
-        );
+            let travel = pose.closure_travel[l];
+            let normal = |axis| normal_gap_acceleration(rates, axis, travel, pose, motion);
+            let along_normal = self.loop_closures[l].axis.map(normal);
+            along_normal.map_or(rates.1, |rate| vec2(rate, T::from_f64(0.0)))
+        };
+        let coupling_rate = |coupling: &CouplingEquation| {
+            let rates = (&motion.velocity, &motion.acceleration);
+            coupling.acceleration(&pose.angle, &pose.slide_travel, rates)
+        };
+        self.fill_rates(assur, loop_rate, coupling_rate, &mut workspace);
+        factored_group.solve(pose, &mut workspace[..factored_group.rows]);
+        self.store_solution(assur, &workspace, &mut motion.acceleration);
         motion.workspace = workspace;
     }
 
-    /// Sets the rates of the slides that actuators drive.
+    /// Writes the rates of a group's equations with its unknowns at rest, with opposite sign: of a loop both components,
+    /// or the first alone where it has an axis, and of a coupling.
     #[inline(always)]
-    fn set_actuated_slides<T: Scalar>(&self, rate: &[T], slide: &mut [T]) {
-        for (value, actuated) in slide.iter_mut().zip(&self.actuated_slides) {
-            if let Some(actuator) = *actuated {
-                *value = rate[actuator];
+    fn fill_rates<T: Scalar>(
+        &self,
+        assur: &AssurGroup,
+        loop_rate: impl Fn(usize) -> Vec2<T>,
+        coupling_rate: impl Fn(&CouplingEquation) -> T,
+        rates: &mut [T],
+    ) {
+        let mut row = 0;
+        for &l in &assur.group.loops {
+            let rate = loop_rate(l);
+            rates[row] = -rate.x;
+            row += 1;
+            if self.loop_closures[l].axis.is_none() {
+                rates[row] = -rate.y;
+                row += 1;
             }
+        }
+        for &r in &assur.group.couplings {
+            let coupling = &self.couplings[r];
+            rates[row] = -coupling_rate(coupling) * assur.coupling_weight::<T>(coupling);
+            row += 1;
         }
     }
 
     /// Sets the rates of a group's unknowns to zero, so that a gap's rate is that of the known frames alone.
-    fn zero_unknowns<T: Scalar>(
-        &self,
-        assur: &AssurGroup,
-        angular_rate: &mut [T],
-        slide_rate: &mut [T],
-    ) {
+    fn start_rates<T: Scalar>(&self, assur: &AssurGroup, rate: &[T], rates: &mut Rates<T>) {
         for &unknown in &assur.group.unknowns {
             match unknown {
-                Unknown::ClassAngle(c) => angular_rate[self.class_frame(c)] = T::from_f64(0.0),
-                Unknown::SlideTravel(s) => slide_rate[s] = T::from_f64(0.0),
+                Unknown::ClassAngle(c) => rates.angular[self.class_frame(c)] = T::from_f64(0.0),
+                Unknown::SlideTravel(s) => rates.slide[s] = T::from_f64(0.0),
             }
         }
+        propagate_actuated(&assur.actuated_frames, rate, &mut rates.angular);
     }
 
-    fn store_solution<T: Scalar>(
-        &self,
-        assur: &AssurGroup,
-        solution: &[T],
-        angular_rate: &mut [T],
-        slide_rate: &mut [T],
-    ) {
+    fn store_solution<T: Scalar>(&self, assur: &AssurGroup, solution: &[T], rates: &mut Rates<T>) {
         for (&unknown, &value) in assur.group.unknowns.iter().zip(solution) {
             match unknown {
-                Unknown::ClassAngle(c) => angular_rate[self.class_frame(c)] = value,
-                Unknown::SlideTravel(s) => slide_rate[s] = value * T::from_f64(assur.scale),
+                Unknown::ClassAngle(c) => rates.angular[self.class_frame(c)] = value,
+                Unknown::SlideTravel(s) => rates.slide[s] = value * T::from_f64(assur.scale),
             }
         }
     }
@@ -302,7 +258,7 @@ fn normal_gap_velocity<T: Scalar>(
     pose: &Pose<T>,
     motion: &Motion<T>,
 ) -> T {
-    pose.vector[axis].perp().dot(velocity) - motion.angular_velocity[frame] * travel
+    pose.vector[axis].perp().dot(velocity) - motion.velocity.angular[frame] * travel
 }
 
 /// d²/dt² of n·L: n·L̈ − 2 ω_n (axis·L̇) − α_n travel.
@@ -315,8 +271,8 @@ fn normal_gap_acceleration<T: Scalar>(
     motion: &Motion<T>,
 ) -> T {
     let along = pose.vector[axis];
-    let coriolis = T::from_f64(2.0) * motion.angular_velocity[frame] * along.dot(velocity);
-    along.perp().dot(acceleration) - coriolis - motion.angular_acceleration[frame] * travel
+    let coriolis = T::from_f64(2.0) * motion.velocity.angular[frame] * along.dot(velocity);
+    along.perp().dot(acceleration) - coriolis - motion.acceleration.angular[frame] * travel
 }
 
 /// Σ ω ẑ×vector.
@@ -328,7 +284,7 @@ fn vector_velocity<T: Scalar>(
 ) -> Vec2<T> {
     let mut sum = Vec2::zero();
     for &(vector, frame) in vectors {
-        sum += pose.vector[vector].perp() * motion.angular_velocity[frame];
+        sum += pose.vector[vector].perp() * motion.velocity.angular[frame];
     }
     sum
 }
@@ -342,9 +298,9 @@ fn vector_velocity_and_acceleration<T: Scalar>(
 ) -> (Vec2<T>, Vec2<T>) {
     let (mut first, mut second) = (Vec2::zero(), Vec2::zero());
     for &(vector, frame) in vectors {
-        let (r, w) = (pose.vector[vector], motion.angular_velocity[frame]);
+        let (r, w) = (pose.vector[vector], motion.velocity.angular[frame]);
         first += r.perp() * w;
-        second += r.perp() * motion.angular_acceleration[frame] - r * (w * w);
+        second += r.perp() * motion.acceleration.angular[frame] - r * (w * w);
     }
     (first, second)
 }
@@ -354,8 +310,8 @@ fn gap_velocity<T: Scalar>(closure: &LoopClosure, pose: &Pose<T>, motion: &Motio
     let mut sum = vector_velocity(&closure.vectors, pose, motion);
     for &(s, vector, frame) in &closure.slides {
         let along = pose.vector[vector];
-        sum += along * motion.slide_velocity[s]
-            + along.perp() * (pose.slide_travel[s] * motion.angular_velocity[frame]);
+        sum += along * motion.velocity.slide[s]
+            + along.perp() * (pose.slide_travel[s] * motion.velocity.angular[frame]);
     }
     sum
 }
@@ -368,13 +324,13 @@ fn gap_velocity_and_acceleration<T: Scalar>(
 ) -> (Vec2<T>, Vec2<T>) {
     let (mut first, mut second) = vector_velocity_and_acceleration(&closure.vectors, pose, motion);
     for &(s, vector, frame) in &closure.slides {
-        let (along, w) = (pose.vector[vector], motion.angular_velocity[frame]);
+        let (along, w) = (pose.vector[vector], motion.velocity.angular[frame]);
         let travel_vector = along * pose.slide_travel[s];
-        first += along * motion.slide_velocity[s] + travel_vector.perp() * w;
+        first += along * motion.velocity.slide[s] + travel_vector.perp() * w;
         second +=
-            travel_vector.perp() * motion.angular_acceleration[frame] - travel_vector * (w * w);
-        let coriolis = T::from_f64(2.0) * w * motion.slide_velocity[s];
-        second += along * motion.slide_acceleration[s] + along.perp() * coriolis;
+            travel_vector.perp() * motion.acceleration.angular[frame] - travel_vector * (w * w);
+        let coriolis = T::from_f64(2.0) * w * motion.velocity.slide[s];
+        second += along * motion.acceleration.slide[s] + along.perp() * coriolis;
     }
     (first, second)
 }

@@ -225,7 +225,7 @@ impl GroupKind {
 }
 
 /// Two bodies pinned to each other and to known points: a triangle.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct RrrDyad {
     pub(crate) closure: usize,
     /// The two vectors that turn, and their frames.
@@ -245,7 +245,7 @@ pub(crate) struct RrrDyad {
 }
 
 /// A body turned until a point of its loop lies on a line.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct GuidedPoint {
     pub(crate) closure: usize,
     pub(crate) frame: usize,

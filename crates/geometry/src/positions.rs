@@ -153,7 +153,7 @@ impl Plan {
         mut each: impl FnMut(usize, &Pose<f64>, &Motion<f64>) -> bool,
     ) -> Result<bool, PositionError> {
         take_coordinates(&[q], pose)?;
-        self.actuated_velocities(&[1.0], motion);
+        self.set_actuated(&[1.0], &mut motion.velocity);
         for (g, assur) in self.groups.iter().enumerate() {
             self.group_positions(g, pose)?;
             let inverse = pose.inverse_determinant[g];

@@ -58,11 +58,8 @@ pub enum FrictionState<T> {
 /// How a load in the plane depends on the reactions of its joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum ReactionLaw {
-    Friction {
-        friction: Friction,
-        /// The coordinate whose speed is that of the surfaces.
-        coordinate: CoordinateFunction,
-    },
+    /// A friction, with the coordinate whose speed is that of the surfaces.
+    Friction(Friction, CoordinateFunction),
     /// A separating force, by tan α.
     Separating { tangent: f64 },
 }
@@ -70,7 +67,7 @@ pub(crate) enum ReactionLaw {
 impl ContactLaw<2> for ReactionLaw {
     fn force<T: Scalar>(self, reaction: [T; 2]) -> (T, [T; 2]) {
         match self {
-            Self::Friction { friction, .. } => friction.contact.force(reaction),
+            Self::Friction(friction, _) => friction.contact.force(reaction),
             Self::Separating { .. } => {
                 let [tooth, _] = reaction;
                 let sign = T::from_f64(if tooth.value() < 0.0 { -1.0 } else { 1.0 });
@@ -158,10 +155,7 @@ impl DependentLoad {
             }
             let law = if let Some(friction) = one.friction() {
                 // The surfaces slide along the coordinate of the load.
-                ReactionLaw::Friction {
-                    friction,
-                    coordinate: one.kind.sliding_coordinate()?,
-                }
+                ReactionLaw::Friction(friction, one.kind.sliding_coordinate()?)
             } else {
                 let tangent = one.pressure_angle()?.angle.tan();
                 // Without its tooth force it is in a model that computes nothing on which it could act.
@@ -180,10 +174,7 @@ impl DependentLoad {
     /// φ.
     pub(crate) fn factor<T: Scalar>(&self, states: &BodyStates<T>) -> T {
         match self.law {
-            ReactionLaw::Friction {
-                friction,
-                coordinate,
-            } => {
+            ReactionLaw::Friction(friction, coordinate) => {
                 let [_, velocity, _] = states.coordinate(coordinate);
                 friction.factor(velocity)
             }
@@ -194,10 +185,9 @@ impl DependentLoad {
     /// A friction that holds its surfaces at rest, with the coordinate along which they slide.
     pub(crate) fn sticking(&self) -> Option<(Friction, CoordinateFunction)> {
         match self.law {
-            ReactionLaw::Friction {
-                friction,
-                coordinate,
-            } => Some((friction, coordinate)).filter(|_| friction.regularization_speed.is_none()),
+            ReactionLaw::Friction(friction, coordinate) => {
+                Some((friction, coordinate)).filter(|_| friction.regularization_speed.is_none())
+            }
             ReactionLaw::Separating { .. } => None,
         }
     }

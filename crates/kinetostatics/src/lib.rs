@@ -35,6 +35,7 @@ mod mass;
 pub mod model;
 mod pass;
 pub mod reduced;
+mod reducible_model;
 pub mod results;
 mod rounding;
 pub mod space;

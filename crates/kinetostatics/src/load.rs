@@ -18,6 +18,8 @@ pub(crate) use signal::{SignalWorkspace, compile_signals, compile_signals_by};
 pub use wrench::{AppliedWrench, ForceSource};
 pub(crate) use wrench::{find_couple_points, on_two_bodies};
 
+pub use dwell_geometry::Guide;
+
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, Coordinate, Mechanism, Vec2};
 use dwell_laws::{Expression, Law};
@@ -102,17 +104,6 @@ pub enum LoadKind {
     SeparatingForce(Mesh),
 }
 
-/// The line along which a prismatic joint or a slot slides.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Guide {
-    /// The joint's bodies.
-    pub bodies: [BodyId; 2],
-    /// Its point on each, m.
-    pub points: [Vec2; 2],
-    /// Unit vector of its axis in the first body's frame.
-    pub axis: Vec2,
-}
-
 impl LoadKind {
     /// The bodies it acts on; none of gravity, which acts on all that have mass.
     pub(crate) fn bodies(&self) -> &[BodyId] {
@@ -136,35 +127,11 @@ impl LoadKind {
     pub fn along(mechanism: &Mechanism, coordinate: Coordinate) -> Option<Self> {
         Some(match CoordinateFunction::find(mechanism, coordinate)? {
             CoordinateFunction::Angle(bodies) => Self::Torque { bodies },
-            CoordinateFunction::Travel {
-                bodies,
-                points,
-                axis,
-            } => Self::SlideForce(Guide {
-                bodies,
-                points,
-                axis,
-            }),
+            CoordinateFunction::Travel(guide) => Self::SlideForce(guide),
             CoordinateFunction::Length { bodies, points } => {
                 Self::PointToPointForce { bodies, points }
             }
         })
-    }
-}
-
-impl Guide {
-    /// The travel of the second point along it.
-    pub fn travel(&self) -> CoordinateFunction {
-        let &Self {
-            bodies,
-            points,
-            axis,
-        } = self;
-        CoordinateFunction::Travel {
-            bodies,
-            points,
-            axis,
-        }
     }
 }
 
@@ -210,7 +177,7 @@ impl LoadKind {
     /// other load is a friction.
     pub(crate) fn sliding_coordinate(self) -> Option<CoordinateFunction> {
         match self {
-            Self::SlideForce(guide) => Some(guide.travel()),
+            Self::SlideForce(guide) => Some(CoordinateFunction::Travel(guide)),
             Self::Torque { bodies } => Some(CoordinateFunction::Angle(bodies)),
             Self::Gravity { .. }
             | Self::Force { .. }
@@ -311,12 +278,8 @@ impl Load {
     /// The pairs of bodies on whose relative angle it depends, with whole revolutions: those of a torsional spring
     /// and those of its magnitude's signals.
     pub fn angle_pairs(&self) -> Vec<[BodyId; 2]> {
-        let by_signals = self.magnitude.angle_pairs();
-        self.kind
-            .angle_pair()
-            .into_iter()
-            .chain(by_signals)
-            .collect()
+        let by_kind = self.kind.angle_pair().into_iter();
+        by_kind.chain(self.magnitude.angle_pairs()).collect()
     }
 
     /// The bodies it acts on and those whose motion its magnitude depends on. Gravity acts on those

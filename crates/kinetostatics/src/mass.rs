@@ -29,4 +29,10 @@ impl Mass {
             inertia: mass * length * length / 12.0,
         }
     }
+
+    /// Whether all numbers are finite, and mass and inertia not negative.
+    pub(crate) fn is_valid(&self) -> bool {
+        let not_negative = |value: f64| value >= 0.0 && value.is_finite();
+        not_negative(self.mass) && not_negative(self.inertia) && self.center.is_finite()
+    }
 }

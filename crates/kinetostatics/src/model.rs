@@ -57,10 +57,7 @@ impl Model {
         assembly: &AssemblyConfiguration,
         reactions: &[Reaction],
     ) -> Result<Self, ModelError> {
-        let not_negative = |value: f64| value >= 0.0 && value.is_finite();
-        let valid =
-            |m: &Mass| not_negative(m.mass) && not_negative(m.inertia) && m.center.is_finite();
-        if masses.len() != mechanism.bodies.len() || !masses.iter().all(valid) {
+        if masses.len() != mechanism.bodies.len() || !masses.iter().all(Mass::is_valid) {
             return Err(ModelError::Masses);
         }
         require_reactions(mechanism, reactions)?;
@@ -190,10 +187,7 @@ impl Model {
 
     /// A buffer for the results of this model.
     pub fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T> {
-        InverseDynamics {
-            tau: vec![T::from_f64(0.0); self.pass_model.plan.actuators()],
-            reactions: vec![T::from_f64(0.0); self.reactions.len()],
-        }
+        InverseDynamics::buffer(self.plan().actuators(), self.reactions.len())
     }
 
     /// Inverse dynamics of inertia alone, without loads: the actuators' actions and the reactions for

@@ -21,21 +21,9 @@ pub(crate) use lane_work::{LaneWork, in_lanes};
 use crate::error::PositionResult;
 use crate::model::{Model, Workspace};
 use crate::pass::UnitMotions;
+pub use crate::reducible_model::{Coefficients, ReducibleModel};
 use dwell_geometry::Range;
 use dwell_numerics::{Dual, Scalar};
-
-/// The coefficients of the reduced model at one coordinate.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Coefficients<T = f64> {
-    /// Generalised inertia m, kg m².
-    pub m: T,
-    /// Half its derivative, ½m′, kg m².
-    pub half_dm: T,
-    /// By requested reaction: the coefficient of q̈, kg m or kg m².
-    pub a: Vec<T>,
-    /// By requested reaction: the coefficient of q̇², kg m or kg m².
-    pub b: Vec<T>,
-}
 
 /// The generalised inertia and its derivatives at one coordinate, for the equation of motion and its Jacobian.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -87,43 +75,6 @@ pub trait ReducedModel: Sync {
     ) -> PositionResult;
 }
 
-/// A mechanism whose two unit passes give the reduced coefficients, in the plane or in space.
-pub trait ReducibleModel: Sync + Sized {
-    /// Working memory of one thread for passes in a kind of number.
-    type Workspace<T: Scalar>: Send;
-
-    /// Such memory.
-    fn pass_workspace<T: Scalar>(&self) -> Self::Workspace<T>;
-
-    /// Number of actuators.
-    fn actuators(&self) -> usize;
-
-    /// Number of reactions.
-    fn reaction_count(&self) -> usize;
-
-    /// The range of the coordinate.
-    fn range(&self) -> Range;
-
-    /// The same, prepared for its reduced coefficients: whatever makes them cheap is found once.
-    #[must_use]
-    fn for_coefficients(self) -> Self;
-
-    /// The same without reactions and whatever else m and ½m′ do not need.
-    #[must_use]
-    fn for_inertia(&self) -> Self;
-
-    /// The reduced coefficients at `q` (rad or m), for one actuator.
-    ///
-    /// # Errors
-    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
-    fn reduce_at<T: Scalar>(
-        &self,
-        q: T,
-        workspace: &mut Self::Workspace<T>,
-        out: &mut Coefficients<T>,
-    ) -> PositionResult;
-}
-
 /// Working memory of the exact reduced model: for coefficients, for inertia alone, and for derivatives.
 #[derive(Debug, Clone)]
 pub struct ExactWorkspace<R = Workspace<f64>, D = Workspace<Dual>> {
@@ -158,18 +109,6 @@ impl<M: ReducibleModel> ExactModel<M> {
     /// A buffer for its coefficients.
     pub fn coefficient_buffer(&self) -> Coefficients {
         Coefficients::buffer(self.model.reaction_count())
-    }
-}
-
-impl<T: Scalar> Coefficients<T> {
-    /// A buffer for so many reactions.
-    pub(crate) fn buffer(reactions: usize) -> Self {
-        let zeros = vec![T::from_f64(0.0); reactions];
-        Self {
-            a: zeros.clone(),
-            b: zeros,
-            ..Self::default()
-        }
     }
 }
 
@@ -272,10 +211,10 @@ impl<M: ReducibleModel> ReducedModel for ExactModel<M> {
     }
 
     fn inertia(&self, q: f64, workspace: &mut Self::Workspace) -> PositionResult<(f64, f64)> {
-        let mut out = Coefficients::default();
-        let model = &self.inertia_model;
-        model.reduce_at(q, &mut workspace.inertia, &mut out)?;
-        Ok((out.m, out.half_dm))
+        let inertia = self
+            .inertia_model
+            .reduced_inertia(q, &mut workspace.inertia);
+        inertia.map(<(f64, f64)>::from)
     }
 
     fn inertia_derivatives(
@@ -283,13 +222,12 @@ impl<M: ReducibleModel> ReducedModel for ExactModel<M> {
         q: f64,
         workspace: &mut Self::Workspace,
     ) -> PositionResult<Inertia> {
-        let mut out = Coefficients::default();
         let model = &self.inertia_model;
-        model.reduce_at(Dual::variable(q), &mut workspace.dual, &mut out)?;
+        let [m, half_dm] = model.reduced_inertia(Dual::variable(q), &mut workspace.dual)?;
         Ok(Inertia {
-            m: out.m.v,
-            half_dm: out.half_dm.v,
-            half_ddm: out.half_dm.d,
+            m: m.v,
+            half_dm: half_dm.v,
+            half_ddm: half_dm.d,
         })
     }
 

@@ -5,7 +5,7 @@
 //! change by another rounding of the friction coefficients is added.
 
 use crate::error::KinetostaticsError;
-use crate::model::{Model, Workspace};
+use crate::model::{MachineModel as _, Model, Workspace};
 use crate::pass::InverseDynamics;
 use crate::reduced::{Coefficients, ReducibleModel};
 use dwell_geometry::PositionError;

@@ -12,7 +12,7 @@ pub use search::{Extremum, Turn};
 
 use crate::load::Load;
 use crate::mass::Mass;
-use crate::model::Model;
+use crate::model::{MachineModel as _, Model};
 use crate::reduced::in_lanes;
 use dwell_geometry::{Mechanism, ModeGuess, Reaction, vec2};
 use turn::Turns;
@@ -153,9 +153,7 @@ impl Model {
                 inertia: of[3],
             };
         }
-        let not_negative = |value: f64| value >= 0.0 && value.is_finite();
-        let mut masses = self.masses.iter();
-        masses.all(|m| not_negative(m.mass) && not_negative(m.inertia) && m.center.is_finite())
+        self.masses.iter().all(Mass::is_valid)
             && self.pass_model.set_masses(&self.masses)
             && self
                 .pass_model

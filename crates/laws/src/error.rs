@@ -55,18 +55,12 @@ pub enum LawError {
 
 /// `value`, if it is finite.
 pub(crate) fn require_finite(name: &'static str, value: f64) -> Result<f64, LawError> {
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(LawError::NotFinite { name, value })
-    }
+    let found = Some(value).filter(|value| value.is_finite());
+    found.ok_or(LawError::NotFinite { name, value })
 }
 
 /// `value`, if it is finite and greater than zero.
 pub(crate) fn require_positive(name: &'static str, value: f64) -> Result<f64, LawError> {
-    if require_finite(name, value)? > 0.0 {
-        Ok(value)
-    } else {
-        Err(LawError::NotPositive { name, value })
-    }
+    let found = Some(require_finite(name, value)?).filter(|&value| value > 0.0);
+    found.ok_or(LawError::NotPositive { name, value })
 }

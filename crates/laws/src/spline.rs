@@ -76,25 +76,23 @@ impl Spline {
             return Err(LawError::TooSteep { index: before + 1 });
         }
         let last = steps.len();
-        let second = match interpolation {
+        // The second derivatives of a spline, the first of monotone pieces.
+        let derivatives = match interpolation {
             Interpolation::Spline => second_derivatives(&steps, &slopes),
-            Interpolation::Monotone | Interpolation::Linear | Interpolation::Step => Vec::new(),
-        };
-        let tangents = match interpolation {
             Interpolation::Monotone => monotone_tangents(&steps, &slopes),
-            Interpolation::Spline | Interpolation::Linear | Interpolation::Step => Vec::new(),
+            Interpolation::Linear | Interpolation::Step => Vec::new(),
         };
         let mut pieces = Vec::with_capacity(points.len());
         for (i, (&h, &slope)) in steps.iter().zip(&slopes).enumerate() {
             let value = points[i][1];
             let piece = match interpolation {
                 Interpolation::Spline => {
-                    let [m, n] = [second[i], second[i + 1]];
+                    let [m, n] = [derivatives[i], derivatives[i + 1]];
                     let tangent = slope - h * (2.0 * m + n) / 6.0;
                     [value, tangent, 0.5 * m, (n - m) / (6.0 * h)]
                 }
                 Interpolation::Monotone => {
-                    let [m, n] = [tangents[i], tangents[i + 1]];
+                    let [m, n] = [derivatives[i], derivatives[i + 1]];
                     let third = (m + n - 2.0 * slope) / (h * h);
                     [value, m, (3.0 * slope - 2.0 * m - n) / h, third]
                 }
@@ -108,7 +106,9 @@ impl Spline {
         }
         let (h, slope) = (steps[last - 1], slopes[last - 1]);
         let end = match interpolation {
-            Interpolation::Spline => slope + h * (second[last - 1] + 2.0 * second[last]) / 6.0,
+            Interpolation::Spline => {
+                slope + h * (derivatives[last - 1] + 2.0 * derivatives[last]) / 6.0
+            }
             Interpolation::Linear => slope,
             Interpolation::Monotone | Interpolation::Step => 0.0,
         };

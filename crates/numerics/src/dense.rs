@@ -37,6 +37,15 @@ pub struct Svd {
     pub v: Matrix,
 }
 
+impl Svd {
+    /// The number of singular values above this part of the largest.
+    pub fn rank(&self, tolerance: f64) -> usize {
+        let largest = self.values.first().copied().unwrap_or(0.0);
+        let counts = |value: &&f64| **value > tolerance * largest;
+        self.values.iter().filter(counts).count()
+    }
+}
+
 impl Matrix {
     /// A matrix of zeros.
     pub fn zeros(rows: usize, columns: usize) -> Self {

@@ -136,7 +136,7 @@ pub fn refine_samples<V, E>(
 
 /// Fourier coefficients (c_k, s_k), k = 1 … below half the number of points, which is a power of two (Cooley and
 /// Tukey 1965).
-fn fourier_coefficients(values: &[f64]) -> Vec<[f64; 2]> {
+pub fn fourier_coefficients(values: &[f64]) -> Vec<[f64; 2]> {
     let n = values.len();
     let bits = n.trailing_zeros();
     let bit_reversed = |i: usize| i.reverse_bits() >> (usize::BITS - bits);

@@ -1,5 +1,6 @@
 //! Long computations: other Python threads go on meanwhile, Ctrl-C ends them, and their progress is shown.
 
+use crate::errors::Raise as _;
 use dwell_dynamics::interruption;
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -33,10 +34,10 @@ impl Steps {
 /// Runs a computation in a thread of its own. On Ctrl-C all running computations of this process end, and KeyboardInterrupt is
 /// raised. `progress` is a Python function of what is done and of how much; it is called while the computation runs.
 pub(crate) fn run<T: Send>(
-    py: Python<'_>,
     progress: &Bound<'_, PyAny>,
-    compute: impl FnOnce(&Steps) -> T + Send,
+    compute: impl FnOnce(&Steps) -> Result<T, dwell::Error> + Send,
 ) -> PyResult<T> {
+    let py = progress.py();
     let (sender, mut receiver) = sync_channel(1);
     let steps = &Steps::default();
     thread::scope(|scope| {
@@ -47,7 +48,7 @@ pub(crate) fn run<T: Send>(
         loop {
             let looked_at = &mut receiver;
             match py.detach(move || looked_at.recv_timeout(BETWEEN_LOOKS)) {
-                Ok(found) => return Ok(found),
+                Ok(found) => return found.or_raise(py),
                 // It panicked: joining it says so.
                 Err(RecvTimeoutError::Disconnected) => break,
                 Err(RecvTimeoutError::Timeout) => {}

@@ -17,9 +17,8 @@ pub(crate) struct Mechanism {
 #[pymethods]
 impl Mechanism {
     #[getter]
-    fn actuators(&self) -> Vec<String> {
-        let names = self.mechanism.actuators().into_iter();
-        names.map(str::to_owned).collect()
+    fn actuators(&self) -> Vec<&str> {
+        self.mechanism.actuators()
     }
 
     #[getter]
@@ -34,12 +33,8 @@ impl Mechanism {
 
     /// Bodies with their points, by name.
     #[getter]
-    fn points(&self) -> Vec<(String, Vec<String>)> {
-        let owned = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect();
-        let bodies = self.mechanism.points().into_iter();
-        bodies
-            .map(|(body, points)| (body.to_owned(), owned(points)))
-            .collect()
+    fn points(&self) -> Vec<(&str, Vec<&str>)> {
+        self.mechanism.points()
     }
 
     /// The coordinates at assembly.
@@ -49,7 +44,6 @@ impl Mechanism {
     }
 
     /// The state and forces at one position.
-    #[pyo3(signature = (q, q_dot, q_ddot, t))]
     fn at(
         &self,
         py: Python<'_>,
@@ -83,25 +77,20 @@ impl Mechanism {
         Ok(ReducedModel { reduced })
     }
 
-    fn kinematics(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
-        let found = run(py, progress, |_| self.mechanism.kinematics_along_motion())?;
-        Ok(Rows(found.or_raise(py)?))
+    fn kinematics(&self, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
+        run(progress, |_| self.mechanism.kinematics_along_motion()).map(Rows)
     }
 
-    fn statics(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
-        let found = run(py, progress, |_| self.mechanism.statics_along_motion())?;
-        Ok(Rows(found.or_raise(py)?))
+    fn statics(&self, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
+        run(progress, |_| self.mechanism.statics_along_motion()).map(Rows)
     }
 
-    fn kinetostatics(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
-        let found = run(py, progress, |_| self.mechanism.kinetostatics())?;
-        Ok(Rows(found.or_raise(py)?))
+    fn kinetostatics(&self, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
+        run(progress, |_| self.mechanism.kinetostatics()).map(Rows)
     }
 
-    #[pyo3(signature = (accuracy, method, tolerance, sample_interval, progress))]
     fn simulate(
         &self,
-        py: Python<'_>,
         accuracy: Option<f64>,
         method: Option<&str>,
         tolerance: f64,
@@ -109,33 +98,25 @@ impl Mechanism {
         progress: &Bound<'_, PyAny>,
     ) -> PyResult<Rows> {
         let solver = solver(accuracy, method, tolerance, sample_interval)?;
-        let found = run(py, progress, |_| self.mechanism.simulate(&solver))?;
-        Ok(Rows(found.or_raise(py)?))
+        run(progress, |_| self.mechanism.simulate(&solver)).map(Rows)
     }
 
-    fn period(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
-        let found = run(py, progress, |_| self.mechanism.period())?.or_raise(py)?;
+    fn period(&self, progress: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
+        let found = run(progress, |_| self.mechanism.period())?;
         Ok((found.period, found.energy))
     }
 
-    fn equilibria(
-        &self,
-        py: Python<'_>,
-        progress: &Bound<'_, PyAny>,
-    ) -> PyResult<Vec<Equilibrium>> {
-        let found = run(py, progress, |_| self.mechanism.equilibria())?.or_raise(py)?;
+    fn equilibria(&self, progress: &Bound<'_, PyAny>) -> PyResult<Vec<Equilibrium>> {
+        let found = run(progress, |_| self.mechanism.equilibria())?;
         Ok(found.into_iter().map(Equilibrium::from).collect())
     }
 
-    fn linearise(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Linear> {
-        let found = run(py, progress, |_| self.mechanism.linearise())?.or_raise(py)?;
-        Ok(Linear::from(found))
+    fn linearise(&self, progress: &Bound<'_, PyAny>) -> PyResult<Linear> {
+        run(progress, |_| self.mechanism.linearise()).map(Linear::from)
     }
 
-    #[pyo3(signature = (accuracy, method, tolerance, fluctuation, progress))]
     fn cycle(
         &self,
-        py: Python<'_>,
         accuracy: Option<f64>,
         method: Option<&str>,
         tolerance: f64,
@@ -143,8 +124,8 @@ impl Mechanism {
         progress: &Bound<'_, PyAny>,
     ) -> PyResult<Cycle> {
         let solver = solver(accuracy, method, tolerance, None)?;
-        let found = run(py, progress, |_| self.mechanism.cycle(&solver, fluctuation))?;
-        Ok(Cycle::from(found.or_raise(py)?))
+        let found = run(progress, |_| self.mechanism.cycle(&solver, fluctuation));
+        found.map(Cycle::from)
     }
 
     fn equation(&self, py: Python<'_>) -> PyResult<Equation> {

@@ -12,11 +12,8 @@ pub(crate) struct Rows(pub(crate) dwell::MotionResults);
 impl Rows {
     /// Names and units.
     #[getter]
-    fn columns(&self) -> Vec<(String, String)> {
-        let columns = self.0.columns();
-        columns
-            .map(|(name, unit)| (name.to_owned(), unit.to_owned()))
-            .collect()
+    fn columns(&self) -> Vec<(&str, &str)> {
+        self.0.columns().collect()
     }
 
     fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyArray1<f64>>> {

@@ -24,14 +24,12 @@ impl ReducedModel {
     }
 
     #[getter]
-    fn loads(&self) -> Vec<String> {
-        let names = self.reduced.loads().into_iter();
-        names.map(str::to_owned).collect()
+    fn loads(&self) -> Vec<&str> {
+        self.reduced.loads()
     }
 
     /// The coefficients at many coordinates: m, ½m′; a and b by position and reaction; w by position and load; c by position,
     /// load and reaction.
-    #[pyo3(signature = (q, threads))]
     fn coefficients<'py>(
         &self,
         py: Python<'py>,

@@ -38,8 +38,8 @@ impl Scene {
     }
 
     #[getter]
-    fn warnings(&self) -> Vec<String> {
-        self.scene.warnings().map(str::to_owned).collect()
+    fn warnings(&self) -> Vec<&str> {
+        self.scene.warnings().collect()
     }
 
     fn value(&self, py: Python<'_>, path: &str) -> PyResult<f64> {
@@ -89,7 +89,6 @@ impl Scene {
     }
 
     /// The closed forms as a function in Python.
-    #[pyo3(signature = (reaction))]
     fn closed_form(&self, py: Python<'_>, reaction: Option<&str>) -> PyResult<String> {
         py.detach(|| self.scene.closed_form(Language::Python, reaction))
             .or_raise(py)

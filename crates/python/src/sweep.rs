@@ -15,7 +15,6 @@ type Columns<'py> = (
 
 /// Every combination of what varies.
 #[pyfunction]
-#[pyo3(signature = (scene, vary, results, samples, seed, progress))]
 pub(crate) fn sweep<'py>(
     py: Python<'py>,
     scene: &Bound<'py, PyAny>,
@@ -38,10 +37,9 @@ pub(crate) fn sweep<'py>(
     if let Some(samples) = samples {
         sweep = sweep.samples(samples, seed);
     }
-    let found = run(py, progress, |steps| {
+    let found = run(progress, |steps| {
         sweep.run_with_progress(&|done, all| steps.show(done, all))
-    });
-    let found = found?.or_raise(py)?;
+    })?;
     let names: Vec<_> = found
         .columns()
         .map(|(name, unit)| (name.to_owned(), unit.to_owned()))

@@ -73,6 +73,16 @@ impl<'a, D: Dimensions> Bodies<'a, D> {
         bodies
     }
 
+    /// The named points of each, in its frame, m.
+    pub(crate) fn named_points(&self) -> Vec<Vec<(String, D::Point)>> {
+        let of_body = |body: &ParsedBody<'_, D>| {
+            let points = body.points.iter();
+            let named = points.map(|(name, at)| (str::to_owned(name), *at));
+            named.collect()
+        };
+        self.list.iter().map(of_body).collect()
+    }
+
     /// Index of the body of that name.
     pub(crate) fn position(&self, name: &str) -> Option<usize> {
         self.by_name.get(name).copied()
@@ -233,7 +243,7 @@ fn read_body<'a, D: Dimensions>(
         mass: D::Mass::default(),
         varying_inertia: None,
     };
-    entry.log().place(SceneLocation::Body(id), &entry.key);
+    entry.place(SceneLocation::Body(id));
     let Some(fields) = fields else { return body };
     fields.reject_unknown_keys(table(D::BODY));
     body.read_points(id, fields);
@@ -277,7 +287,7 @@ impl<'a, D: Dimensions> ParsedBody<'a, D> {
             let at = D::point(point.value, &what).unwrap_or_default();
             self.by_name.insert(point.name, k);
             self.points.push((point.name, at));
-            point.log().place(SceneLocation::Point(id, k), &point.key);
+            point.place(SceneLocation::Point(id, k));
         }
     }
 

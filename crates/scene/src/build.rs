@@ -2,7 +2,7 @@
 
 use crate::assembly::ParsedAssembly;
 use crate::bodies::Bodies;
-use crate::coordinates::{NamedActuator, ParsedCoordinate, ParsedCoordinates, actuators, is_same};
+use crate::coordinates::{NamedActuator, ParsedCoordinates, actuators, is_same};
 use crate::diagnostics::Diagnostics;
 use crate::drives::{DriveReader, reject_drives_of_prescribed, reject_shared_names};
 use crate::error::{SceneError, Source};
@@ -18,18 +18,16 @@ use crate::motion::{ParsedMotion, calibration};
 use crate::number_paths::body_numbers;
 use crate::prescribed::{coordinate_sweep, prescribed_motion};
 use crate::requests::requests;
-use crate::scene::{Assembly, NamedCoordinate, Scene};
+use crate::scene::{Assembly, Scene};
 use crate::sections::{
-    needed_section, one_line, printable, report_unjoined_bodies, section, text_of, title,
+    needed_section, one_line, place_sections, printable, read_root, report_unjoined_bodies,
+    section, text_of, title,
 };
 use crate::space::{planar_only, three_numbers};
-use crate::spans::SceneLocation;
 use crate::stops::stops as stops_of;
 use crate::table_reader::TableReader;
-use crate::units::Units;
-use crate::value::Context;
 use crate::wording::shorten;
-use dwell_geometry::{Body, Joint, JointKind, Mechanism, Vec2};
+use dwell_geometry::{Body, Joint, JointKind, Mechanism};
 use dwell_kinetostatics::VaryingInertia;
 use toml::de::DeValue;
 
@@ -41,19 +39,7 @@ impl Scene {
             return Err(planar_only(source, point));
         }
         rename_former_keys(root.get_mut(), table("scene"), log);
-        let fields = |units| {
-            let context = Context { units, log };
-            TableReader::new("the scene", (0..0, 0..0), root.get_ref(), context)
-        };
-        let si = Units::default();
-        let units = Units::read(fields(&si).get("units"));
-        let scene = read(name, source, &fields(&units));
-        if let Some(error) = log.to_error() {
-            return Err(error);
-        }
-        // Parts are missing only where something was found wrong.
-        let incomplete = || SceneError::without_labels("the scene is incomplete".to_owned(), None);
-        scene.ok_or_else(incomplete)
+        read_root(root.get_ref(), log, |fields| read(name, source, fields))
     }
 }
 
@@ -75,16 +61,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
         return log.reject(message, &[(&(0..0), "no bodies, no joints")], help);
     }
     fields.reject_unknown_keys(table("scene"));
-    for (key, location) in [
-        ("units", SceneLocation::Units),
-        ("assembly", SceneLocation::Assembly),
-        ("prescribed", SceneLocation::Prescribed),
-        ("coordinate-sweep", SceneLocation::CoordinateSweep),
-        ("requests", SceneLocation::Requests),
-        ("motion", SceneLocation::Motion),
-    ] {
-        fields.place(key, location);
-    }
+    place_sections(fields);
     let section = |key| section(fields, key);
     let (title, note) = (title(fields), text_of(fields, "note"));
     // Without bodies every other name would be unknown: one message is enough.
@@ -185,18 +162,6 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
     if !requests.lists_reactions {
         requests.reactions = mechanism.reactions();
     }
-    let coordinate = |c: &ParsedCoordinate<'_>| {
-        let name = c.name.to_owned();
-        let coordinate = c.coordinate?;
-        Some(NamedCoordinate { name, coordinate })
-    };
-    let coordinates = named.list[named.actuators..].iter();
-    let points = |points: &[(&str, Vec2)]| {
-        let points = points.iter();
-        points
-            .map(|(name, at)| (str::to_owned(name), *at))
-            .collect()
-    };
     Some(Scene {
         file: SceneFile::new(
             (name, source),
@@ -206,8 +171,8 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
         ),
         masses: bodies.list.iter().map(|b| b.mass).collect(),
         varying_inertias,
-        points: bodies.list.iter().map(|b| points(&b.points)).collect(),
-        coordinates: coordinates.filter_map(coordinate).collect(),
+        points: bodies.named_points(),
+        coordinates: named.of_section(),
         motion: motion.and_then(|m| m.into_spec(&start, events)),
         mechanism,
         assembly: Assembly {

@@ -6,6 +6,7 @@ use crate::dimensions::Dimensions;
 use crate::joints::Joints;
 use crate::keys::table;
 use crate::names::check;
+use crate::scene::NamedCoordinate;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::{Unit, Units};
@@ -175,6 +176,16 @@ impl<'a, C: AnyCoordinate> ParsedCoordinates<'a, C> {
         all
     }
 
+    /// Those of `[coordinates]` that were read well.
+    pub(crate) fn of_section(&self) -> Vec<NamedCoordinate<C>> {
+        let of_one = |c: &ParsedCoordinate<'_, C>| {
+            let (name, coordinate) = (c.name.to_owned(), c.coordinate?);
+            Some(NamedCoordinate { name, coordinate })
+        };
+        let named = self.list[self.actuators..].iter();
+        named.filter_map(of_one).collect()
+    }
+
     fn push(&mut self, name: &'a str, key: &Span, coordinate: Option<C>) {
         self.by_name.insert(name, self.list.len());
         let key = key.clone();
@@ -261,7 +272,7 @@ pub(crate) fn actuators<'a>(
             report_ambiguous_name(entry, other, "an actuator", "[assembly]");
         }
         let location = SceneLocation::Actuator(ActuatorId(list.len()));
-        entry.log().place(location, &entry.key);
+        entry.place(location);
         let actuator = read_actuator(entry, bodies, joints);
         let kind = actuator.as_ref().map(|a| a.kind);
         let is_angle = matches!(kind, None | Some(ActuatorKind::Angle));

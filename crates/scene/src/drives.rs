@@ -6,7 +6,7 @@ use crate::keys;
 use crate::kind::{kind, reject_unread_kind};
 use crate::magnitude::Magnitudes;
 use crate::motion::ParsedMotion;
-use crate::names::check;
+use crate::names::read_each;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::{SI, Unit};
@@ -24,14 +24,10 @@ impl<C: AnyCoordinate> DriveReader<'_, C> {
     /// Every drive of the section that was read well, with where its coordinate is named. The drives follow the `loads`, as in a
     /// model that has them as its last loads.
     pub(crate) fn drives(&self, fields: &TableReader<'_>, loads: usize) -> Vec<(Drive<C>, Span)> {
-        let one = |(k, entry): (usize, &Entry<'_>)| {
-            check("a drive", entry);
-            entry.log().place(SceneLocation::Drive(k), &entry.key);
-            let location = SceneLocation::Load(loads + k);
-            entry.log().place(location, &entry.key);
+        read_each(fields, "a drive", SceneLocation::Drive, |k, entry| {
+            entry.place(SceneLocation::Load(loads + k));
             self.drive(entry, SceneLocation::Magnitude(loads + k))
-        };
-        fields.entries.iter().enumerate().filter_map(one).collect()
+        })
     }
 
     fn drive(&self, entry: &Entry<'_>, magnitude: SceneLocation) -> Option<(Drive<C>, Span)> {

@@ -4,7 +4,7 @@ use crate::coordinates::{AnyCoordinate, ParsedCoordinates};
 use crate::diagnostics::Span;
 use crate::kind::{kind, reject_unread_kind};
 use crate::magnitude::Names;
-use crate::names::check;
+use crate::names::read_each;
 use crate::requests::{components, joint_and_component};
 use crate::scene::{EventTrigger, NamedEvent};
 use crate::spans::SceneLocation;
@@ -26,12 +26,9 @@ pub(crate) struct EventReader<'r, C, R> {
 impl<C: AnyCoordinate, R> EventReader<'_, C, R> {
     /// Every event of `[motion.events]`.
     pub(crate) fn events(&self, fields: &TableReader<'_>) -> Vec<NamedEvent<C, R>> {
-        let one = |(k, entry): (usize, &Entry<'_>)| {
-            check("an event", entry);
-            entry.log().place(SceneLocation::Event(k), &entry.key);
+        read_each(fields, "an event", SceneLocation::Event, |_, entry| {
             self.event(entry)
-        };
-        fields.entries.iter().enumerate().filter_map(one).collect()
+        })
     }
 
     fn event(&self, entry: &Entry<'_>) -> Option<NamedEvent<C, R>> {

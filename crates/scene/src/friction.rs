@@ -66,16 +66,26 @@ fn add_loads(
     });
     let friction = friction.map(Magnitude::Friction);
     let viscous = viscous.map(Magnitude::Constant);
-    for (key, suffix, kind, magnitude) in [
+    let both = [
         ("coefficient", "friction", force, friction),
         ("viscous", "viscous", damper, viscous),
-    ] {
+    ];
+    push_loads(fields, &joint.name, both, loads);
+}
+
+/// Appends the loads of a joint that have a magnitude, each with the key of that and the end of its name.
+pub(crate) fn push_loads<K, C>(
+    fields: &TableReader<'_>,
+    joint: &str,
+    all: impl IntoIterator<Item = (&'static str, &'static str, K, Option<Magnitude<C>>)>,
+    loads: &mut Vec<Load<K, C>>,
+) {
+    for (key, suffix, kind, magnitude) in all {
         let Some(magnitude) = magnitude else { continue };
-        fields
-            .log()
-            .place(SceneLocation::Load(loads.len()), &fields.key);
+        let location = SceneLocation::Load(loads.len());
+        fields.log().place(location, &fields.key);
         fields.place(key, SceneLocation::Magnitude(loads.len()));
-        let name = format!("{}.{suffix}", joint.name);
+        let name = format!("{joint}.{suffix}");
         loads.push(Load {
             name,
             kind,

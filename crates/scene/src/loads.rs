@@ -1,11 +1,12 @@
 //! The loads on the mechanism: where they act, and their magnitudes.
 
 use crate::bodies::TWO_POINTS;
+use crate::coordinates::AnyCoordinate;
 use crate::diagnostics::Span;
 use crate::joints::Joints;
 use crate::kind::{kind, reject_unread_kind};
-use crate::magnitude::Names;
-use crate::names::check;
+use crate::magnitude::{Magnitudes, Names};
+use crate::names::read_each;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::SI;
@@ -19,12 +20,9 @@ impl Names<'_> {
     /// Every load of the section that was read well.
     pub(crate) fn loads(&self, fields: &TableReader<'_>) -> Vec<Load> {
         let mut gravity: Option<Span> = None;
-        let one = |(k, entry): (usize, &Entry<'_>)| {
-            check("a load", entry);
-            entry.log().place(SceneLocation::Load(k), &entry.key);
-            let fields = TableReader::open(entry, format!("load `{}`", shorten(entry.name)))?;
-            let (kind, magnitude) = self.kind_and_magnitude(&fields, k)?;
-            if let LoadKind::Gravity { .. } = kind
+        read_loads(fields, |entry, fields, k| {
+            let found = self.kind_and_magnitude(fields, k)?;
+            if let LoadKind::Gravity { .. } = found.0
                 && let Some(other) = gravity.replace(entry.key.clone())
             {
                 let labels = [(&other, "here"), (&entry.key, "and here again")];
@@ -32,13 +30,8 @@ impl Names<'_> {
                 let log = entry.log();
                 log.report("gravity is given twice", &labels, help);
             }
-            Some(Load {
-                name: entry.name.to_owned(),
-                kind,
-                magnitude,
-            })
-        };
-        fields.entries.iter().enumerate().filter_map(one).collect()
+            Some(found)
+        })
     }
 
     /// The k-th load without its name.
@@ -48,30 +41,12 @@ impl Names<'_> {
         k: usize,
     ) -> Option<(LoadKind, Magnitude)> {
         let (kind, entry) = kind(fields, "load")?;
-        let location = SceneLocation::Magnitude(k);
         if kind == "gravity" {
-            fields.place(kind, location);
+            fields.place(kind, SceneLocation::Magnitude(k));
             return gravity(entry.value, &fields.name_of(entry));
         }
-        let stiffness = "a negative stiffness would push away from the free position";
-        let damping = "negative damping would accelerate the motion";
-        let (size, unit, sign, why) = match kind {
-            "force" | "point-to-point-force" | "slide-force" => {
-                ("magnitude", "N", SignRule::Any, "")
-            }
-            "torque" => ("magnitude", "N m", SignRule::Any, ""),
-            "spring" => ("stiffness", "N/m", SignRule::NotNegative, stiffness),
-            "torsion-spring" => ("stiffness", "N m/rad", SignRule::NotNegative, stiffness),
-            "damper" => ("damping", "N s/m", SignRule::NotNegative, damping),
-            "rotational-damper" => ("damping", "N m s/rad", SignRule::NotNegative, damping),
-            _ => return reject_unread_kind(entry),
-        };
-        let kind = self.load_kind(kind, entry, fields);
-        let magnitude = fields.require(size, &format!("add for instance `{size} = 10`, in {unit}"));
-        fields.place(size, location);
-        let rule = NumberRule::new(&SI, sign).because(why);
-        let magnitude = magnitude.and_then(|e| self.magnitudes.read(e, fields, &rule));
-        kind.zip(magnitude)
+        let load_kind = || self.load_kind(kind, entry, fields);
+        kind_and_size((kind, entry), (fields, k), &self.magnitudes, load_kind)
     }
 
     fn load_kind(
@@ -197,6 +172,49 @@ impl Names<'_> {
         let help = "a load within one rigid body has no effect";
         self.bodies.require_different(both, message, help)
     }
+}
+
+/// Every load of a section that was read well; `read` makes kind and magnitude of the fields of the k-th.
+pub(crate) fn read_loads<K, C>(
+    fields: &TableReader<'_>,
+    mut read: impl FnMut(&Entry<'_>, &TableReader<'_>, usize) -> Option<(K, Magnitude<C>)>,
+) -> Vec<Load<K, C>> {
+    read_each(fields, "a load", SceneLocation::Load, |k, entry| {
+        let fields = TableReader::open(entry, format!("load `{}`", shorten(entry.name)))?;
+        let (kind, magnitude) = read(entry, &fields, k)?;
+        let name = entry.name.to_owned();
+        Some(Load {
+            name,
+            kind,
+            magnitude,
+        })
+    })
+}
+
+/// The k-th load without its name, in the plane or in space, of a kind other than gravity, which `load_kind` reads.
+pub(crate) fn kind_and_size<K, C: AnyCoordinate>(
+    (kind, entry): (&str, &Entry<'_>),
+    (fields, k): (&TableReader<'_>, usize),
+    magnitudes: &Magnitudes<C>,
+    load_kind: impl FnOnce() -> Option<K>,
+) -> Option<(K, Magnitude<C>)> {
+    let stiffness = "a negative stiffness would push away from the free position";
+    let damping = "negative damping would accelerate the motion";
+    let (size, unit, sign, why) = match kind {
+        "force" | "point-to-point-force" | "slide-force" => ("magnitude", "N", SignRule::Any, ""),
+        "torque" | "joint-torque" => ("magnitude", "N m", SignRule::Any, ""),
+        "spring" => ("stiffness", "N/m", SignRule::NotNegative, stiffness),
+        "torsion-spring" => ("stiffness", "N m/rad", SignRule::NotNegative, stiffness),
+        "damper" | "slide-damper" => ("damping", "N s/m", SignRule::NotNegative, damping),
+        "rotational-damper" => ("damping", "N m s/rad", SignRule::NotNegative, damping),
+        _ => return reject_unread_kind(entry),
+    };
+    let kind = load_kind();
+    let magnitude = fields.require(size, &format!("add for instance `{size} = 10`, in {unit}"));
+    fields.place(size, SceneLocation::Magnitude(k));
+    let rule = NumberRule::new(&SI, sign).because(why);
+    let magnitude = magnitude.and_then(|e| magnitudes.read(e, fields, &rule));
+    kind.zip(magnitude)
 }
 
 /// Appends the separating forces of the teeth that have a pressure angle, in the order of the file.

@@ -83,7 +83,7 @@ impl<'a> ParsedMotion<'a> {
         for entry in laws.iter().flat_map(|f| &f.entries) {
             if let Some(k) = actuator_named(entry, actuators) {
                 let location = SceneLocation::MotionLaw(ActuatorId(k));
-                entry.log().place(location, &entry.key);
+                entry.place(location);
                 self.prescribed[k] = Some(entry.clone());
             }
         }

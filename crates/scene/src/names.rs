@@ -1,6 +1,7 @@
 //! Names: which ones are allowed.
 
-use crate::table_reader::Entry;
+use crate::spans::SceneLocation;
+use crate::table_reader::{Entry, TableReader};
 use crate::wording::{MAX_NAME_LENGTH, shorten};
 
 /// Reports what is wrong with the name of an entry of `kind` ("a body"), if anything. A name is quoted in
@@ -37,6 +38,21 @@ pub(crate) fn check_dotted(kind: &str, entry: &Entry<'_>) {
         let help = "a name is made of letters, digits, `_`, `-`, primes, inner spaces, and dots between them";
         entry.reject::<()>(message, "this name", help);
     }
+}
+
+/// What `read` makes of the entries of a table, each called by a name of its own, in order; `thing` is what they are.
+pub(crate) fn read_each<'a, T>(
+    fields: &TableReader<'a>,
+    thing: &str,
+    location: fn(usize) -> SceneLocation,
+    mut read: impl FnMut(usize, &Entry<'a>) -> Option<T>,
+) -> Vec<T> {
+    let one = |(k, entry): (usize, &Entry<'a>)| {
+        check(thing, entry);
+        entry.place(location(k));
+        read(k, entry)
+    };
+    fields.entries.iter().enumerate().filter_map(one).collect()
 }
 
 fn allowed(c: char) -> bool {

@@ -99,7 +99,7 @@ pub(crate) fn prescribed_motion(
     let law = |(k, entry): (usize, &Option<&Entry<'_>>)| {
         let entry = (*entry)?;
         let location = SceneLocation::PrescribedLaw(ActuatorId(k));
-        entry.log().place(location, &entry.key);
+        entry.place(location);
         law_of(entry, "[prescribed]", &actuators[k], (start[k], end))
     };
     // All are read before one is missed, so that each error is reported.

@@ -22,7 +22,7 @@ pub(crate) fn requests(
     fields.reject_unknown_keys(table("requests"));
     fields.place("dwell", SceneLocation::Dwell);
     let reactions = fields.get("reactions").map(|e| reactions_of(e, joints));
-    let paths = fields.get("paths").map(|e| paths_of(e, bodies));
+    let paths = fields.get("paths").map(|e| path_points(e, bodies));
     let dwell = fields.get("dwell").and_then(|e| dwell_of(e, bodies));
     let variables = fields.get("variables").map(variables_of);
     let sections = fields.get("sections");
@@ -109,17 +109,11 @@ pub(crate) fn components(
     all
 }
 
-fn paths_of(entry: &Entry<'_>, bodies: &Bodies<'_>) -> Vec<PathPoint> {
-    let points = path_points(entry, bodies).into_iter();
-    let point = |(body, name, at)| PathPoint { body, name, at };
-    points.map(point).collect()
-}
-
-/// The points of moving bodies in a list, each once: the body, the name and the place of each.
+/// The points of moving bodies in a list, each once.
 pub(crate) fn path_points<D: Dimensions>(
     entry: &Entry<'_>,
     bodies: &Bodies<'_, D>,
-) -> Vec<(BodyId, String, D::Point)> {
+) -> Vec<PathPoint<D::Point>> {
     let (mut requested, mut paths) = (HashSet::new(), Vec::new());
     for (text, span) in strings(entry, "an array such as [\"coupler.P\"]") {
         let Some((body, k)) = bodies.find_point(text, &span) else {
@@ -135,7 +129,8 @@ pub(crate) fn path_points<D: Dimensions>(
             let location = SceneLocation::Path(paths.len());
             entry.log().place(location, &span);
             let (name, at) = bodies.list[body.0].points[k];
-            paths.push((body, name.to_owned(), at));
+            let name = name.to_owned();
+            paths.push(PathPoint { body, name, at });
         }
     }
     paths

@@ -112,13 +112,13 @@ pub struct Requests {
 
 /// A point of a moving body whose path is drawn.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PathPoint {
+pub struct PathPoint<V = Vec2> {
     /// The body.
     pub body: BodyId,
     /// The point's name within the body.
     pub name: String,
     /// The point in the body's frame, m.
-    pub at: Vec2,
+    pub at: V,
 }
 
 /// A dwell to be marked: where the body's angle stays within a fraction of its swing.

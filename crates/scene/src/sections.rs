@@ -3,13 +3,53 @@
 use crate::bodies::Bodies;
 use crate::diagnostics::{Diagnostics, Span};
 use crate::dimensions::Dimensions;
+use crate::error::SceneError;
+use crate::spans::SceneLocation;
 use crate::table_reader::TableReader;
+use crate::units::Units;
+use crate::value::Context;
 use crate::wording::shorten;
 use dwell_geometry::BodyId;
 use dwell_laws::expression::nearest;
+use toml::de::DeTable;
 
 /// Longest title, in characters: it heads a page and a picture.
 const MAX_TITLE_LENGTH: usize = 200;
+
+/// The scene that `read` makes of the root of a file, or all that is wrong with it.
+pub(crate) fn read_root<S>(
+    root: &DeTable<'_>,
+    log: &Diagnostics,
+    read: impl FnOnce(&TableReader<'_>) -> Option<S>,
+) -> Result<S, SceneError> {
+    let fields = |units| {
+        let context = Context { units, log };
+        TableReader::new("the scene", (0..0, 0..0), root, context)
+    };
+    let si = Units::default();
+    let units = Units::read(fields(&si).get("units"));
+    let scene = read(&fields(&units));
+    if let Some(error) = log.to_error() {
+        return Err(error);
+    }
+    // Parts are missing only where something was found wrong.
+    let incomplete = || SceneError::without_labels("the scene is incomplete".to_owned(), None);
+    scene.ok_or_else(incomplete)
+}
+
+/// Notes where the sections are that messages of the levels above point at.
+pub(crate) fn place_sections(fields: &TableReader<'_>) {
+    for (key, location) in [
+        ("units", SceneLocation::Units),
+        ("assembly", SceneLocation::Assembly),
+        ("prescribed", SceneLocation::Prescribed),
+        ("coordinate-sweep", SceneLocation::CoordinateSweep),
+        ("requests", SceneLocation::Requests),
+        ("motion", SceneLocation::Motion),
+    ] {
+        fields.place(key, location);
+    }
+}
 
 /// The table of a section.
 pub(crate) fn section<'a>(fields: &TableReader<'a>, key: &str) -> Option<TableReader<'a>> {

@@ -3,7 +3,7 @@
 use crate::coordinates::NamedActuator;
 use crate::keys::table;
 use crate::motion::ParsedMotion;
-use crate::names::check;
+use crate::names::read_each;
 use crate::scene::NamedStop;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
@@ -18,12 +18,9 @@ pub(crate) fn stops(
     actuators: &[NamedActuator<'_>],
     motion: Option<&ParsedMotion<'_>>,
 ) -> Vec<NamedStop> {
-    let one = |(k, entry): (usize, &Entry<'_>)| {
-        check("an end stop", entry);
-        entry.log().place(SceneLocation::Stop(k), &entry.key);
+    read_each(fields, "an end stop", SceneLocation::Stop, |_, entry| {
         stop(entry, actuators, motion)
-    };
-    fields.entries.iter().enumerate().filter_map(one).collect()
+    })
 }
 
 fn stop(

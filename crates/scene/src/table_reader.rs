@@ -33,6 +33,11 @@ impl<'a> Entry<'a> {
         self.value.log()
     }
 
+    /// Notes where its key is.
+    pub(crate) fn place(&self, location: SceneLocation) {
+        self.log().place(location, &self.key);
+    }
+
     /// Reports that something is wrong with its key.
     pub(crate) fn reject<T>(
         &self,

@@ -24,9 +24,7 @@ pub(crate) fn varying_inertia<'a>(
     name: &str,
 ) -> Option<VaryingInertia> {
     let entry = fields.get("varying-inertia")?;
-    entry
-        .log()
-        .place(SceneLocation::VaryingInertia(id), &entry.key);
+    entry.place(SceneLocation::VaryingInertia(id));
     let what = format!("the varying inertia of `{}`", shorten(name));
     let fields = TableReader::open(entry, what)?;
     fields.reject_unknown_keys(table("varying-inertia"));

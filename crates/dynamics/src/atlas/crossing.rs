@@ -7,6 +7,7 @@ use crate::change_point_fit::{
 };
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{AssemblyConfiguration, BodyId, RangeLimit};
+use dwell_kinetostatics::MachineModel as _;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 

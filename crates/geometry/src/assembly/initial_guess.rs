@@ -4,7 +4,6 @@ use crate::assembly::modes::{AssemblyMode, SAME_MODE};
 use crate::mechanism::{BranchHint, JointId, Mechanism};
 use crate::plan::{AssemblyConfiguration, GroupModes, Plan, Pose};
 use crate::plane::Vec2;
-use crate::structure::frames::RotationSource;
 use crate::structure::groups::Unknown;
 use crate::structure::lower::{Lowered, LoweredCoordinate};
 
@@ -94,18 +93,11 @@ impl Plan {
     }
 
     /// The angle of a frame from the first frame of its class at assembly, rad.
-    pub(crate) fn assembly_angle(&self, mut frame: usize) -> f64 {
-        let mut angle = 0.0;
-        while let RotationSource::Actuated {
-            parent,
-            actuator,
-            sign,
-        } = self.frames.frames[frame].rotation_source
-        {
-            angle += sign * self.assembly_coordinates[actuator];
-            frame = parent;
-        }
-        angle
+    pub(crate) fn assembly_angle(&self, frame: usize) -> f64 {
+        let turned_by = self.frames.turned_by(frame);
+        turned_by.fold(0.0, |angle, (actuator, sign)| {
+            angle + sign * self.assembly_coordinates[actuator]
+        })
     }
 
     /// The distance of an assembly mode from the initial guess: the root of the sum of squared chords on the unit circle

@@ -6,7 +6,6 @@ use crate::error::{AssemblyError, PositionError};
 use crate::plan::{GroupKind, Plan, Pose};
 use crate::plane::Vec2;
 use crate::structure::groups::Unknown;
-use crate::structure::lower::PairKind;
 use dwell_numerics::qr;
 use std::f64::consts::TAU;
 
@@ -168,12 +167,7 @@ impl Plan {
             _ => root_sign,
         };
         let travels = self.slide_travels(g, pose);
-        let is_length = |pair: usize| match self.lowered.pairs[pair].kind {
-            PairKind::Prismatic {
-                travel_is_length, ..
-            } => travel_is_length,
-            PairKind::Revolute | PairKind::Rigid(_) => false,
-        };
+        let is_length = |pair: usize| self.lowered.pairs[pair].kind.is_length();
         let mut lengths = travels.iter().filter(|(pair, _)| is_length(*pair));
         AssemblyMode {
             values: self.unknown_values(g, pose),

@@ -73,11 +73,11 @@ fn speeds_and_accelerations_are_derivatives() {
         let states = states(&plan, Dual::variable(0.3 * f64::from(k)), 1.0);
         let known = coordinates().map(|c| CoordinateFunction::find(&mechanism, c));
         // Between points that no joint holds on the axis, too.
-        let free = CoordinateFunction::Travel {
+        let free = CoordinateFunction::Travel(Guide {
             bodies: [CRANK, ROCKER],
             points: [vec2(0.5, 0.3), vec2(-0.1, 0.7)],
             axis: vec2(0.6, -0.8),
-        };
+        });
         for function in known.into_iter().flatten().chain([free]) {
             let [value, speed, acceleration] = states.coordinate(function);
             // Values below 3, accelerations below 10: some roundings.

@@ -211,20 +211,14 @@ impl Plan {
             return None;
         }
         match (closure.axis, rotating.as_slice()) {
-            (None, &[one, two]) => Some(GroupKind::RrrDyad(self.prepare_rrr_dyad(
-                first,
-                [one, two],
-                known,
-            ))),
-            (Some((axis, frame)), vectors) if group.unknowns.len() == 1 && vectors.len() <= 1 => {
-                self.prepare_guided_point(
-                    first,
-                    (axis, frame),
-                    in_group(frame),
-                    vectors.first(),
-                    known,
-                )
-                .map(GroupKind::GuidedPoint)
+            (None, &[one, two]) => {
+                let dyad = self.prepare_rrr_dyad(first, [one, two], known);
+                Some(GroupKind::RrrDyad(dyad))
+            }
+            (Some(axis), vectors) if group.unknowns.len() == 1 && vectors.len() <= 1 => {
+                let (turns, vector) = (in_group(axis.1), vectors.first());
+                let guided = self.prepare_guided_point(first, axis, turns, vector, known);
+                guided.map(GroupKind::GuidedPoint)
             }
             _ => None,
         }
@@ -307,13 +301,9 @@ impl Plan {
             closure,
             vectors: rotating.map(|(a, _)| a),
             frames: rotating.map(|(_, f)| f),
-            per_square: [Vec2::ZERO; 2],
-            sum_squared: 0.0,
-            difference_squared: 0.0,
-            square_difference: 0.0,
-            fixed: Vec2::ZERO,
             known,
             branch: 1.0,
+            ..RrrDyad::default()
         };
         let local = dyad.vectors.map(|a| self.frame_vectors[a].local);
         dyad.set_lengths(local, self.loop_closures[closure].fixed);
@@ -342,11 +332,9 @@ impl Plan {
             line_rotates,
             found_vector,
             vectors: self.loop_closures[closure].vectors.clone(),
-            local,
-            unit: Vec2::ZERO,
-            fixed: Vec2::ZERO,
             known,
             branch: 1.0,
+            ..GuidedPoint::default()
         };
         let line = self.frame_vectors[axis.0].local;
         guided.set_lengths(line, local, self.loop_closures[closure].fixed);

@@ -39,7 +39,7 @@ impl RowWriter<'_> {
                 (1.0, ConstraintTerm::BodyFixedComponent(points, axis)),
                 (radius, ConstraintTerm::RelativeAngle(columns)),
             ];
-            ConstraintRow::sum(terms, 0.0)
+            ConstraintRow::Sum(terms, 0.0)
         };
         Ok(match joint.kind {
             JointKind::Revolute => vec![coincide(x), coincide(y)],
@@ -89,29 +89,20 @@ impl RowWriter<'_> {
                 coupling,
                 couplings: couplings.len(),
             })?;
-        let bodies = self.columns.len();
-        let broken = |body| ConstraintRowsError::CouplingBody {
-            coupling,
-            body,
-            bodies,
-        };
-        Ok(ConstraintRow::Coupling {
-            dependent: self.term(described.dependent, broken)?,
-            independent: self.term(described.independent, broken)?,
-            law: described.law.clone(),
-        })
+        let named_by = ("coupling", coupling);
+        let dependent = self.term(named_by, described.dependent)?;
+        let independent = self.term(named_by, described.independent)?;
+        let law = described.law.clone();
+        Ok(ConstraintRow::Coupling([dependent, independent], law))
     }
 
-    /// The term of a coordinate; `broken` is the error for a body that does not exist.
+    /// The term of a coordinate, which what it belongs to names.
     pub(super) fn term(
         &self,
+        named_by: (&'static str, usize),
         coordinate: Coordinate,
-        broken: impl Fn(usize) -> ConstraintRowsError,
     ) -> Result<ConstraintTerm, ConstraintRowsError> {
-        let check = |bodies: [BodyId; 2]| match self.missing_body(bodies) {
-            Some(body) => Err(broken(body)),
-            None => Ok(()),
-        };
+        let check = |bodies| self.check_bodies(named_by, bodies);
         match coordinate {
             Coordinate::Angle(bodies) => {
                 check(bodies)?;
@@ -136,9 +127,22 @@ impl RowWriter<'_> {
         }
     }
 
-    pub(super) fn missing_body(&self, bodies: [BodyId; 2]) -> Option<usize> {
-        let mut bodies = bodies.into_iter().map(|b| b.0);
-        bodies.find(|&b| b >= self.columns.len())
+    /// Refuses bodies that do not exist; what names them is a joint, an actuator or a coupling, of this number.
+    pub(super) fn check_bodies(
+        &self,
+        (what, index): (&'static str, usize),
+        named: [BodyId; 2],
+    ) -> Result<(), ConstraintRowsError> {
+        let bodies = self.columns.len();
+        match named.into_iter().find(|body| body.0 >= bodies) {
+            Some(BodyId(body)) => Err(ConstraintRowsError::NoBody {
+                what,
+                index,
+                body,
+                bodies,
+            }),
+            None => Ok(()),
+        }
     }
 }
 

@@ -8,19 +8,13 @@ use std::f64::consts::TAU;
 /// One row. An imposed value is subtracted from each.
 #[derive(Debug, Clone)]
 pub(super) enum ConstraintRow {
-    /// Σ factor × term − constant, to the nearest whole revolution if `periodic`.
-    Sum {
-        terms: Vec<(f64, ConstraintTerm)>,
-        constant: f64,
-        periodic: bool,
-    },
+    /// Σ factor × term − constant.
+    Sum(Vec<(f64, ConstraintTerm)>, f64),
+    /// angle − constant, to the nearest whole revolution.
+    PeriodicAngle(ConstraintTerm, f64),
     Gear(Gear),
-    /// of − law(by).
-    Coupling {
-        dependent: ConstraintTerm,
-        independent: ConstraintTerm,
-        law: Law,
-    },
+    /// dependent − law(independent).
+    Coupling([ConstraintTerm; 2], Law),
 }
 
 /// The angle less the nearest whole number of revolutions.
@@ -31,23 +25,11 @@ fn wrap_angle(angle: f64) -> f64 {
 impl ConstraintRow {
     /// term − constant.
     pub(super) fn single(term: ConstraintTerm, constant: f64) -> Self {
-        Self::sum(vec![(1.0, term)], constant)
-    }
-
-    pub(super) fn sum(terms: Vec<(f64, ConstraintTerm)>, constant: f64) -> Self {
-        Self::Sum {
-            terms,
-            constant,
-            periodic: false,
-        }
+        Self::Sum(vec![(1.0, term)], constant)
     }
 
     pub(super) fn periodic_angle(columns: [Column; 2], constant: f64) -> Self {
-        Self::Sum {
-            terms: vec![(1.0, ConstraintTerm::RelativeAngle(columns))],
-            constant,
-            periodic: true,
-        }
+        Self::PeriodicAngle(ConstraintTerm::RelativeAngle(columns), constant)
     }
 
     /// Calls `term` for every term of the row, with the row's derivative by it.
@@ -57,13 +39,10 @@ impl ConstraintRow {
         mut term: impl FnMut(f64, &ConstraintTerm),
     ) {
         match self {
-            Self::Sum { terms, .. } => terms.iter().for_each(|(f, m)| term(*f, m)),
+            Self::Sum(terms, _) => terms.iter().for_each(|(f, m)| term(*f, m)),
+            Self::PeriodicAngle(angle, _) => term(1.0, angle),
             Self::Gear(gear) => gear.terms().iter().for_each(|(f, m)| term(*f, m)),
-            Self::Coupling {
-                dependent,
-                independent,
-                law,
-            } => {
+            Self::Coupling([dependent, independent], law) => {
                 term(1.0, dependent);
                 term(-law.eval(independent.value(at))[1], independent);
             }
@@ -72,25 +51,17 @@ impl ConstraintRow {
 
     pub(super) fn residual(&self, at: &BodyCoordinates<'_>, x: &[f64], prescribed: f64) -> f64 {
         match self {
-            Self::Sum {
-                terms,
-                constant,
-                periodic,
-            } => {
+            Self::Sum(terms, constant) => {
                 let sum: f64 = terms.iter().map(|(f, m)| f * m.value(at)).sum();
-                let residual = sum - constant - prescribed;
-                if *periodic {
-                    wrap_angle(residual)
-                } else {
-                    residual
-                }
+                sum - constant - prescribed
+            }
+            Self::PeriodicAngle(angle, constant) => {
+                wrap_angle(angle.value(at) - constant - prescribed)
             }
             Self::Gear(gear) => gear.residual(at, x, prescribed),
-            Self::Coupling {
-                dependent: of,
-                independent,
-                law,
-            } => of.value(at) - law.eval(independent.value(at))[0] - prescribed,
+            Self::Coupling([dependent, independent], law) => {
+                dependent.value(at) - law.eval(independent.value(at))[0] - prescribed
+            }
         }
     }
 
@@ -99,12 +70,7 @@ impl ConstraintRow {
         self.each_term(at, |factor, term| {
             sum += factor * term.velocity_product(at, x_dot);
         });
-        if let Self::Coupling {
-            independent: by,
-            law,
-            ..
-        } = self
-        {
+        if let Self::Coupling([_, by], law) = self {
             let rate = by.rate(at, x_dot);
             sum -= law.eval(by.value(at))[2] * rate * rate;
         }

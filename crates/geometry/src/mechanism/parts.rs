@@ -1,6 +1,6 @@
 //! Bodies, joints and actuators made in one expression.
 
-use super::{Actuator, ActuatorKind, Body, BodyId, Coordinate, Joint, JointKind, Mechanism};
+use super::{Actuator, ActuatorKind, Body, BodyId, Coordinate, Guide, Joint, JointKind, Mechanism};
 use crate::plane::Vec2;
 
 impl From<usize> for BodyId {
@@ -79,6 +79,16 @@ impl Joint {
     ) -> Self {
         let axes = axis_angles.map(Vec2::from_angle);
         Self::new(name, bodies, points, JointKind::Prismatic { axes })
+    }
+
+    /// The line along which it slides; none of a joint that has no travel.
+    pub fn guide(&self) -> Option<Guide> {
+        let (bodies, points) = (self.bodies, self.points);
+        self.kind.travel_axis().map(|axis| Guide {
+            bodies,
+            points,
+            axis,
+        })
     }
 }
 

@@ -49,6 +49,23 @@ pub(crate) struct EnclosingPoses<'a> {
 }
 
 impl StoredPoses {
+    /// The first and the last stored pose, and the coordinate among them with the whole periods that it is away.
+    fn folded(&self, q: f64, range: Range) -> Result<([&StoredPose; 2], f64, f64), PositionError> {
+        let (Some(first), Some(last)) = (self.poses.first(), self.poses.last()) else {
+            return Err(PositionError::NotFinite { q });
+        };
+        let (folded, periods) = match range.period() {
+            // Over a period the stored poses repeat.
+            Some(period) => {
+                let distance = q - first.q;
+                let periods = (distance / period).floor();
+                (first.q + distance.rem_euclid(period), periods)
+            }
+            None => (range.wrap(q)?, 0.0),
+        };
+        Ok(([first, last], folded, periods))
+    }
+
     /// The stored poses before and after `q`; where there is one only, it is both.
     ///
     /// # Errors
@@ -58,18 +75,8 @@ impl StoredPoses {
         q: f64,
         range: Range,
     ) -> Result<EnclosingPoses<'_>, PositionError> {
-        let (Some(first), Some(last)) = (self.poses.first(), self.poses.last()) else {
-            return Err(PositionError::NotFinite { q });
-        };
-        let (folded, periods, period) = match range.period() {
-            // Over a period the stored poses repeat.
-            Some(period) => {
-                let distance = q - first.q;
-                let periods = (distance / period).floor();
-                (first.q + distance.rem_euclid(period), periods, period)
-            }
-            None => (range.wrap(q)?, 0.0, f64::INFINITY),
-        };
+        let ([first, last], folded, periods) = self.folded(q, range)?;
+        let period = range.period().unwrap_or(f64::INFINITY);
         let after = self.poses.partition_point(|pose| pose.q < folded);
         let before = self.poses.get(after.wrapping_sub(1)).unwrap_or(first);
         let (after, shift, periods_after) = match self.poses.get(after) {
@@ -120,19 +127,7 @@ impl StoredPoses {
     /// # Errors
     /// [`PositionError::OutOfRange`] outside a limited range.
     pub(crate) fn nearest(&self, q: f64, range: Range) -> Result<NearestPose<'_>, PositionError> {
-        let error = PositionError::NotFinite { q };
-        let (Some(first), Some(last)) = (self.poses.first(), self.poses.last()) else {
-            return Err(error);
-        };
-        let (q, periods) = match range.period() {
-            // Over a period the stored poses repeat.
-            Some(period) => {
-                let periods = ((q - first.q) / period).floor();
-                let folded = first.q + (q - first.q).rem_euclid(period);
-                (folded, periods)
-            }
-            None => (range.wrap(q)?, 0.0),
-        };
+        let ([first, last], q, periods) = self.folded(q, range)?;
         let nearest_pose = |pose, distance, periods| NearestPose {
             pose,
             distance,

@@ -13,7 +13,7 @@ use super::vector::vec3;
 use crate::error::{AssemblyError, StructureError};
 use crate::mechanism::{BodyId, JointId};
 use crate::plan::range::Range;
-use dwell_numerics::dense::{Matrix, Svd};
+use dwell_numerics::dense::Matrix;
 
 /// Steps at most.
 const MAX_STEPS: usize = 300;
@@ -163,7 +163,7 @@ impl Plan {
         joints.extend(flipped);
         let gap = largest * self.size;
         let svd = self.dense(&self.groups[0], pose).svd();
-        let rank = svd.map_or(0, |svd| super::rank::rank_of(&svd));
+        let rank = svd.map_or(0, |svd| svd.rank(RANK_TOLERANCE));
         let redundant_count = self.groups[0].rows.len().saturating_sub(rank);
         if redundant_count > 0 && largest < NEARLY_CLOSED {
             return AssemblyError::Inconsistent {
@@ -185,35 +185,25 @@ impl Plan {
 
     fn residual_norm(&self, pose: &Pose) -> f64 {
         let group = &self.groups[0];
-        let rows = group.rows.iter().zip(&group.row_scales);
-        let squares =
-            rows.map(|(&(c, k), s)| (s * pose.residuals[self.closures[c].rows.start + k]).powi(2));
+        let rows = group.residuals.iter().zip(&group.row_scales);
+        let squares = rows.map(|(row, scale)| (scale * pose.residuals[*row]).powi(2));
         squares.sum::<f64>().sqrt()
     }
 
     /// One damped step, δ = V σ/(σ² + µ) Uᵀ (−φ).
     fn damped_step(&self, damping: f64, pose: &mut Pose) {
         let group = &self.groups[0];
-        let Some(Svd { u, values, v }) = self.dense(group, pose).svd() else {
+        let Some(svd) = self.dense(group, pose).svd() else {
             return;
         };
-        let largest = values.iter().fold(0.0_f64, |a, b| a.max(*b));
         let mut step = vec![0.0; group.unknowns.len()];
-        for (k, &sigma) in values
-            .iter()
-            .enumerate()
-            .filter(|(_, s)| **s > RANK_TOLERANCE * largest)
-        {
-            let rows = group.rows.iter().zip(&group.row_scales).enumerate();
-            let part: f64 = rows
-                .map(|(i, (&(c, r), scale))| {
-                    u[(i, k)] * -scale * pose.residuals[self.closures[c].rows.start + r]
-                })
-                .sum();
-            let factor = part * sigma / (sigma * sigma + damping);
-            step.iter_mut()
-                .enumerate()
-                .for_each(|(j, s)| *s += factor * v[(j, k)]);
+        for (k, &sigma) in svd.values[..svd.rank(RANK_TOLERANCE)].iter().enumerate() {
+            let rows = group.residuals.iter().zip(&group.row_scales).enumerate();
+            let parts = rows.map(|(i, (row, scale))| svd.u[(i, k)] * -scale * pose.residuals[*row]);
+            let factor = parts.sum::<f64>() * sigma / (sigma * sigma + damping);
+            for (j, step) in step.iter_mut().enumerate() {
+                *step += factor * svd.v[(j, k)];
+            }
         }
         let size = step.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         let shorten = if size > MAX_STEP_SIZE {

@@ -119,15 +119,15 @@ impl Plan {
         for driver in &self.drivers {
             let factor = T::from_f64(driver.factor);
             pose.coordinates[driver.freedom] = q * factor;
-            pose.rates[driver.freedom] = q_dot * factor;
-            pose.accelerations[driver.freedom] = q_ddot * factor;
+            pose.motion.rates[driver.freedom] = q_dot * factor;
+            pose.motion.accelerations[driver.freedom] = q_ddot * factor;
         }
         let (scalars, balls) = values.split_at(fit.scalars.len());
         let shift = self.counted_periods(fit, [q, x].map(|v| v.value()));
         for (&freedom, [value, first, second]) in fit.scalars.iter().zip(scalars) {
             pose.coordinates[freedom] = *value + T::from_f64(shift * self.gain(freedom));
-            pose.rates[freedom] = *first * q_dot;
-            pose.accelerations[freedom] = *first * q_ddot + *second * q_dot * q_dot;
+            pose.motion.rates[freedom] = *first * q_dot;
+            pose.motion.accelerations[freedom] = *first * q_ddot + *second * q_dot * q_dot;
         }
         let column = |columns: &[[T; 3]], c: usize, d: usize| {
             let at = |k: usize| columns[3 * c + k][d];
@@ -146,19 +146,19 @@ impl Plan {
         };
         for (body, ball, first) in self.balls() {
             let rate = self.to_ground(pose, (body, ball), turning(ball, 1).scaled(q_dot));
-            set_three(&mut pose.rates, first, rate);
+            set_three(&mut pose.motion.rates, first, rate);
         }
         self.fill_states(pose);
         for (body, ball, first) in self.balls() {
             let of_joint = turning(ball, 1).scaled(q_ddot) + turning(ball, 2).scaled(q_dot * q_dot);
-            let rates = &pose.rates[first..first + 3];
+            let rates = &pose.motion.rates[first..first + 3];
             let rate = vec3(rates[0], rates[1], rates[2]);
-            let carried = pose.states[body].angular_velocity - rate;
+            let carried = pose.motion.states[body].angular_velocity - rate;
             let turned = self.to_ground(pose, (body, ball), of_joint) + carried.cross(rate);
-            set_three(&mut pose.accelerations, first, turned);
+            set_three(&mut pose.motion.accelerations, first, turned);
         }
         self.add_accelerations(pose);
-        pose.has_no_acceleration = false;
+        pose.motion.has_no_acceleration = false;
     }
 
     /// By ball: its body, its number, and its first freedom.

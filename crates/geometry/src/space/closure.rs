@@ -266,7 +266,7 @@ impl Closure {
             let arm = frame.rotation.apply(self.points[k].cast());
             let (first, second) = state.direction_derivatives(arm);
             [
-                frame.origin + arm,
+                frame.position + arm,
                 state.velocity + first,
                 state.acceleration + second,
             ]

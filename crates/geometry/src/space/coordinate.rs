@@ -16,7 +16,7 @@ use super::frames::BodyMotion;
 use super::mechanism::{ActuatorKind, Joint, JointKind, Mechanism};
 use super::plan::{Plan, Pose};
 use super::vector::{Rotation, Vec3};
-use crate::mechanism::{BodyId, JointId};
+use crate::mechanism::{BodyId, Guide, JointId};
 use dwell_numerics::Scalar;
 use std::f64::consts::TAU;
 
@@ -72,14 +72,7 @@ pub enum CoordinateFunction {
         counting: Counting,
     },
     /// A travel along an axis.
-    Travel {
-        /// The bodies.
-        bodies: [BodyId; 2],
-        /// The point on each.
-        points: [Vec3; 2],
-        /// The axis on the first.
-        axis: Vec3,
-    },
+    Travel(Guide<Vec3>),
     /// A distance.
     Distance {
         /// The bodies.
@@ -148,7 +141,7 @@ impl Plan {
         let unknown = "the mechanism does not have its coordinate";
         let in_frame = |body: BodyId, point: Vec3| {
             let inverse = self.tree.internal[body.0].inverse();
-            inverse.position + inverse.rotation.apply(point)
+            inverse.point(point)
         };
         if let Coordinate::Distance { bodies, points } = coordinate {
             if bodies.iter().any(|b| b.0 >= mechanism.bodies.len()) {
@@ -172,11 +165,11 @@ impl Plan {
                 normals: sides.map(|side| side.normal),
                 counting: counting(id)?,
             }),
-            false if has_travel => Ok(CoordinateFunction::Travel {
+            false if has_travel => Ok(CoordinateFunction::Travel(Guide {
                 bodies,
                 points: sides.map(|side| side.point),
                 axis,
-            }),
+            })),
             true => Err("its joint has no angle about an axis"),
             false => Err("its joint has no travel along an axis"),
         }
@@ -356,7 +349,7 @@ impl Plan {
     pub fn coordinate_rate<T: Scalar>(&self, pose: &Pose<T>, of: CoordinateFunction) -> T {
         match of {
             CoordinateFunction::Angle { bodies, axis, .. } => {
-                let [a, b] = bodies.map(|body| pose.states[body.0].angular_velocity);
+                let [a, b] = bodies.map(|body| pose.motion.states[body.0].angular_velocity);
                 let axis = pose.frames[bodies[0].0].rotation.apply(axis.cast());
                 axis.dot(b - a)
             }
@@ -377,21 +370,17 @@ impl Plan {
                 counting,
             } => {
                 let value = self.counted_angle(pose, bodies, (axis, normals), counting);
-                let [a, b] = bodies.map(|body| &pose.states[body.0]);
+                let [a, b] = bodies.map(|body| &pose.motion.states[body.0]);
                 let axis = pose.frames[bodies[0].0].rotation.apply(axis.cast());
                 let rate = axis.dot(b.angular_velocity - a.angular_velocity);
                 let acceleration = axis.dot(b.angular_acceleration - a.angular_acceleration);
                 [value, rate, acceleration]
             }
-            CoordinateFunction::Travel {
-                bodies,
-                points,
-                axis,
-            } => {
-                let [d, first, second] = self.separation(pose, bodies, points);
-                let frame = &pose.frames[bodies[0].0];
-                let axis = frame.rotation.apply(axis.cast());
-                let state: &BodyMotion<T> = &pose.states[bodies[0].0];
+            CoordinateFunction::Travel(guide) => {
+                let [d, first, second] = self.separation(pose, guide.bodies, guide.points);
+                let body = guide.bodies[0].0;
+                let axis = pose.frames[body].rotation.apply(guide.axis.cast());
+                let state: &BodyMotion<T> = &pose.motion.states[body];
                 let (turning, turning_rate) = state.direction_derivatives(axis);
                 let two = T::from_f64(2.0);
                 [
@@ -419,10 +408,14 @@ impl Plan {
         points: [Vec3; 2],
     ) -> [Vec3<T>; 3] {
         let at = |k: usize| {
-            let (frame, state) = (&pose.frames[bodies[k].0], &pose.states[bodies[k].0]);
+            let (frame, state) = (&pose.frames[bodies[k].0], &pose.motion.states[bodies[k].0]);
             let arm = frame.rotation.apply(points[k].cast());
             let velocity = state.point_velocity(arm);
-            [frame.origin + arm, velocity, state.point_acceleration(arm)]
+            [
+                frame.position + arm,
+                velocity,
+                state.point_acceleration(arm),
+            ]
         };
         let ([a, a1, a2], [b, b1, b2]) = (at(0), at(1));
         [b - a, b1 - a1, b2 - a2]

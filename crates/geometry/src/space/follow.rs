@@ -6,7 +6,7 @@ use super::mechanism::ActuatorKind;
 use super::plan::{Plan, Pose};
 use super::prediction::Predictions;
 use super::tree::{FreedomKind, Step};
-use super::vector::{Rotation, Vec3};
+use super::vector::{Rotation, Vec3, vec3};
 use crate::error::PositionError;
 use crate::plan::range::Range;
 use dwell_numerics::Scalar;
@@ -36,12 +36,6 @@ const MAX_REVOLUTIONS: u32 = 8;
 /// Two poses are the same: rad, or parts of the size.
 const SAME: f64 = 1e-7;
 
-/// Where a continuation along the branch ended.
-enum End {
-    Reached,
-    Blocked,
-}
-
 impl Plan {
     /// Sets the coordinates to the prediction from a stored pose at so much more of the coordinate.
     pub(super) fn start_from<T: Scalar>(&self, node: &Node, ahead: f64, pose: &mut Pose<T>) {
@@ -58,20 +52,16 @@ impl Plan {
 
     /// The coordinate in the range of the stored poses.
     pub(super) fn within_range(&self, q: f64) -> Result<f64, PositionError> {
-        let outside = |from, to| Err(PositionError::OutOfRange { q, from, to });
         let [first, last] = self.predictions.range().unwrap_or([self.start.q; 2]);
         if q >= first && q < last {
             return Ok(q);
         }
-        match self.range {
-            Range::Full => Ok(first + (q - first).rem_euclid(TAU)),
-            Range::Revolutions(count) => Ok(first + (q - first).rem_euclid(TAU * f64::from(count))),
-            Range::Limited(from, to) | Range::Stroke(from, to) | Range::Unresolved(from, to)
-                if q < from || q > to =>
-            {
-                outside(from, to)
+        match (self.range.period(), self.range.limits()) {
+            (Some(period), _) => Ok(first + (q - first).rem_euclid(period)),
+            (None, Some((from, to))) if q < from || q > to => {
+                Err(PositionError::OutOfRange { q, from, to })
             }
-            _ => Ok(q),
+            (None, _) => Ok(q),
         }
     }
 
@@ -85,13 +75,10 @@ impl Plan {
         for link in &self.tree.links {
             for step in &link.steps {
                 if let Step::Ball(ball, first) = *step {
-                    let of = |values: &[f64]| Vec3 {
-                        x: values[first],
-                        y: values[first + 1],
-                        z: values[first + 2],
-                    };
-                    let (rate, second) = (of(&pose.rates), of(&pose.accelerations));
-                    let carried = pose.states[link.body].angular_velocity - rate;
+                    let of =
+                        |values: &[f64]| vec3(values[first], values[first + 1], values[first + 2]);
+                    let (rate, second) = (of(&pose.motion.rates), of(&pose.motion.accelerations));
+                    let carried = pose.motion.states[link.body].angular_velocity - rate;
                     let to_frame = |v: Vec3| {
                         pose.balls[ball].apply(pose.frames[link.body].rotation.apply_inverse(v))
                     };
@@ -104,7 +91,13 @@ impl Plan {
             inverses.extend(self.inverse(group, pose));
         }
         let freedoms = 0..self.tree.freedoms.len();
-        let of = |f: usize| [pose.coordinates[f], pose.rates[f], pose.accelerations[f]];
+        let of = |f: usize| {
+            [
+                pose.coordinates[f],
+                pose.motion.rates[f],
+                pose.motion.accelerations[f],
+            ]
+        };
         // The coordinates of a ball are its rotation.
         Node {
             q,
@@ -136,7 +129,7 @@ impl Plan {
         let mut forward = vec![first.clone()];
         for revolution in 1..=MAX_REVOLUTIONS {
             let end = first.q + f64::from(revolution) * unit;
-            if let End::Blocked = self.continue_branch(&mut forward, end, unit, &mut pose) {
+            if !self.continue_branch(&mut forward, end, unit, &mut pose) {
                 return self.follow_back(forward, &first, unit, is_angle, &mut pose);
             }
             let same = self.moved_by(&start_frames, &pose.frames) < SAME;
@@ -164,7 +157,7 @@ impl Plan {
                     Some(axis) => (a.rotation.apply(axis) - b.rotation.apply(axis)).norm(),
                     None => a.rotation.inverse().after(&b.rotation).vector().norm(),
                 };
-            turned.max((a.origin - b.origin).norm() / self.size)
+            turned.max((a.position - b.position).norm() / self.size)
         };
         (0..before.len()).map(moved).fold(0.0, f64::max)
     }
@@ -180,10 +173,7 @@ impl Plan {
     ) -> Result<(), PositionError> {
         let far = f64::from(MAX_REVOLUTIONS) * unit;
         let mut back = vec![first.clone()];
-        let blocked_back = matches!(
-            self.continue_branch(&mut back, first.q - far, unit, pose),
-            End::Blocked
-        );
+        let blocked_back = !self.continue_branch(&mut back, first.q - far, unit, pose);
         back.reverse();
         back.extend(forward.into_iter().skip(1));
         let [from, to] = [0, back.len() - 1].map(|k| back[k].q);
@@ -205,14 +195,14 @@ impl Plan {
         self.predictions = Predictions::new(nodes, scalars.collect());
     }
 
-    /// Continues from the last node to a coordinate, in steps that the prediction follows.
-    fn continue_branch(&self, nodes: &mut Vec<Node>, to: f64, unit: f64, pose: &mut Pose) -> End {
+    /// Continues from the last node to a coordinate, in steps that the prediction follows; whether it was reached.
+    fn continue_branch(&self, nodes: &mut Vec<Node>, to: f64, unit: f64, pose: &mut Pose) -> bool {
         let largest = unit / STEPS;
         let mut step = largest;
         while let Some(last) = nodes.last() {
             let left = to - last.q;
             if left.abs() < 1e-12 * unit {
-                return End::Reached;
+                return true;
             }
             let ahead = left.signum() * step.min(left.abs());
             self.start_from(last, ahead, pose);
@@ -229,11 +219,11 @@ impl Plan {
             } else {
                 step *= 0.5;
                 if step < SMALLEST * unit {
-                    return End::Blocked;
+                    return false;
                 }
             }
         }
-        End::Blocked
+        false
     }
 
     /// How far a pose is from its prediction.

@@ -10,7 +10,7 @@ use dwell_numerics::Scalar;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame<T> {
     /// Its origin, m.
-    pub origin: Vec3<T>,
+    pub position: Vec3<T>,
     /// Its orientation.
     pub rotation: Rotation<T>,
 }
@@ -18,7 +18,7 @@ pub struct Frame<T> {
 impl<T: Scalar> Default for Frame<T> {
     fn default() -> Self {
         Self {
-            origin: Vec3::zero(),
+            position: Vec3::zero(),
             rotation: Rotation::default(),
         }
     }
@@ -28,14 +28,14 @@ impl<T: Scalar> Frame<T> {
     /// A point of the body.
     #[inline(always)]
     pub fn point(&self, point: Vec3) -> Vec3<T> {
-        self.origin + self.rotation.apply(point.cast())
+        self.position + self.rotation.apply(point.cast())
     }
 
     /// A frame fixed in this one.
     #[inline(always)]
     pub(super) fn then(&self, inner: &Placement) -> Self {
         Self {
-            origin: self.point(inner.position),
+            position: self.point(inner.position),
             rotation: self.rotation.after(&inner.rotation.cast()),
         }
     }
@@ -131,6 +131,16 @@ impl<T: Scalar> BodyMotion<T> {
         self.acceleration + self.direction_derivatives(arm).1
     }
 
+    /// From rest, with accelerations equal to these velocities.
+    #[inline(always)]
+    pub fn from_rest(&self) -> Self {
+        Self {
+            acceleration: self.velocity,
+            angular_acceleration: self.angular_velocity,
+            ..Self::default()
+        }
+    }
+
     /// The motion that the body gives to another one fixed to it, with an origin at this vector from its own.
     #[inline(always)]
     pub(super) fn carried(&self, arm: Vec3<T>) -> Self {
@@ -158,7 +168,7 @@ impl Link {
     pub(super) fn base<T: Scalar>(&self, parent: &Frame<T>, is_ground: bool) -> Frame<T> {
         if is_ground {
             return Frame {
-                origin: parent.origin + self.on_parent.position.cast(),
+                position: parent.position + self.on_parent.position.cast(),
                 rotation: self.on_parent.rotation.cast(),
             };
         }
@@ -180,28 +190,24 @@ impl Link {
                 Step::Turn(c) => {
                     let axis = frame.rotation.columns[2];
                     if let FreedomKind::Screw(pitch) = freedoms[c] {
-                        frame.origin += axis.scaled(coordinates[c] * T::from_f64(pitch));
+                        frame.position += axis.scaled(coordinates[c] * T::from_f64(pitch));
                     }
-                    screws[c] = Screw {
-                        axis,
-                        point: frame.origin,
-                    };
+                    let point = frame.position;
+                    screws[c] = Screw { axis, point };
                     frame.rotation = frame.rotation.turned_about_z(coordinates[c].sin_cos());
                 }
                 Step::Slide(k, c) => {
                     let axis = frame.rotation.columns[k];
-                    frame.origin += axis.scaled(coordinates[c]);
-                    screws[c] = Screw {
-                        axis,
-                        point: frame.origin,
-                    };
+                    frame.position += axis.scaled(coordinates[c]);
+                    let point = frame.position;
+                    screws[c] = Screw { axis, point };
                 }
                 Step::NextAxis => frame.rotation = next_axis(&frame.rotation),
                 Step::Ball(ball, first) => {
                     for (k, axis) in Vec3::AXES.iter().enumerate() {
                         screws[first + k] = Screw {
                             axis: axis.cast(),
-                            point: frame.origin,
+                            point: frame.position,
                         };
                     }
                     frame.rotation = frame.rotation.after(&balls[ball]);

@@ -101,11 +101,9 @@ impl Plan {
     pub(super) fn group(&self, mut unknowns: Vec<usize>, rows: Vec<(usize, usize)>) -> Group {
         unknowns.sort_unstable();
         let n = unknowns.len();
+        let residual = |&(c, k): &(usize, usize)| self.closures[c].rows.start + k;
         let mut group = Group {
-            residuals: rows
-                .iter()
-                .map(|&(c, k)| self.closures[c].rows.start + k)
-                .collect(),
+            residuals: rows.iter().map(residual).collect(),
             row_scales: rows.iter().map(|r| self.row_scale(*r)).collect(),
             column_scales: unknowns.iter().map(|f| self.unit(*f)).collect(),
             ..Group::default()
@@ -156,10 +154,8 @@ impl Plan {
         for (l, link) in self.tree.links.iter().enumerate() {
             let before = self.tree.link_of[link.parent].map_or(0, |p| level[p]);
             let of = |f: usize| {
-                groups
-                    .iter()
-                    .position(|g| g.unknowns.contains(&f))
-                    .map_or(0, |g| g + 1)
+                let group = groups.iter().position(|g| g.unknowns.contains(&f));
+                group.map_or(0, |g| g + 1)
             };
             level[l] = link.freedoms.clone().map(of).max().unwrap_or(0).max(before);
         }
@@ -224,14 +220,9 @@ impl Plan {
         let mut groups: Vec<Members> = components
             .into_iter()
             .map(|equations| {
-                let matched = equations
-                    .iter()
-                    .map(|e| unknowns[of_equation[*e]])
-                    .collect();
-                (
-                    matched,
-                    equations.iter().map(|e| rows[independent[*e]]).collect(),
-                )
+                let matched = equations.iter().map(|e| unknowns[of_equation[*e]]);
+                let rows = equations.iter().map(|e| rows[independent[*e]]);
+                (matched.collect(), rows.collect())
             })
             .collect();
         let redundant = (0..rows.len()).filter(|r| !independent.contains(r));

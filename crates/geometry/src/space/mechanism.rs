@@ -1,6 +1,7 @@
 //! The description of a mechanism in space. Lengths in m, angles in rad.
 
-use super::vector::{Rotation, Vec3};
+use super::frames::Frame;
+use super::vector::{Vec3, vec3};
 use crate::mechanism::{Body, BodyId, JointId};
 
 /// A mechanism in space. Points and directions are given in the frame of the body they belong to.
@@ -215,13 +216,7 @@ impl Actuator {
 }
 
 /// Position and orientation of a body: its frame in that of the ground.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Placement {
-    /// Origin, m.
-    pub position: Vec3,
-    /// Orientation.
-    pub rotation: Rotation,
-}
+pub type Placement = Frame<f64>;
 
 /// Where a mechanism is assembled: the coordinates, and approximately where the bodies are.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -251,28 +246,19 @@ impl Mechanism {
     /// A length of the order of the mechanism: the largest distance between two joints' points on one body, m.
     pub fn size(&self) -> f64 {
         let mut size = 0.0_f64;
-        let mut boxes = vec![[Vec3::ZERO; 2]; self.bodies.len()];
-        let mut seen = vec![false; self.bodies.len()];
+        let by = |of: fn(f64, f64) -> f64, a: Vec3, b: Vec3| {
+            vec3(of(a.x, b.x), of(a.y, b.y), of(a.z, b.z))
+        };
+        let mut boxes = vec![None; self.bodies.len()];
         for joint in &self.joints {
             for (k, side) in joint.sides.iter().enumerate() {
                 let body = joint.side_body(k);
-                let Some([low, high]) = boxes.get_mut(body.0) else {
+                let Some(corners) = boxes.get_mut(body.0) else {
                     continue;
                 };
-                let p = side.point;
-                if !std::mem::replace(&mut seen[body.0], true) {
-                    (*low, *high) = (p, p);
-                }
-                *low = Vec3 {
-                    x: low.x.min(p.x),
-                    y: low.y.min(p.y),
-                    z: low.z.min(p.z),
-                };
-                *high = Vec3 {
-                    x: high.x.max(p.x),
-                    y: high.y.max(p.y),
-                    z: high.z.max(p.z),
-                };
+                let [low, high] = corners.get_or_insert([side.point; 2]);
+                *low = by(f64::min, *low, side.point);
+                *high = by(f64::max, *high, side.point);
                 size = size.max((*high - *low).norm());
             }
             if let JointKind::Distance { length } = joint.kind {

@@ -2,7 +2,7 @@
 
 use super::frames::BodyMotion;
 use super::groups::Group;
-use super::plan::{Plan, Pose};
+use super::plan::{Plan, Pose, PoseMotion};
 use super::vector::Vec3;
 use dwell_numerics::Scalar;
 
@@ -11,17 +11,17 @@ impl Plan {
     /// those at zero accelerations of the freedoms.
     pub fn velocities<T: Scalar>(&self, q_dot: &[T], pose: &mut Pose<T>) {
         for (driver, &rate) in self.drivers.iter().zip(q_dot) {
-            pose.rates[driver.freedom] = rate * T::from_f64(driver.factor);
+            pose.motion.rates[driver.freedom] = rate * T::from_f64(driver.factor);
         }
         for group in &self.groups {
             self.carry_known(
                 group,
                 pose,
-                |pose, freedom| pose.rates[freedom],
+                |pose, freedom| pose.motion.rates[freedom],
                 |_, _, _| T::from_f64(0.0),
             );
             for (j, freedom) in group.unknowns.iter().enumerate() {
-                pose.rates[*freedom] = pose.scratch[j];
+                pose.motion.rates[*freedom] = pose.scratch[j];
             }
         }
         self.fill_states(pose);
@@ -29,31 +29,36 @@ impl Plan {
 
     /// The accelerations of all freedoms and bodies at those of the actuators, rad/s² or m/s², after the velocities.
     pub fn accelerations<T: Scalar>(&self, q_ddot: &[T], pose: &mut Pose<T>) {
-        if !std::mem::take(&mut pose.has_no_acceleration) {
+        if !std::mem::take(&mut pose.motion.has_no_acceleration) {
             self.fill_states(pose);
-            pose.has_no_acceleration = false;
+            pose.motion.has_no_acceleration = false;
         }
         for (driver, &acceleration) in self.drivers.iter().zip(q_ddot) {
-            pose.accelerations[driver.freedom] = acceleration * T::from_f64(driver.factor);
+            pose.motion.accelerations[driver.freedom] = acceleration * T::from_f64(driver.factor);
         }
         for group in &self.groups {
             let (mut last, mut points) = (usize::MAX, [Vec3::zero(); 3]);
             let row = |pose: &Pose<T>, c: usize, k: usize| {
                 let closure = &self.closures[c];
                 if c != last {
-                    points = closure.point_motion(&pose.frames, &pose.states);
+                    points = closure.point_motion(&pose.frames, &pose.motion.states);
                     last = c;
                 }
-                closure.row_acceleration(closure.kinds[k], &pose.frames, &pose.states, points)
+                closure.row_acceleration(
+                    closure.kinds[k],
+                    &pose.frames,
+                    &pose.motion.states,
+                    points,
+                )
             };
             self.carry_known(
                 group,
                 pose,
-                |pose, freedom| pose.accelerations[freedom],
+                |pose, freedom| pose.motion.accelerations[freedom],
                 row,
             );
             for (j, freedom) in group.unknowns.iter().enumerate() {
-                pose.accelerations[*freedom] = pose.scratch[j];
+                pose.motion.accelerations[*freedom] = pose.scratch[j];
             }
         }
         self.add_accelerations(pose);
@@ -82,23 +87,18 @@ impl Plan {
     #[inline(always)]
     pub(super) fn fill_states<T: Scalar>(&self, pose: &mut Pose<T>) {
         let freedoms = &self.tree.freedoms;
-        let Pose {
-            frames,
-            screws,
-            rates,
-            states,
-            ..
-        } = pose;
+        let Pose { frames, screws, .. } = pose;
+        let PoseMotion { rates, states, .. } = &mut pose.motion;
         for link in &self.tree.links {
             let of_parent = &states[link.parent];
             let carried = if link.parent == self.ground {
                 BodyMotion::default()
             } else {
-                of_parent.carried(frames[link.body].origin - frames[link.parent].origin)
+                of_parent.carried(frames[link.body].position - frames[link.parent].position)
             };
             states[link.body] = link.motion(carried, of_parent, rates, freedoms, screws);
         }
-        pose.has_no_acceleration = true;
+        pose.motion.has_no_acceleration = true;
     }
 
     /// Adds the accelerations of the freedoms to the states of the bodies.
@@ -108,13 +108,17 @@ impl Plan {
         let Pose {
             frames,
             screws,
-            accelerations,
-            states,
+            motion,
             added,
             ..
         } = pose;
+        let PoseMotion {
+            accelerations,
+            states,
+            ..
+        } = motion;
         for link in &self.tree.links {
-            let arm = frames[link.body].origin - frames[link.parent].origin;
+            let arm = frames[link.body].position - frames[link.parent].position;
             let [origin, turn] =
                 link.added(arm, added[link.parent], accelerations, freedoms, screws);
             added[link.body] = [origin, turn];
@@ -126,12 +130,12 @@ impl Plan {
     /// The motion of a body, with velocity and acceleration of its [evaluation frame](Plan::frame)'s origin.
     #[inline(always)]
     pub fn state<'a, T: Scalar>(&self, pose: &'a Pose<T>, body: usize) -> &'a BodyMotion<T> {
-        &pose.states[body]
+        &pose.motion.states[body]
     }
 
     /// The motion of a body, with velocity and acceleration of its own frame's origin.
     pub fn body_motion<T: Scalar>(&self, pose: &Pose<T>, body: usize) -> BodyMotion<T> {
-        let state = &pose.states[body];
+        let state = &pose.motion.states[body];
         let frame = &pose.frames[body];
         // From the internal origin to that of the body's frame.
         let origin = self.tree.internal[body].inverse().position;

@@ -30,7 +30,7 @@ impl Plan {
             required: bodies.clone(),
             transmitted: bodies,
             balance: vec![zero; self.tree.freedoms.len()],
-            multipliers: vec![zero; self.closures.last().map_or(0, |c| c.rows.end)],
+            multipliers: vec![zero; self.row_and_entry_counts()[0]],
             closure_actions: vec![[Wrench::default(); N]; self.closures.len()],
             scratch: [(); N].map(|()| vec![T::from_f64(0.0); largest]),
         }
@@ -81,7 +81,7 @@ impl Plan {
                 continue;
             }
             let carried = wrenches[link.body];
-            let arm = pose.frames[link.body].origin - pose.frames[link.parent].origin;
+            let arm = pose.frames[link.body].position - pose.frames[link.parent].position;
             for (sum, Wrench { force, moment }) in wrenches[link.parent].iter_mut().zip(carried) {
                 sum.add_at(arm, force, moment);
             }
@@ -157,7 +157,7 @@ impl Plan {
             };
             // Of a closure between what this link carries and the rest.
             let [_, at, _] = closure.ends(&pose.frames);
-            let (arm, by) = (at - pose.frames[body].origin, T::from_f64(-sign));
+            let (arm, by) = (at - pose.frames[body].position, T::from_f64(-sign));
             for (wrench, action) in wrenches.iter_mut().zip(actions) {
                 wrench.add_at(arm, action.force.scaled(by), action.moment.scaled(by));
             }
@@ -202,7 +202,7 @@ impl Plan {
         }
         // The first body is carried by the second: what the second does to it, reversed, about the second's point.
         let second = pose.frames[link.parent].point(link.on_parent.position);
-        let arm = pose.frames[link.body].origin - second;
+        let arm = pose.frames[link.body].position - second;
         map_array(wrenches, |wrench| {
             let mut reversed = Wrench::default();
             reversed.add_at(arm, -wrench.force, -wrench.moment);

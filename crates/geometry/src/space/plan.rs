@@ -92,11 +92,7 @@ pub struct Pose<T = f64> {
     pub(super) pivots: Vec<usize>,
     pub(super) reflections: Vec<T>,
     pub(super) scratch: Vec<T>,
-    pub(super) rates: Vec<T>,
-    pub(super) accelerations: Vec<T>,
-    /// Whether the states of the bodies are those without accelerations of the freedoms.
-    pub(super) has_no_acceleration: bool,
-    pub(super) states: Vec<BodyMotion<T>>,
+    pub(super) motion: PoseMotion<T>,
     /// By body: what the accelerations of the freedoms add to those of its origin and of its rotation.
     pub(super) added: Vec<[Vec3<T>; 2]>,
 }
@@ -104,23 +100,18 @@ pub struct Pose<T = f64> {
 /// The velocities and accelerations of a pose, for one thread.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseMotion<T = f64> {
-    rates: Vec<T>,
-    accelerations: Vec<T>,
-    has_no_acceleration: bool,
-    states: Vec<BodyMotion<T>>,
+    pub(super) rates: Vec<T>,
+    pub(super) accelerations: Vec<T>,
+    /// Whether the states of the bodies are those without accelerations of the freedoms.
+    pub(super) has_no_acceleration: bool,
+    pub(super) states: Vec<BodyMotion<T>>,
 }
 
 impl<T> Pose<T> {
     /// Exchanges the velocities and accelerations for others: for a virtual motion of the same pose, and back.
     #[inline]
     pub fn swap_motion(&mut self, other: &mut PoseMotion<T>) {
-        std::mem::swap(&mut self.rates, &mut other.rates);
-        std::mem::swap(&mut self.accelerations, &mut other.accelerations);
-        std::mem::swap(&mut self.states, &mut other.states);
-        std::mem::swap(
-            &mut self.has_no_acceleration,
-            &mut other.has_no_acceleration,
-        );
+        std::mem::swap(&mut self.motion, other);
     }
 }
 
@@ -242,6 +233,12 @@ impl Plan {
         self.groups.iter().map(describe).collect()
     }
 
+    /// How many rows all closures have, and how many entries of the Jacobian.
+    pub(super) fn row_and_entry_counts(&self) -> [usize; 2] {
+        let end = |c: &Closure| [c.rows.end, c.entries + c.rows.len() * c.path.len()];
+        self.closures.last().map_or([0; 2], end)
+    }
+
     /// A length of the order of the mechanism, m.
     pub fn size(&self) -> f64 {
         self.size
@@ -251,11 +248,7 @@ impl Plan {
     pub fn pose<T: Scalar>(&self) -> Pose<T> {
         let zero = T::from_f64(0.0);
         let freedoms = self.tree.freedoms.len();
-        let rows = self.closures.last().map_or(0, |c| c.rows.end);
-        let entries = self
-            .closures
-            .last()
-            .map_or(0, |c| c.entries + c.rows.len() * c.path.len());
+        let [rows, entries] = self.row_and_entry_counts();
         let group = |f: fn(&Group) -> usize| self.groups.iter().map(f).sum::<usize>();
         let mut pose = Pose {
             coordinates: vec![zero; freedoms],
@@ -269,10 +262,7 @@ impl Plan {
             pivots: vec![0; group(|g| g.unknowns.len())],
             reflections: vec![zero; group(|g| g.unknowns.len())],
             scratch: vec![zero; self.groups.iter().map(|g| g.rows.len()).max().unwrap_or(0)],
-            rates: vec![zero; freedoms],
-            accelerations: vec![zero; freedoms],
-            has_no_acceleration: false,
-            states: vec![BodyMotion::default(); self.tree.internal.len()],
+            motion: self.pose_motion(),
             added: vec![[Vec3::zero(); 2]; self.tree.internal.len()],
         };
         // The wrenches of points do not change.
@@ -284,7 +274,7 @@ impl Plan {
             }
         }
         // The ground is placed once.
-        pose.frames[self.ground].origin = self.tree.internal[self.ground].position.cast();
+        pose.frames[self.ground].position = self.tree.internal[self.ground].position.cast();
         pose
     }
 
@@ -301,17 +291,11 @@ impl Plan {
 
     /// Where a body is.
     pub fn placement(&self, pose: &Pose<f64>, body: usize) -> Placement {
-        let frame = &pose.frames[body];
-        let internal = Placement {
-            position: frame.origin,
-            rotation: frame.rotation,
-        };
-        internal.then(&self.tree.internal[body].inverse())
+        pose.frames[body].then(&self.tree.internal[body].inverse())
     }
 
     /// A point of a body, m in its frame, in the frame of the ground.
     pub fn point(&self, pose: &Pose<f64>, body: usize, point: Vec3) -> Vec3 {
-        let placement = self.placement(pose, body);
-        placement.position + placement.rotation.apply(point)
+        self.placement(pose, body).point(point)
     }
 }

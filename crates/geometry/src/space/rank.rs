@@ -3,6 +3,7 @@
 
 use super::assemble::RANK_TOLERANCE;
 use super::closure::{Closure, RowKind};
+use super::groups::Group;
 use super::mechanism::{JointKind, Mechanism};
 use super::plan::{Plan, Pose};
 use super::vector::Vec3;
@@ -52,16 +53,6 @@ fn hangs_between_balls(mechanism: &Mechanism, body: usize) -> bool {
     of_body.all(|j| matches!(j.kind, JointKind::Spherical | JointKind::Distance { .. }))
 }
 
-/// The rank by singular values.
-pub(super) fn rank_of(svd: &Svd) -> usize {
-    let values = &svd.values;
-    let largest = values.iter().fold(0.0_f64, |a, b| a.max(*b));
-    values
-        .iter()
-        .filter(|s| **s > RANK_TOLERANCE * largest)
-        .count()
-}
-
 impl Plan {
     /// Analyses the assembled mechanism, with a row added for each idle freedom.
     pub(super) fn analyse(
@@ -71,12 +62,8 @@ impl Plan {
     ) -> Result<Analysed, AssemblyError> {
         let group = &self.groups[0];
         let (rows, n) = (group.rows.len(), group.unknowns.len());
-        let svd = if rows * n > 0 {
-            self.dense(group, &pose).svd()
-        } else {
-            None
-        };
-        let rank = svd.as_ref().map_or(0, rank_of);
+        let svd = self.svd(group, &pose);
+        let rank = svd.as_ref().map_or(0, |svd| svd.rank(RANK_TOLERANCE));
         let mut idle = Vec::new();
         if rank < n {
             idle = self.idle_bodies(mechanism, svd.as_ref(), rank, &mut pose)?;
@@ -108,6 +95,12 @@ impl Plan {
         })
     }
 
+    /// The singular values of a group's Jacobian, scaled; none without an entry.
+    fn svd(&self, group: &Group, pose: &Pose) -> Option<Svd> {
+        let is_empty = group.rows.is_empty() || group.unknowns.is_empty();
+        (!is_empty).then(|| self.dense(group, pose).svd()).flatten()
+    }
+
     /// Refuses actuators that drive the same freedom: with every coordinate free, the rows must leave one freedom for each of them.
     fn require_independent_actuators(
         &self,
@@ -116,11 +109,10 @@ impl Plan {
     ) -> Result<(), AssemblyError> {
         let freedoms = self.tree.freedoms.len();
         let everything = self.group((0..freedoms).collect(), self.all_rows());
-        let empty = freedoms * everything.rows.len() == 0;
-        let svd = (!empty)
-            .then(|| self.dense(&everything, pose).svd())
-            .flatten();
-        let left = freedoms - svd.as_ref().map_or(0, rank_of);
+        let left = freedoms
+            - self
+                .svd(&everything, pose)
+                .map_or(0, |svd| svd.rank(RANK_TOLERANCE));
         // The rows that hold idle bodies are among all rows.
         let redundant_count = self.actuators().saturating_sub(left);
         if redundant_count == 0 {
@@ -146,10 +138,9 @@ impl Plan {
         StructureError::UnderActuated {
             degrees_of_freedom: self.actuators() + missing,
             actuators: self.actuators(),
-            bodies: if bodies.is_empty() {
-                all.collect()
-            } else {
-                bodies
+            bodies: match bodies.is_empty() {
+                true => all.collect(),
+                false => bodies,
             },
             redundant_joints: Vec::new(),
         }
@@ -170,10 +161,11 @@ impl Plan {
         let mut moves = vec![false; mechanism.bodies.len()];
         let mut is_spin = true;
         for k in rank..n {
-            pose.rates.fill(0.0);
+            pose.motion.rates.fill(0.0);
             for (j, (freedom, unit)) in group.unknowns.iter().zip(&group.column_scales).enumerate()
             {
-                pose.rates[*freedom] = svd.map_or(f64::from(j == k), |svd| svd.v[(j, k)]) * unit;
+                pose.motion.rates[*freedom] =
+                    svd.map_or(f64::from(j == k), |svd| svd.v[(j, k)]) * unit;
             }
             self.fill_states(pose);
             for body in 0..mechanism.bodies.len() {
@@ -218,16 +210,12 @@ impl Plan {
     fn hold(&mut self, idle: &[IdleBody]) {
         for one in idle {
             let body = one.body.0;
-            let rows = self.closures.last().map_or(0, |c| c.rows.end);
-            let entries = self
-                .closures
-                .last()
-                .map_or(0, |c| c.entries + c.rows.len() * c.path.len());
             let axis = self.tree.internal[body].rotation.apply_inverse(one.axis);
             let bodies = [self.ground, body];
             let kinds = vec![RowKind::NoSpin(axis)];
             let between = (bodies, [Vec3::ZERO; 2]);
-            let closure = Closure::new(&self.tree, None, between, kinds, [rows, entries]);
+            let begin = self.row_and_entry_counts();
+            let closure = Closure::new(&self.tree, None, between, kinds, begin);
             self.closures.push(closure);
         }
         self.schedule_whole();
@@ -284,7 +272,7 @@ impl Plan {
         let Some(svd) = self.dense(&group, pose).svd() else {
             return Vec::new();
         };
-        let rank = rank_of(&svd);
+        let rank = svd.rank(RANK_TOLERANCE);
         let of = |k: usize| {
             (0..group.rows.len())
                 .map(|i| svd.u[(i, k)] * group.row_scales[i])

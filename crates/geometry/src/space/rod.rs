@@ -163,7 +163,7 @@ impl Plan {
         let (closure, spin) = (&self.closures[rod.points], &self.closures[rod.spin]);
         let frame = &pose.frames[closure.bodies[rod.end]];
         let r = frame.rotation.apply(closure.points[rod.end].cast());
-        let at = frame.origin + r;
+        let at = frame.position + r;
         let e = match spin.kinds[0] {
             RowKind::NoSpin(axis) => frame.rotation.apply(axis.cast()),
             _ => return false,

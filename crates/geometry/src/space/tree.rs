@@ -97,14 +97,6 @@ fn frame_of(side: &Side) -> Placement {
 }
 
 impl Placement {
-    /// A placement in this one's frame, from outside.
-    pub(super) fn then(&self, inner: &Self) -> Self {
-        Self {
-            position: self.position + self.rotation.apply(inner.position),
-            rotation: self.rotation.after(&inner.rotation),
-        }
-    }
-
     /// The frame outside in this one.
     pub(super) fn inverse(&self) -> Self {
         let rotation = self.rotation.inverse();
@@ -120,7 +112,7 @@ impl Side {
     pub(super) fn in_frame(&self, frame: &Placement) -> Self {
         let inverse = frame.inverse();
         Self {
-            point: inverse.position + inverse.rotation.apply(self.point),
+            point: inverse.point(self.point),
             axis: inverse.rotation.apply(self.axis),
             normal: inverse.rotation.apply(self.normal),
         }

@@ -1,11 +1,13 @@
 //! A coupling between angles and travels: Φ = Σ dependent − law(Σ independent) − constant. Its angles are counted
 //! over whole revolutions, so the frames it names carry a number beside their direction.
 
+use crate::rates::Rates;
 use crate::structure::frames::Frames;
 use crate::structure::lower::{LinearTerms, Lowered, LoweredCoordinate, LoweredCoupling, Owner};
 use crate::structure::tree::Tree;
 use dwell_laws::Law;
 use dwell_numerics::Scalar;
+use std::collections::BTreeSet;
 
 /// A sum of frames' angles and slides' travels with factors, and a constant.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -59,9 +61,9 @@ impl LinearForm {
         self.add_terms(self.constant, angle, slide)
     }
 
-    /// Its rate, from the rates of frames and slides (velocities or accelerations).
-    fn rate<T: Scalar>(&self, angular_rate: &[T], slide_rate: &[T]) -> T {
-        self.add_terms(0.0, angular_rate, slide_rate)
+    /// Its rate, from the velocities or accelerations of frames and slides.
+    fn rate<T: Scalar>(&self, rates: &Rates<T>) -> T {
+        self.add_terms(0.0, &rates.angular, &rates.slide)
     }
 
     fn add_terms<T: Scalar>(&self, to: f64, angle: &[T], slide: &[T]) -> T {
@@ -119,35 +121,26 @@ impl CouplingEquation {
     }
 
     /// The classes whose turning changes it, without the ground's.
-    pub(crate) fn classes(&self, frames: &Frames) -> Vec<usize> {
-        let mut classes: Vec<usize> = self
-            .forms()
-            .flat_map(|form| {
-                let class = |&(f, _): &(usize, f64)| frames.frames[f].orientation_class;
-                let named = form.angles.iter().map(class);
-                named.filter(|&c| c > 0 && form.class_factor(frames, c) != 0.0)
-            })
-            .collect();
-        classes.sort_unstable();
-        classes.dedup();
-        classes
+    pub(crate) fn classes(&self, frames: &Frames) -> BTreeSet<usize> {
+        let of_form = |form: &LinearForm| {
+            let class = |&(f, _): &(usize, f64)| frames.frames[f].orientation_class;
+            let named = form.angles.iter().map(class);
+            let turns = |c: &usize| *c > 0 && form.class_factor(frames, *c) != 0.0;
+            named.filter(turns).collect::<Vec<_>>()
+        };
+        self.forms().flat_map(of_form).collect()
     }
 
     /// Every frame it names.
     pub(crate) fn frames(&self) -> impl Iterator<Item = usize> {
-        self.forms()
-            .flat_map(|form| form.angles.iter().map(|t| t.0))
+        let angles = self.forms().flat_map(|form| &form.angles);
+        angles.map(|(frame, _)| *frame)
     }
 
     /// The slides it names.
-    pub(crate) fn slides(&self) -> Vec<usize> {
-        let mut slides: Vec<usize> = self
-            .forms()
-            .flat_map(|form| form.slides.iter().map(|t| t.0))
-            .collect();
-        slides.sort_unstable();
-        slides.dedup();
-        slides
+    pub(crate) fn slides(&self) -> BTreeSet<usize> {
+        let slides = self.forms().flat_map(|form| &form.slides);
+        slides.map(|(slide, _)| *slide).collect()
     }
 
     /// Whether the law, if any, is of nothing that depends on these classes and slides.
@@ -158,11 +151,9 @@ impl CouplingEquation {
         slide: impl Fn(usize) -> bool,
     ) -> bool {
         self.law.as_ref().is_none_or(|(_, independent)| {
-            !independent
-                .angles
-                .iter()
-                .any(|&(f, _)| class(frames.frames[f].orientation_class))
-                && !independent.slides.iter().any(|&(s, _)| slide(s))
+            let (mut angles, mut slides) = (independent.angles.iter(), independent.slides.iter());
+            !angles.any(|&(f, _)| class(frames.frames[f].orientation_class))
+                && !slides.any(|&(s, _)| slide(s))
         })
     }
 
@@ -195,16 +186,10 @@ impl CouplingEquation {
     }
 
     /// Φ̇.
-    pub(crate) fn rate<T: Scalar>(
-        &self,
-        angle: &[T],
-        slide: &[T],
-        angular_rate: &[T],
-        slide_rate: &[T],
-    ) -> T {
-        let mut rate = self.dependent.rate(angular_rate, slide_rate);
+    pub(crate) fn rate<T: Scalar>(&self, angle: &[T], slide: &[T], velocity: &Rates<T>) -> T {
+        let mut rate = self.dependent.rate(velocity);
         if let Some((_, independent)) = &self.law {
-            rate -= self.slope(angle, slide) * independent.rate(angular_rate, slide_rate);
+            rate -= self.slope(angle, slide) * independent.rate(velocity);
         }
         rate
     }
@@ -214,14 +199,13 @@ impl CouplingEquation {
         &self,
         angle: &[T],
         slide: &[T],
-        velocity: (&[T], &[T]),
-        acceleration: (&[T], &[T]),
+        (velocity, acceleration): (&Rates<T>, &Rates<T>),
     ) -> T {
-        let mut value = self.dependent.rate(acceleration.0, acceleration.1);
+        let mut value = self.dependent.rate(acceleration);
         if let Some((_, independent)) = &self.law {
             let (slope, bend) = self.slopes(angle, slide);
-            let rate = independent.rate(velocity.0, velocity.1);
-            value -= slope * independent.rate(acceleration.0, acceleration.1) + bend * rate * rate;
+            let rate = independent.rate(velocity);
+            value -= slope * independent.rate(acceleration) + bend * rate * rate;
         }
         value
     }

@@ -153,6 +153,21 @@ impl Frames {
         Ok(found)
     }
 
+    /// The actuators that turn a frame from the first one of its class, each with its sign, from the last one on.
+    pub fn turned_by(&self, mut frame: usize) -> impl Iterator<Item = (usize, f64)> {
+        std::iter::from_fn(move || match self.frames[frame].rotation_source {
+            RotationSource::Ground | RotationSource::Unknown => None,
+            RotationSource::Actuated {
+                parent,
+                actuator,
+                sign,
+            } => {
+                frame = parent;
+                Some((actuator, sign))
+            }
+        })
+    }
+
     /// All bodies in the ground's frame.
     fn of_ground(bodies: usize) -> Self {
         let ground_orientation = Orientation::new(0, Vec2::IDENTITY);

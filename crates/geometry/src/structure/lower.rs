@@ -7,6 +7,7 @@ use crate::error::StructureError;
 use crate::mechanism::{ActuatorId, BodyId, Coordinate, Coupling, JointId, JointKind, Mechanism};
 use crate::plane::Vec2;
 use dwell_laws::Law;
+use std::collections::BTreeSet;
 
 /// The joint or actuator that a pair or a coupling comes from, for messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -113,6 +114,18 @@ pub(crate) struct Lowered {
     pub(crate) joint_parts: Vec<(Option<usize>, Option<usize>)>,
 }
 
+impl PairKind {
+    /// Whether its travel is a coordinate.
+    pub(crate) fn counts_travel(self) -> bool {
+        matches!(self, Self::Prismatic { travel_is_coordinate, .. } if travel_is_coordinate)
+    }
+
+    /// Whether its travel is a length.
+    pub(crate) fn is_length(self) -> bool {
+        matches!(self, Self::Prismatic { travel_is_length, .. } if travel_is_length)
+    }
+}
+
 impl KinematicPair {
     /// Its point on one of its bodies, in that body's frame, m.
     pub(crate) fn point_on(&self, body: usize) -> Vec2 {
@@ -216,12 +229,8 @@ impl Lowered {
                 let along = self.add_body();
                 let across = self.add_body();
                 let on_rack = [points[0], Vec2::ZERO];
-                self.add_pair(
-                    owner,
-                    [bodies[0], along],
-                    on_rack,
-                    prismatic([axis, X_AXIS]),
-                );
+                let on_axis = prismatic([axis, X_AXIS]);
+                self.add_pair(owner, [bodies[0], along], on_rack, on_axis);
                 self.make_travel_coordinate(first);
                 let normal = [X_AXIS.perp(), X_AXIS.perp()];
                 let origin = [Vec2::ZERO; 2];
@@ -297,13 +306,8 @@ impl Lowered {
     /// A block on the first body, pinned to the second.
     fn add_slot(&mut self, owner: Owner, bodies: [usize; 2], points: [Vec2; 2], axis: Vec2) {
         let block = self.add_body();
-        let on_first = [points[0], Vec2::ZERO];
-        self.add_pair(
-            owner,
-            [bodies[0], block],
-            on_first,
-            prismatic([axis, X_AXIS]),
-        );
+        let (on_first, on_axis) = ([points[0], Vec2::ZERO], prismatic([axis, X_AXIS]));
+        self.add_pair(owner, [bodies[0], block], on_first, on_axis);
         self.add_pin(owner, [block, bodies[1]], [Vec2::ZERO, points[1]]);
     }
 
@@ -362,32 +366,26 @@ impl Lowered {
 
     /// The mechanism's bodies among some.
     pub(crate) fn mechanism_bodies(&self, bodies: impl IntoIterator<Item = usize>) -> Vec<BodyId> {
-        let mut named: Vec<_> = bodies
-            .into_iter()
-            .filter(|&b| b < self.mechanism_bodies)
-            .map(BodyId)
-            .collect();
-        named.sort_unstable();
-        named.dedup();
-        named
+        let named = bodies.into_iter().filter(|&b| b < self.mechanism_bodies);
+        let named: BTreeSet<_> = named.map(BodyId).collect();
+        named.into_iter().collect()
     }
 
     /// The joints and the actuators among some owners.
     pub(crate) fn owners(
         owners: impl IntoIterator<Item = Owner>,
     ) -> (Vec<JointId>, Vec<ActuatorId>) {
-        let (mut joints, mut actuators) = (Vec::new(), Vec::new());
+        let (mut joints, mut actuators) = (BTreeSet::new(), BTreeSet::new());
         for owner in owners {
             match owner {
-                Owner::Joint(joint) => joints.push(joint),
-                Owner::Actuator(actuator) => actuators.push(actuator),
-            }
+                Owner::Joint(joint) => joints.insert(joint),
+                Owner::Actuator(actuator) => actuators.insert(actuator),
+            };
         }
-        joints.sort_unstable();
-        joints.dedup();
-        actuators.sort_unstable();
-        actuators.dedup();
-        (joints, actuators)
+        (
+            joints.into_iter().collect(),
+            actuators.into_iter().collect(),
+        )
     }
 
     /// The error of equations too many, by the owner of each.

@@ -120,15 +120,9 @@ impl Tree {
             return Err(StructureError::NotConnected { bodies: unreached });
         }
         tree.loop_joints = (0..in_tree.len()).filter(|&b| !in_tree[b]).collect();
-        for &loop_joint in &tree.loop_joints {
-            if let PairKind::Prismatic {
-                travel_is_coordinate: true,
-                ..
-            } = lowered.pairs[loop_joint].kind
-            {
-                tree.slide_pairs.push(loop_joint);
-            }
-        }
+        let counts_travel = |b: &&usize| lowered.pairs[**b].kind.counts_travel();
+        let counted = tree.loop_joints.iter().filter(counts_travel);
+        tree.slide_pairs.extend(counted);
         Ok(tree)
     }
 
@@ -244,10 +238,7 @@ fn priorities(lowered: &Lowered) -> Vec<u8> {
     pairs.sort_unstable();
     let priority = |pair: &crate::structure::lower::KinematicPair| match pair.kind {
         PairKind::Revolute if pairs.binary_search(&sorted(pair.bodies)).is_ok() => 0,
-        PairKind::Prismatic {
-            travel_is_coordinate: true,
-            ..
-        } => 0,
+        PairKind::Prismatic { .. } if pair.kind.counts_travel() => 0,
         PairKind::Revolute | PairKind::Rigid(_) => 1,
         PairKind::Prismatic { .. } => 2,
     };
@@ -263,16 +254,20 @@ fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
 /// has the structure of the same one drawn near it.
 fn vector_between(frames: &Frames, body: usize, from: Vec2, to: Vec2) -> FrameVector {
     let orientation = frames.orientations[body];
-    let difference = to - from;
-    let rounding = 4.0 * f64::EPSILON * (from.norm() + to.norm());
-    let local = if difference.norm() <= rounding {
-        Vec2::ZERO
-    } else {
-        difference.rotate(orientation.offset)
-    };
     FrameVector {
         frame: orientation.frame,
-        local,
+        local: rounded_sum(to, -from).rotate(orientation.offset),
+    }
+}
+
+/// A sum; nothing where it is no more than the rounding of its parts.
+fn rounded_sum(a: Vec2, b: Vec2) -> Vec2 {
+    let sum = a + b;
+    let rounding = 4.0 * f64::EPSILON * (a.norm() + b.norm());
+    if sum.norm() <= rounding {
+        Vec2::ZERO
+    } else {
+        sum
     }
 }
 
@@ -280,17 +275,8 @@ fn vector_between(frames: &Frames, body: usize, from: Vec2, to: Vec2) -> FrameVe
 fn add_vector(vectors: &mut Vec<FrameVector>, vector: FrameVector, sign: f64) {
     let local = vector.local * sign;
     if let Some(same) = vectors.iter_mut().find(|a| a.frame == vector.frame) {
-        let sum = same.local + local;
-        let rounding = 4.0 * f64::EPSILON * (same.local.norm() + local.norm());
-        same.local = if sum.norm() <= rounding {
-            Vec2::ZERO
-        } else {
-            sum
-        };
+        same.local = rounded_sum(same.local, local);
     } else {
-        vectors.push(FrameVector {
-            frame: vector.frame,
-            local,
-        });
+        vectors.push(FrameVector { local, ..vector });
     }
 }

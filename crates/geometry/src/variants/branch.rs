@@ -10,7 +10,6 @@ use crate::plan::range::Range;
 use crate::plan::{AssemblyConfiguration, AssurGroup, GroupKind, Plan, Pose};
 use crate::plane::Vec2;
 use crate::structure::groups::Unknown;
-use crate::structure::lower::PairKind;
 use dwell_numerics::Scalar;
 
 /// By group, the frames whose approximate angle selects the assembly mode, each with that direction.
@@ -30,11 +29,8 @@ impl Plan {
             && self.frames.redundant_pairs.is_empty()
             && !self.revolution_counted.contains(&true)
             && !self.groups.iter().any(|g| g.pruned)
-            && !self.lowered.pairs.iter().any(|pair| {
-                // Of two modes the one of positive length is taken before the nearer one.
-                let is_length = |kind| matches!(kind, PairKind::Prismatic { travel_is_length, .. } if travel_is_length);
-                is_length(pair.kind)
-            })
+            // Of two modes the one of positive length is taken before the nearer one.
+            && !self.lowered.pairs.iter().any(|pair| pair.kind.is_length())
     }
 
     /// The directions that select the assembly mode of each group; none where travels do.
@@ -109,7 +105,7 @@ impl Plan {
         pose: &Pose<T>,
         motion: &Motion<T>,
     ) -> [T; 2] {
-        let rate = |frame: usize| motion.angular_velocity[frame];
+        let rate = |frame: usize| motion.velocity.angular[frame];
         match &self.groups[group].kind {
             GroupKind::RrrDyad(dyad) => {
                 // w₁ × w₂, whose vectors turn with their frames.

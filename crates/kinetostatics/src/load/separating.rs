@@ -57,10 +57,8 @@ impl PressureAngle {
 
     /// The tooth force on which the separating force depends.
     pub(crate) fn tooth_force(&self) -> Reaction {
-        Reaction {
-            joint: self.joint,
-            component: Component::Tooth,
-        }
+        let (joint, component) = (self.joint, Component::Tooth);
+        Reaction { joint, component }
     }
 
     /// Why it does not fit a load of this kind on its joint.

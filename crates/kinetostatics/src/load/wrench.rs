@@ -2,7 +2,7 @@
 
 use super::{CompiledLoads, Guide, LoadKind, LoadState, Mesh};
 use crate::mass::Mass;
-use dwell_geometry::body_states::BodyStates;
+use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{ActuatorId, BodyId, Joint, JointId, JointKind, Mechanism, Plan, Vec2};
 use dwell_numerics::{Scalar, map_array};
 
@@ -186,7 +186,9 @@ impl CompiledLoads {
             LoadKind::SlideForce(ref guide) | LoadKind::SlideDamper(ref guide) => {
                 let &Guide { bodies, points, .. } = guide;
                 let f = match kind {
-                    LoadKind::SlideDamper(_) => -(f * states.coordinate(guide.travel())[1]),
+                    LoadKind::SlideDamper(_) => {
+                        -(f * states.coordinate(CoordinateFunction::Travel(*guide))[1])
+                    }
                     _ => f,
                 };
                 let force = guide.axis.cast().rotate(states.body(bodies[0]).rotation) * f;

@@ -7,9 +7,8 @@ use crate::error::{LoadError, PositionResult, Result};
 use crate::friction::{self, DependentLoad, FrictionState};
 use crate::load::{AppliedWrench, ForceSource, Friction, Load, LoadKind, Magnitude, Signal};
 use crate::pass::{AtRest, GivenMotion, InverseDynamics, UnitAcceleration};
-use crate::reduced::{Coefficients, ReducibleModel};
+use dwell_geometry::Coordinate;
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_geometry::{Coordinate, Range};
 use dwell_laws::HeldPieces;
 use dwell_numerics::Scalar;
 
@@ -17,33 +16,6 @@ impl MachineModel for Model {
     type Coordinate = Coordinate;
     type CoordinateFunction = CoordinateFunction;
     type LoadKind = LoadKind;
-    type Workspace<T: Scalar> = Workspace<T>;
-
-    fn pass_workspace<T: Scalar>(&self) -> Workspace<T> {
-        self.workspace()
-    }
-
-    fn reduced_inertia<T: Scalar>(
-        &self,
-        q: T,
-        workspace: &mut Workspace<T>,
-    ) -> PositionResult<[T; 2]> {
-        let mut out = Coefficients::default();
-        self.reduce_at(q, workspace, &mut out)?;
-        Ok([out.m, out.half_dm])
-    }
-
-    fn actuators(&self) -> usize {
-        self.plan().actuators()
-    }
-
-    fn range(&self) -> Range {
-        self.plan().range()
-    }
-
-    fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T> {
-        self.result_buffer()
-    }
 
     fn is_angle(&self, actuator: usize) -> bool {
         self.plan().is_angle(actuator)
@@ -82,11 +54,12 @@ impl MachineModel for Model {
     }
 
     fn compiled_signals(&self, load: usize) -> &[Signal<CoordinateFunction>] {
-        self.compiled_signals(load)
+        let signals = self.loads.compiled_signals.get(load);
+        signals.map_or(&[], Vec::as_slice)
     }
 
     fn is_conservative(&self, load: usize) -> bool {
-        self.is_conservative(load)
+        self.loads().get(load).is_some_and(Load::is_conservative)
     }
 
     fn work_lever(&self, kind: &LoadKind) -> f64 {
@@ -106,11 +79,11 @@ impl MachineModel for Model {
     }
 
     fn frictions(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
-        self.frictions()
+        self.dependent_loads.iter().map(|dependent| dependent.load)
     }
 
     fn sticking_friction(&self, index: usize) -> Option<(Friction, CoordinateFunction)> {
-        self.sticking_friction(index)
+        self.dependent_loads.get(index)?.sticking()
     }
 
     #[inline]
@@ -151,10 +124,9 @@ impl MachineModel for Model {
     }
 
     #[inline]
-    fn update_accelerations<T: Scalar>(&self, q_ddot: &[T], workspace: &mut Workspace<T>) {
-        let Workspace { pose, motion, .. } = &mut *workspace;
+    fn set_accelerations<T: Scalar>(&self, q_ddot: &[T], workspace: &mut Workspace<T>) {
+        let Workspace { pose, motion, .. } = workspace;
         self.plan().accelerations(pose, q_ddot, motion);
-        self.update_bodies(workspace);
     }
 
     #[inline]
@@ -202,7 +174,7 @@ impl MachineModel for Model {
     }
 
     fn held_pieces<T: Scalar>(workspace: &mut Workspace<T>, load: usize) -> &mut HeldPieces {
-        workspace.held_pieces(load)
+        workspace.loads.signal_workspace.held_pieces(load)
     }
 
     #[inline]
@@ -212,9 +184,8 @@ impl MachineModel for Model {
     }
 
     #[inline]
-    fn loaded_dynamics<T: Scalar>(
+    fn loaded_balance<T: Scalar>(
         &self,
-        q_ddot: &[T],
         workspace: &mut Workspace<T>,
         result: &mut InverseDynamics<T>,
     ) {
@@ -226,7 +197,6 @@ impl MachineModel for Model {
             loads,
             ..
         } = workspace;
-        model.plan.accelerations(pose, q_ddot, motion);
         pass.evaluate_loaded(model, pose, GivenMotion(motion), loads);
         result.read_from(model, pose, pass);
     }
@@ -295,6 +265,10 @@ impl MachineModel for Model {
         &mut workspace.friction_workspace.known
     }
 
+    fn friction_responses<T: Scalar>(workspace: &mut Workspace<T>) -> &mut Vec<InverseDynamics<T>> {
+        &mut workspace.friction_responses
+    }
+
     fn solve_friction<T: Scalar>(
         &self,
         frictionless: &[T],
@@ -310,28 +284,5 @@ impl MachineModel for Model {
             workspace.loads.magnitude[dependent.load] = *force;
         }
         self.update_wrenches(workspace)
-    }
-
-    fn solve_prescribed_friction<T: Scalar>(
-        &self,
-        q_ddot: &[T],
-        workspace: &mut Workspace<T>,
-        result: &mut InverseDynamics<T>,
-    ) -> Result<()> {
-        if self.dependent_loads.is_empty() {
-            return Ok(());
-        }
-        let mut responses = std::mem::take(&mut workspace.friction_responses);
-        let mut respond = || -> Result<()> {
-            for (load, response) in self.frictions().zip(&mut responses) {
-                self.load_response(load, workspace, response)?;
-            }
-            self.solve_friction(&result.reactions, &responses, workspace)
-        };
-        let solved = respond();
-        workspace.friction_responses = responses;
-        solved?;
-        self.loaded_dynamics(q_ddot, workspace, result);
-        Ok(())
     }
 }

@@ -93,7 +93,7 @@ impl<'a, T: Scalar, M: MachineModel> KinematicState<'a, T, M> {
         self.model.counts_revolutions(coordinate, self.workspace)
     }
 
-    /// The loads that depend on reactions, as [`Model::frictions`].
+    /// The loads that depend on reactions, as [`MachineModel::frictions`].
     pub fn frictions(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
         self.model.frictions()
     }

@@ -3,9 +3,8 @@
 use super::stages::EvaluatedState;
 use super::{Model, Workspace};
 use crate::error::{LoadError, Result};
-use crate::load::{CompiledLoads, CompiledSignal, Friction, Load};
+use crate::load::{CompiledLoads, Load};
 use crate::pass::InverseDynamics;
-use dwell_geometry::body_states::CoordinateFunction;
 use dwell_numerics::Scalar;
 
 impl Model {
@@ -41,12 +40,6 @@ impl Model {
         let what = "its tooth force is statically indeterminate (redundant constraints share the load), so its separating force has no value";
         let found = self.loads().iter().position(is_indeterminate);
         found.map_or(Ok(()), |load| Err(LoadError { load, what }))
-    }
-
-    /// The compiled signals of a load's magnitude, in the order of its [signals](crate::Magnitude::signals).
-    pub fn compiled_signals(&self, load: usize) -> &[CompiledSignal] {
-        let signals = self.loads.compiled_signals.get(load);
-        signals.map_or(&[], Vec::as_slice)
     }
 
     /// The loads, in their order.
@@ -86,22 +79,5 @@ impl Model {
         result: &'a mut InverseDynamics<f64>,
     ) -> Result<EvaluatedState<'a>> {
         self.kinetostatics(t, q, &self.rest, &self.rest, workspace, result)
-    }
-
-    /// The loads that depend on reactions (frictions, and separating forces where a reaction is computed), by their
-    /// indices in [`Model::loads`].
-    pub fn frictions(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
-        self.dependent_loads.iter().map(|dependent| dependent.load)
-    }
-
-    /// One of these loads that holds its surfaces at rest, as a friction without regularisation does: its numbers, and the
-    /// coordinate whose speed is that of the surfaces.
-    pub fn sticking_friction(&self, index: usize) -> Option<(Friction, CoordinateFunction)> {
-        self.dependent_loads.get(index)?.sticking()
-    }
-
-    /// Whether a load has a potential energy.
-    pub fn is_conservative(&self, load: usize) -> bool {
-        self.loads().get(load).is_some_and(Load::is_conservative)
     }
 }

@@ -95,7 +95,8 @@ impl<'a, T: Scalar, M: MachineModel> LoadedState<'a, T, M> {
     ) -> Result<ForceState<'a, T, M>> {
         let KinematicState { model, workspace } = self.0;
         model.update_wrenches(workspace)?;
-        model.loaded_dynamics(q_ddot, workspace, result);
+        model.set_accelerations(q_ddot, workspace);
+        model.loaded_balance(workspace, result);
         Ok(StateWithLoads(KinematicState { model, workspace }))
     }
 
@@ -112,7 +113,7 @@ impl<'a, T: Scalar, M: MachineModel> LoadedState<'a, T, M> {
         let state = self.inverse_dynamics(q_ddot, result)?.0;
         let KinematicState { model, workspace } = state;
         model.update_bodies(workspace);
-        model.solve_prescribed_friction(q_ddot, workspace, result)?;
+        model.solve_prescribed_friction(workspace, result)?;
         let state = KinematicState { model, workspace };
         Ok(EvaluatedState { state, result })
     }
@@ -151,7 +152,7 @@ impl<T: Scalar, M: MachineModel> ForceState<'_, T, M> {
         self.0.model.update_bodies(self.0.workspace);
     }
 
-    /// What is known of the loads that depend on reactions, in the order of [`Model::frictions`](crate::Model::frictions),
+    /// What is known of the loads that depend on reactions, in the order of [`MachineModel::frictions`],
     /// until the next state of motion.
     pub fn set_friction_states(&mut self, states: impl Iterator<Item = FrictionState<T>>) {
         for (known, state) in M::friction_states(self.0.workspace).iter_mut().zip(states) {
@@ -159,7 +160,7 @@ impl<T: Scalar, M: MachineModel> ForceState<'_, T, M> {
         }
     }
 
-    /// Solves for the [loads that depend on reactions](crate::Model::frictions): `frictionless` are the reactions
+    /// Solves for the [loads that depend on reactions](MachineModel::frictions): `frictionless` are the reactions
     /// without them, and `responses[j]` what a unit of load j adds to each (its
     /// [response](KinematicState::unit_load_response), with that of the free coordinates' accelerations). They
     /// become the magnitudes of their loads, and the loads' wrenches are updated.

@@ -6,45 +6,20 @@ use crate::error::{LoadError, PositionResult, Result};
 use crate::friction::FrictionState;
 use crate::load::{Friction, Load, Magnitude, Signal};
 use crate::pass::InverseDynamics;
-use dwell_geometry::Range;
+use crate::reducible_model::ReducibleModel;
 use dwell_laws::HeldPieces;
 use dwell_numerics::Scalar;
 use std::fmt::Debug;
 
 /// A mechanism with masses and loads that can be evaluated at a state of motion. The methods with a workspace are the steps
 /// of the [stages](super::stages), which call them in the right order: kinematics, magnitudes of loads, forces.
-pub trait MachineModel: Debug + Clone + PartialEq + Send + Sync + 'static {
+pub trait MachineModel: ReducibleModel + Debug + Clone + PartialEq + Send + 'static {
     /// How a coordinate of the mechanism is described.
     type Coordinate: Debug + Copy + PartialEq + Send + Sync + 'static;
     /// The same of a compiled mechanism.
     type CoordinateFunction: Debug + Copy + PartialEq + Send + Sync + 'static;
     /// The shape of a load.
     type LoadKind: Debug + Copy + PartialEq + Send + Sync + 'static;
-
-    /// Working memory of one thread in a kind of number.
-    type Workspace<T: Scalar>: Debug + Clone + Send;
-
-    /// Such memory.
-    fn pass_workspace<T: Scalar>(&self) -> Self::Workspace<T>;
-
-    /// m and ½m′ of the only coordinate at `q` (rad or m), by the two unit runs, of a model without reactions.
-    ///
-    /// # Errors
-    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
-    fn reduced_inertia<T: Scalar>(
-        &self,
-        q: T,
-        workspace: &mut Self::Workspace<T>,
-    ) -> PositionResult<[T; 2]>;
-
-    /// Number of actuators.
-    fn actuators(&self) -> usize;
-
-    /// The range of the coordinate of the only actuator.
-    fn range(&self) -> Range;
-
-    /// A buffer for the results of this model.
-    fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T>;
 
     /// Whether an actuator drives an angle; otherwise it drives a length.
     fn is_angle(&self, actuator: usize) -> bool;
@@ -123,11 +98,18 @@ pub trait MachineModel: Debug + Clone + PartialEq + Send + Sync + 'static {
         workspace: &Self::Workspace<T>,
     ) -> Option<bool>;
 
-    /// The accelerations of the bodies by those of the coordinates.
-    fn update_accelerations<T: Scalar>(&self, q_ddot: &[T], workspace: &mut Self::Workspace<T>);
+    /// The accelerations of the motion by those of the coordinates.
+    fn set_accelerations<T: Scalar>(&self, q_ddot: &[T], workspace: &mut Self::Workspace<T>);
 
-    /// The accelerations of the bodies by those of the last inverse dynamics.
+    /// The accelerations of the bodies by those of the motion, which are those of the last inverse dynamics.
     fn update_bodies<T: Scalar>(&self, workspace: &mut Self::Workspace<T>);
+
+    /// The accelerations of the bodies by those of the coordinates.
+    #[inline]
+    fn update_accelerations<T: Scalar>(&self, q_ddot: &[T], workspace: &mut Self::Workspace<T>) {
+        self.set_accelerations(q_ddot, workspace);
+        self.update_bodies(workspace);
+    }
 
     /// The magnitudes of the loads at time `t` (s), those of frictions and external ones zero.
     ///
@@ -165,10 +147,9 @@ pub trait MachineModel: Debug + Clone + PartialEq + Send + Sync + 'static {
     /// [`NoDirection`](crate::KinetostaticsError::NoDirection).
     fn update_wrenches<T: Scalar>(&self, workspace: &mut Self::Workspace<T>) -> Result<()>;
 
-    /// The actuators' actions and the reactions of inertia and of the loads at these accelerations.
-    fn loaded_dynamics<T: Scalar>(
+    /// The actuators' actions and the reactions of inertia and of the loads at the accelerations of the motion.
+    fn loaded_balance<T: Scalar>(
         &self,
-        q_ddot: &[T],
         workspace: &mut Self::Workspace<T>,
         result: &mut InverseDynamics<T>,
     );
@@ -201,15 +182,16 @@ pub trait MachineModel: Debug + Clone + PartialEq + Send + Sync + 'static {
     /// The potential energy of a load, J; none if it is not conservative.
     fn potential_energy(&self, load: usize, workspace: &Self::Workspace<f64>) -> Option<f64>;
 
-    /// Of a load that depends on reactions: the force that its factor multiplies, N·m or N. Of a model without friction zero.
-    fn contact_force<T: Scalar>(&self, _index: usize, _reactions: &[T]) -> T {
-        T::from_f64(0.0)
-    }
+    /// Of a load that depends on reactions: the force that its factor multiplies, N·m or N.
+    fn contact_force<T: Scalar>(&self, index: usize, reactions: &[T]) -> T;
 
-    /// What is known of the loads that depend on reactions. A model without friction has none.
-    fn friction_states<T: Scalar>(_workspace: &mut Self::Workspace<T>) -> &mut [FrictionState<T>] {
-        &mut []
-    }
+    /// What is known of the loads that depend on reactions.
+    fn friction_states<T: Scalar>(workspace: &mut Self::Workspace<T>) -> &mut [FrictionState<T>];
+
+    /// Memory for the responses to a unit of each of them.
+    fn friction_responses<T: Scalar>(
+        workspace: &mut Self::Workspace<T>,
+    ) -> &mut Vec<InverseDynamics<T>>;
 
     /// Solves for the loads that depend on reactions, as [`ForceState::solve_friction`](super::ForceState::solve_friction) says.
     ///
@@ -217,12 +199,10 @@ pub trait MachineModel: Debug + Clone + PartialEq + Send + Sync + 'static {
     /// [`SelfLocking`](crate::KinetostaticsError::SelfLocking).
     fn solve_friction<T: Scalar>(
         &self,
-        _frictionless: &[T],
-        _responses: &[InverseDynamics<T>],
-        _workspace: &mut Self::Workspace<T>,
-    ) -> Result<()> {
-        Ok(())
-    }
+        frictionless: &[T],
+        responses: &[InverseDynamics<T>],
+        workspace: &mut Self::Workspace<T>,
+    ) -> Result<()>;
 
     /// Where loads depend on reactions, solves for them in a prescribed motion, whose reactions without them are in `result`.
     ///
@@ -230,10 +210,23 @@ pub trait MachineModel: Debug + Clone + PartialEq + Send + Sync + 'static {
     /// As [`MachineModel::solve_friction`].
     fn solve_prescribed_friction<T: Scalar>(
         &self,
-        _q_ddot: &[T],
-        _workspace: &mut Self::Workspace<T>,
-        _result: &mut InverseDynamics<T>,
+        workspace: &mut Self::Workspace<T>,
+        result: &mut InverseDynamics<T>,
     ) -> Result<()> {
+        if self.frictions().len() == 0 {
+            return Ok(());
+        }
+        let mut responses = std::mem::take(Self::friction_responses(workspace));
+        let mut respond = || -> Result<()> {
+            for (load, response) in self.frictions().zip(&mut responses) {
+                self.load_response(load, workspace, response)?;
+            }
+            self.solve_friction(&result.reactions, &responses, workspace)
+        };
+        let solved = respond();
+        *Self::friction_responses(workspace) = responses;
+        solved?;
+        self.loaded_balance(workspace, result);
         Ok(())
     }
 }

@@ -6,7 +6,6 @@ use crate::load::LoadState;
 use crate::pass::{InverseDynamics, RecursivePass};
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{Motion, Plan, Pose};
-use dwell_laws::HeldPieces;
 use dwell_numerics::Scalar;
 
 /// Working memory for evaluations of a model in one thread. What it holds is read through the [stages](super::stages)
@@ -57,12 +56,6 @@ impl Model {
 }
 
 impl<T: Scalar> Workspace<T> {
-    /// The pieces on which the magnitude of a load is held, wherever its signals are, until others are set; none at
-    /// first.
-    pub fn held_pieces(&mut self, load: usize) -> &mut HeldPieces {
-        self.loads.signal_workspace.held_pieces(load)
-    }
-
     /// The virtual motion at the pose, at unit velocity of these coordinates.
     #[inline]
     pub(super) fn set_unit_velocities(&mut self, plan: &Plan, coordinates: &[usize]) {

@@ -35,7 +35,7 @@ pub(crate) struct AtRest;
 impl<T: Scalar> AccelerationInput<T, 1> for UnitAcceleration<'_, T> {
     #[inline(always)]
     fn angular_acceleration(self, frame: usize) -> [T; 1] {
-        [self.0.angular_velocity[frame]]
+        [self.0.velocity.angular[frame]]
     }
 
     #[inline(always)]
@@ -45,12 +45,12 @@ impl<T: Scalar> AccelerationInput<T, 1> for UnitAcceleration<'_, T> {
 
     #[inline(always)]
     fn vector_acceleration(self, frame: usize, vector: Vec2<T>) -> [Vec2<T>; 1] {
-        [vector.perp() * self.0.angular_velocity[frame]]
+        [vector.perp() * self.0.velocity.angular[frame]]
     }
 
     #[inline(always)]
     fn slide_acceleration(self, slide: usize, _: usize, along: Vec2<T>) -> [Vec2<T>; 1] {
-        [along * self.0.slide_velocity[slide]]
+        [along * self.0.velocity.slide[slide]]
     }
 }
 
@@ -79,27 +79,27 @@ impl<T: Scalar> AccelerationInput<T, 1> for AtRest {
 impl<T: Scalar> AccelerationInput<T, 1> for GivenMotion<'_, T> {
     #[inline(always)]
     fn angular_acceleration(self, frame: usize) -> [T; 1] {
-        [self.0.angular_acceleration[frame]]
+        [self.0.acceleration.angular[frame]]
     }
 
     #[inline(always)]
     fn squared_angular_velocity(self, frame: usize) -> [T; 1] {
-        let angular_velocity = self.0.angular_velocity[frame];
+        let angular_velocity = self.0.velocity.angular[frame];
         [angular_velocity * angular_velocity]
     }
 
     #[inline(always)]
     fn vector_acceleration(self, frame: usize, vector: Vec2<T>) -> [Vec2<T>; 1] {
-        let angular_velocity = self.0.angular_velocity[frame];
-        [vector.perp() * self.0.angular_acceleration[frame]
+        let angular_velocity = self.0.velocity.angular[frame];
+        [vector.perp() * self.0.acceleration.angular[frame]
             - vector * (angular_velocity * angular_velocity)]
     }
 
     #[inline(always)]
     fn slide_acceleration(self, slide: usize, frame: usize, along: Vec2<T>) -> [Vec2<T>; 1] {
         let across =
-            T::from_f64(2.0) * self.0.angular_velocity[frame] * self.0.slide_velocity[slide];
-        [along * self.0.slide_acceleration[slide] + along.perp() * across]
+            T::from_f64(2.0) * self.0.velocity.angular[frame] * self.0.velocity.slide[slide];
+        [along * self.0.acceleration.slide[slide] + along.perp() * across]
     }
 }
 
@@ -107,7 +107,7 @@ impl<T: Scalar> AccelerationInput<T, 2> for UnitMotions<'_, T> {
     #[inline(always)]
     fn angular_acceleration(self, frame: usize) -> [T; 2] {
         let [first] = GivenMotion(self.0).angular_acceleration(frame);
-        [first, self.0.angular_velocity[frame]]
+        [first, self.0.velocity.angular[frame]]
     }
 
     #[inline(always)]
@@ -119,12 +119,12 @@ impl<T: Scalar> AccelerationInput<T, 2> for UnitMotions<'_, T> {
     #[inline(always)]
     fn vector_acceleration(self, frame: usize, vector: Vec2<T>) -> [Vec2<T>; 2] {
         let [first] = GivenMotion(self.0).vector_acceleration(frame, vector);
-        [first, vector.perp() * self.0.angular_velocity[frame]]
+        [first, vector.perp() * self.0.velocity.angular[frame]]
     }
 
     #[inline(always)]
     fn slide_acceleration(self, slide: usize, frame: usize, along: Vec2<T>) -> [Vec2<T>; 2] {
         let [first] = GivenMotion(self.0).slide_acceleration(slide, frame, along);
-        [first, along * self.0.slide_velocity[slide]]
+        [first, along * self.0.velocity.slide[slide]]
     }
 }

@@ -1,5 +1,6 @@
 //! The inertia of the bodies, in the order of the spanning tree.
 
+use super::replaced_vectors::vector_to;
 use crate::mass::Mass;
 use dwell_geometry::plan::MovingBody;
 use dwell_geometry::{Plan, Vec2};
@@ -56,10 +57,8 @@ pub(super) fn inertial_bodies(
     let inertial_body = |(i, body): (usize, &MovingBody)| {
         let given = masses.get(body.body).copied().unwrap_or_default();
         let (mass, inertia) = (given.mass, given.inertia);
-        let vector = plan
-            .tree()
-            .vector_to(plan.frames(), body.body, given.center);
-        let offset = Some(vector.local).filter(|&local| local != Vec2::ZERO && mass > 0.0);
+        let to_center = vector_to(plan, body.body, given.center);
+        let offset = Some(to_center).filter(|&local| local != Vec2::ZERO && mass > 0.0);
         (mass > 0.0 || inertia > 0.0).then(|| InertialBody {
             moving_body: i,
             body: body.body,

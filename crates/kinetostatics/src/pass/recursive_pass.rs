@@ -399,6 +399,14 @@ pub struct InverseDynamics<T> {
 }
 
 impl<T: Scalar> InverseDynamics<T> {
+    /// Room for so many actuators and reactions.
+    pub(crate) fn buffer(actuators: usize, reactions: usize) -> Self {
+        Self {
+            tau: vec![T::from_f64(0.0); actuators],
+            reactions: vec![T::from_f64(0.0); reactions],
+        }
+    }
+
     /// Adds a multiple of other results of the same model.
     pub fn add_scaled(&mut self, other: &Self, factor: T) {
         for (sum, more) in self.reactions.iter_mut().zip(&other.reactions) {

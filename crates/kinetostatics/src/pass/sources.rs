@@ -3,7 +3,7 @@
 
 use super::{PassModel, RecursivePass};
 use crate::pass::replaced_vectors::{replace_vector, vector_to};
-use dwell_geometry::frames::{AngularConstraintSource, RotationSource};
+use dwell_geometry::frames::AngularConstraintSource;
 use dwell_geometry::lower::PairKind;
 use dwell_geometry::plan::PairRole;
 use dwell_geometry::{Component, JointKind, Mechanism, Plan, Pose, Reaction, Vec2, vec2};
@@ -227,18 +227,10 @@ fn angular_constraint_moment(plan: &Plan, pair: usize) -> ReactionSource {
 
 /// By actuator, the frames it turns, directly or through others.
 fn find_actuated_frames(plan: &Plan) -> Vec<Vec<(usize, f64)>> {
-    let frames = &plan.frames().frames;
     let mut actuated = vec![Vec::new(); plan.actuators()];
-    for f in 0..frames.len() {
-        let mut at = f;
-        while let RotationSource::Actuated {
-            parent,
-            actuator,
-            sign,
-        } = frames[at].rotation_source
-        {
+    for f in 0..plan.frames().frames.len() {
+        for (actuator, sign) in plan.frames().turned_by(f) {
             actuated[actuator].push((f, sign));
-            at = parent;
         }
     }
     actuated

@@ -58,25 +58,24 @@ impl Batch {
 struct BatchSlice<'a> {
     first: usize,
     q: &'a [f64],
-    m: &'a mut [f64],
-    half_dm: &'a mut [f64],
-    a: &'a mut [f64],
-    b: &'a mut [f64],
+    /// m, ½m′, a and b.
+    columns: [&'a mut [f64]; 4],
+}
+
+/// How many numbers of each column a coordinate has.
+fn column_widths(reactions: usize) -> [usize; 4] {
+    [1, 1, reactions, reactions]
 }
 
 impl<'a> BatchSlice<'a> {
     /// Takes off what follows the first `at` coordinates.
     fn split_off(&mut self, at: usize, reactions: usize) -> Self {
-        let after = |values: &mut &'a mut [f64], at| -> &'a mut [f64] {
-            values.split_off_mut(at..).unwrap_or_default()
-        };
+        let widths = column_widths(reactions);
+        let after = |k: usize| self.columns[k].split_off_mut(at * widths[k]..);
         Self {
             first: self.first + at,
             q: self.q.split_off(at..).unwrap_or_default(),
-            m: after(&mut self.m, at),
-            half_dm: after(&mut self.half_dm, at),
-            a: after(&mut self.a, at * reactions),
-            b: after(&mut self.b, at * reactions),
+            columns: [0, 1, 2, 3].map(after).map(Option::unwrap_or_default),
         }
     }
 }
@@ -155,25 +154,15 @@ impl LaneWork for Block<'_> {
 
 impl Model {
     fn reduce_batch(&self, q: &[f64], out: &mut Batch) {
-        let each = self.reactions().len();
-        let columns = [
-            (&mut out.m, 1),
-            (&mut out.half_dm, 1),
-            (&mut out.a, each),
-            (&mut out.b, each),
-        ];
-        for (values, width) in columns {
+        let mut columns = [&mut out.m, &mut out.half_dm, &mut out.a, &mut out.b];
+        let widths = column_widths(self.reactions().len());
+        for (values, width) in columns.iter_mut().zip(widths) {
             values.clear();
             values.resize(width * q.len(), f64::NAN);
         }
-        let slice = BatchSlice {
-            first: 0,
-            q,
-            m: &mut out.m,
-            half_dm: &mut out.half_dm,
-            a: &mut out.a,
-            b: &mut out.b,
-        };
+        let columns = columns.map(Vec::as_mut_slice);
+        let first = 0;
+        let slice = BatchSlice { first, q, columns };
         let blocks = match rayon::current_num_threads() {
             1 => 1,
             threads => BLOCKS_PER_THREAD * threads,
@@ -242,18 +231,17 @@ impl Model {
         let last = numbers[count - 1];
         numbers[count..].fill(last);
         let (model_workspace, out) = workspace;
-        if self
-            .reduce(S::load(&numbers), model_workspace, out)
-            .is_err()
-        {
+        let reduced = self.reduce(S::load(&numbers), model_workspace, out);
+        if reduced.is_err() {
             return false;
         }
-        for (value, to) in [(out.m, &mut *slice.m), (out.half_dm, &mut *slice.half_dm)] {
+        let [m, half_dm, a, b] = &mut slice.columns;
+        for (value, to) in [(out.m, m), (out.half_dm, half_dm)] {
             value.store(&mut numbers);
             to[indices.clone()].copy_from_slice(&numbers[..count]);
         }
         let reactions = out.a.len();
-        for (values, to) in [(&out.a, &mut *slice.a), (&out.b, &mut *slice.b)] {
+        for (values, to) in [(&out.a, a), (&out.b, b)] {
             let to = &mut to[indices.start * reactions..indices.end * reactions];
             for (k, value) in values.iter().enumerate() {
                 value.store(&mut numbers);
@@ -276,12 +264,13 @@ impl Model {
     ) {
         let (model_workspace, out) = workspace;
         let reactions = out.a.len();
+        let [m, half_dm, a, b] = &mut slice.columns;
         for i in indices {
             match self.reduce(slice.q[i], model_workspace, out) {
                 Ok(()) => {
-                    (slice.m[i], slice.half_dm[i]) = (out.m, out.half_dm);
-                    slice.a[i * reactions..][..reactions].copy_from_slice(&out.a);
-                    slice.b[i * reactions..][..reactions].copy_from_slice(&out.b);
+                    (m[i], half_dm[i]) = (out.m, out.half_dm);
+                    a[i * reactions..][..reactions].copy_from_slice(&out.a);
+                    b[i * reactions..][..reactions].copy_from_slice(&out.b);
                 }
                 Err(error) => errors.push((slice.first + i, error)),
             }

@@ -6,30 +6,29 @@ use crate::load::{AppliedWrench, ForceSource, Mesh, find_couple_points, on_two_b
 use crate::model::Model;
 use crate::model::stages::EvaluatedState;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
-use dwell_geometry::{ActuatorId, BodyId, Joint, JointId, JointKind, Reaction, Vec2, vec2};
+use dwell_geometry::{
+    ActuatorId, BodyId, Coupling, Guide, Joint, JointId, JointKind, Reaction, Vec2, vec2,
+};
 
 /// Converts reactions and actuator forces into forces and couples on the bodies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeBodyForces {
     joints: Vec<JointEntry>,
-    /// By actuator: its coordinate, and the points of its bodies at which its couple acts.
-    actuators: Vec<Option<(CoordinateFunction, [Vec2; 2])>>,
+    /// By actuator: its coordinate.
+    actuators: Vec<Option<ActedCoordinate>>,
     pub(crate) ground: BodyId,
 }
+
+/// A coordinate, with the points of its bodies at which a couple along it acts.
+type ActedCoordinate = (CoordinateFunction, [Vec2; 2]);
 
 /// A joint with the indices of its components in the model's reactions.
 #[derive(Debug, Clone, PartialEq)]
 struct JointEntry {
     joint: Joint,
     reaction_indices: [usize; 3],
-    /// Of a coupling: both coordinates, with the points at which their couples act.
-    coupling: Option<CouplingCoordinates>,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-struct CouplingCoordinates {
-    dependent: (CoordinateFunction, [Vec2; 2]),
-    independent: (CoordinateFunction, [Vec2; 2]),
+    /// Of a coupling: the dependent and the independent coordinate.
+    coupling: Option<[ActedCoordinate; 2]>,
 }
 
 impl FreeBodyForces {
@@ -69,12 +68,9 @@ impl FreeBodyForces {
             } else {
                 None
             };
-            let coupling = law.and_then(|law| {
-                Some(CouplingCoordinates {
-                    dependent: coordinate(law.dependent)?,
-                    independent: coordinate(law.independent)?,
-                })
-            });
+            let both =
+                |law: &Coupling| Some([coordinate(law.dependent)?, coordinate(law.independent)?]);
+            let coupling = law.and_then(both);
             joints.push(JointEntry {
                 joint: joint.clone(),
                 reaction_indices,
@@ -96,15 +92,13 @@ impl FreeBodyForces {
         for (j, entry) in self.joints.iter().enumerate() {
             let source = ForceSource::Joint(JointId(j));
             let value = |i: usize| result.reactions[entry.reaction_indices[i]];
-            if let Some(coupling) = &entry.coupling {
+            if let Some(coupling) = entry.coupling {
                 if value(0) == 0.0 {
                     // In a pruned group the law has not been evaluated.
                     continue;
                 }
-                let slope = state
-                    .model()
-                    .plan()
-                    .coupling_slope(JointId(j), state.pose());
+                let plan = state.model().plan();
+                let slope = plan.coupling_slope(JointId(j), state.pose());
                 let slope = slope.unwrap_or(0.0);
                 coupling_wrenches(coupling, value(0), slope, source, states, wrenches);
             } else {
@@ -124,15 +118,15 @@ impl FreeBodyForces {
 /// The wrenches of a coupling, dependent = law(independent): −λ times the law's slope acts along the independent
 /// coordinate.
 fn coupling_wrenches(
-    coupling: &CouplingCoordinates,
+    [dependent, independent]: [ActedCoordinate; 2],
     lambda: f64,
     slope: f64,
     by: ForceSource,
     states: &BodyStates,
     acts: &mut Vec<AppliedWrench>,
 ) {
-    coordinate_wrenches(coupling.dependent, lambda, by, states, acts);
-    coordinate_wrenches(coupling.independent, -lambda * slope, by, states, acts);
+    coordinate_wrenches(dependent, lambda, by, states, acts);
+    coordinate_wrenches(independent, -lambda * slope, by, states, acts);
 }
 
 /// The wrenches of a joint on its two bodies.
@@ -197,18 +191,18 @@ fn opposite_wrenches(
 /// A generalised force along a coordinate: a couple, a force along an axis at the second body's point, or a force along
 /// the line of two points.
 fn coordinate_wrenches(
-    (coordinate, couple_points): (CoordinateFunction, [Vec2; 2]),
+    (coordinate, couple_points): ActedCoordinate,
     value: f64,
     source: ForceSource,
     states: &BodyStates,
     wrenches: &mut Vec<AppliedWrench>,
 ) {
     let (bodies, points, actions) = match coordinate {
-        CoordinateFunction::Travel {
+        CoordinateFunction::Travel(Guide {
             bodies,
             points,
             axis,
-        } => {
+        }) => {
             let [one, two] = bodies.map(|b| states.body(b));
             let force = axis.rotate(one.rotation) * value;
             let at = two.joint_origin + two.moment_arm(points[1]);
@@ -376,11 +370,11 @@ mod tests {
         let all = [
             CoordinateFunction::Angle(bodies),
             CoordinateFunction::Length { bodies, points },
-            CoordinateFunction::Travel {
+            CoordinateFunction::Travel(Guide {
                 bodies,
                 points,
                 axis,
-            },
+            }),
         ];
         let states = states([-0.7, 2.3]);
         for coordinate in all {
@@ -400,14 +394,11 @@ mod tests {
         let points = [vec2(0.1, -0.2), vec2(0.4, 0.7)];
         let dependent = CoordinateFunction::Length { bodies, points };
         let independent = CoordinateFunction::Angle(bodies);
-        let coupling = CouplingCoordinates {
-            dependent: (dependent, points),
-            independent: (independent, points),
-        };
+        let coupling = [(dependent, points), (independent, points)];
         let states = states([-0.7, 2.3]);
         let mut wrenches = Vec::new();
         let joint = ForceSource::Joint(JointId(0));
-        coupling_wrenches(&coupling, 3.0, 0.8, joint, &states, &mut wrenches);
+        coupling_wrenches(coupling, 3.0, 0.8, joint, &states, &mut wrenches);
         let power: f64 = wrenches.iter().map(|wrench| wrench.power(&states)).sum();
         let rate = states.coordinate(dependent)[1] - 0.8 * states.coordinate(independent)[1];
         assert!((power - 3.0 * rate).abs() < 1e-14);

@@ -25,26 +25,15 @@ pub(super) struct CompiledKind {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Action {
     Gravity(Vec3),
-    Force {
-        body: usize,
-        arm: Vec3,
-        direction: Direction,
-    },
-    Torque {
-        bodies: [usize; 2],
-        direction: Direction,
-    },
+    /// On a body, at an arm from the origin of its evaluation frame.
+    Force(usize, Vec3, Direction),
+    Torque([usize; 2], Direction),
     /// Along a coordinate.
     Along(CoordinateFunction),
 }
 
-/// A force on a body at an arm from the origin of its evaluation frame, with a couple, in the axes of the ground.
-pub(super) struct BodyAction<T> {
-    pub(super) body: usize,
-    pub(super) arm: Vec3<T>,
-    pub(super) force: Vec3<T>,
-    pub(super) couple: Vec3<T>,
-}
+/// On a body, at an arm from the origin of its evaluation frame, a force and a couple, in the axes of the ground.
+pub(super) type BodyAction<T> = (usize, [Vec3<T>; 3]);
 
 impl CompiledKind {
     /// Checks and compiles a shape.
@@ -86,19 +75,13 @@ impl CompiledKind {
             } if point.is_finite() && is_finite(direction) => {
                 let frame = frame(body);
                 let arm = frame.rotation.apply_inverse(point - frame.position);
-                let direction = turned(body, direction);
-                let body = body.0;
-                let action = Action::Force {
-                    body,
-                    arm,
-                    direction,
-                };
+                let action = Action::Force(body.0, arm, turned(body, direction));
                 (action, Resistance::None)
             }
             LoadKind::Torque { bodies, direction } if is_finite(direction) => {
                 let direction = turned(bodies[0], direction);
-                let bodies = bodies.map(|b| b.0);
-                (Action::Torque { bodies, direction }, Resistance::None)
+                let action = Action::Torque(bodies.map(|b| b.0), direction);
+                (action, Resistance::None)
             }
             LoadKind::PointToPointForce { bodies, points } => (
                 along(Coordinate::Distance { bodies, points })?,
@@ -143,14 +126,9 @@ impl CompiledKind {
         match self.resistance {
             Resistance::None | Resistance::Spring(_) => (*self, 1.0),
             Resistance::Damper => {
-                let resistance = Resistance::None;
-                (
-                    Self {
-                        resistance,
-                        ..*self
-                    },
-                    -1.0,
-                )
+                let mut unit = *self;
+                unit.resistance = Resistance::None;
+                (unit, -1.0)
             }
         }
     }
@@ -159,8 +137,8 @@ impl CompiledKind {
     pub(super) fn work_lever(&self, size: f64, mass: f64) -> f64 {
         let length = match self.action {
             Action::Gravity(_) => return size * mass,
-            Action::Force { .. } => size,
-            Action::Torque { .. } | Action::Along(CoordinateFunction::Angle { .. }) => 1.0,
+            Action::Force(..) => size,
+            Action::Torque(..) | Action::Along(CoordinateFunction::Angle { .. }) => 1.0,
             Action::Along(
                 CoordinateFunction::Travel { .. } | CoordinateFunction::Distance { .. },
             ) => size,
@@ -187,19 +165,14 @@ impl CompiledKind {
                 });
                 Some(weights.sum())
             }
-            (
-                Action::Force {
-                    body,
-                    arm,
-                    direction: Direction::Ground(direction),
-                },
-                _,
-            ) => Some(-plan.frame(pose, body).point(arm).dot(direction)),
+            (Action::Force(body, arm, Direction::Ground(direction)), _) => {
+                Some(-plan.frame(pose, body).point(arm).dot(direction))
+            }
             (Action::Along(coordinate), Resistance::Spring(free)) => {
                 let [value, ..] = plan.coordinate(pose, coordinate);
                 Some(0.5 * (value - free) * (value - free))
             }
-            (Action::Force { .. } | Action::Torque { .. } | Action::Along(_), _) => None,
+            (Action::Force(..) | Action::Torque(..) | Action::Along(_), _) => None,
         }
     }
 
@@ -221,25 +194,15 @@ impl CompiledKind {
             Action::Gravity(direction) => {
                 let pull = direction.cast().scaled(f);
                 for (body, mass) in masses.iter().enumerate().filter(|(_, m)| m.mass > 0.0) {
-                    add(BodyAction {
-                        body,
-                        arm: plan.frame(pose, body).rotation.apply(mass.center.cast()),
-                        force: pull.scaled(T::from_f64(mass.mass)),
-                        couple: zero,
-                    });
+                    let arm = plan.frame(pose, body).rotation.apply(mass.center.cast());
+                    add((body, [arm, pull.scaled(T::from_f64(mass.mass)), zero]));
                 }
             }
-            Action::Force {
-                body,
-                arm,
-                direction,
-            } => add(BodyAction {
-                body,
-                arm: plan.frame(pose, body).rotation.apply(arm.cast()),
-                force: turned(body, direction).scaled(f),
-                couple: zero,
-            }),
-            Action::Torque { bodies, direction } => {
+            Action::Force(body, arm, direction) => {
+                let arm = plan.frame(pose, body).rotation.apply(arm.cast());
+                add((body, [arm, turned(body, direction).scaled(f), zero]));
+            }
+            Action::Torque(bodies, direction) => {
                 let couple = turned(bodies[0], direction).scaled(f);
                 couples(bodies, couple, add);
             }
@@ -272,12 +235,9 @@ impl CompiledKind {
                 couples(bodies.map(|b| b.0), couple, add);
                 return Some(());
             }
-            CoordinateFunction::Travel {
-                bodies,
-                points,
-                axis,
-            } => {
-                let force = arm(bodies[0], axis).scaled(resisted());
+            CoordinateFunction::Travel(guide) => {
+                let (bodies, points) = (guide.bodies, guide.points);
+                let force = arm(bodies[0], guide.axis).scaled(resisted());
                 let [d, ..] = plan.separation(pose, bodies, points);
                 // On both bodies at the second body's point.
                 let arms = [arm(bodies[0], points[0]) + d, arm(bodies[1], points[1])];
@@ -289,12 +249,7 @@ impl CompiledKind {
             }
         };
         for (k, force) in [-force, force].into_iter().enumerate() {
-            add(BodyAction {
-                body: bodies[k].0,
-                arm: arms[k],
-                force,
-                couple: Vec3::zero(),
-            });
+            add((bodies[k].0, [arms[k], force, Vec3::zero()]));
         }
         Some(())
     }
@@ -327,11 +282,6 @@ impl CompiledKind {
 #[inline]
 fn couples<T: Scalar>(bodies: [usize; 2], couple: Vec3<T>, mut add: impl FnMut(BodyAction<T>)) {
     for (body, couple) in bodies.into_iter().zip([-couple, couple]) {
-        add(BodyAction {
-            body,
-            arm: Vec3::zero(),
-            force: Vec3::zero(),
-            couple,
-        });
+        add((body, [Vec3::zero(), Vec3::zero(), couple]));
     }
 }

@@ -54,10 +54,7 @@ enum Sliding {
     /// About or along one coordinate.
     Along(CoordinateFunction),
     /// Of a cylindrical joint: the coordinate of the load and the other one, and what makes a speed of the surface of the rate of each.
-    Both {
-        coordinates: [CoordinateFunction; 2],
-        levers: [f64; 2],
-    },
+    Both([CoordinateFunction; 2], [f64; 2]),
 }
 
 impl FrictionLaw {
@@ -105,11 +102,7 @@ impl FrictionLaw {
                     levers.reverse();
                 }
                 let [lever, _] = levers;
-                let sliding = Sliding::Both {
-                    coordinates,
-                    levers,
-                };
-                (sliding, lever, distance)
+                (Sliding::Both(coordinates, levers), lever, distance)
             }
             _ => {
                 return Err(
@@ -177,14 +170,8 @@ impl JointFriction {
         match (self.law.sliding, friction.regularization_speed) {
             (Sliding::Along(coordinate), _) => friction.factor(rate(coordinate)),
             // It is not compiled without a speed.
-            (Sliding::Both { .. }, None) => T::from_f64(f64::NAN),
-            (
-                Sliding::Both {
-                    coordinates,
-                    levers,
-                },
-                Some(slow),
-            ) => {
+            (Sliding::Both(..), None) => T::from_f64(f64::NAN),
+            (Sliding::Both(coordinates, levers), Some(slow)) => {
                 let speed = |k: usize| rate(coordinates[k]) * T::from_f64(levers[k] / slow);
                 let [own, other] = [speed(0), speed(1)];
                 own * tanh_quotient(own * own + other * other) * T::from_f64(friction.coefficient)
@@ -199,7 +186,7 @@ impl JointFriction {
             Sliding::Along(coordinate) if friction.regularization_speed.is_none() => {
                 Some((friction, coordinate))
             }
-            Sliding::Along(_) | Sliding::Both { .. } => None,
+            Sliding::Along(_) | Sliding::Both(..) => None,
         }
     }
 }
@@ -229,15 +216,13 @@ impl Model {
                 continue;
             };
             let at = (self.mechanism(), self.plan());
-            let law = FrictionLaw::compile(friction, one.kind, at)
-                .map_err(|what| LoadError { load, what })?;
+            let law = FrictionLaw::compile(friction, one.kind, at);
+            let law = law.map_err(|what| LoadError { load, what })?;
+            let joint = friction.joint;
             let needed = if law.distance > 0.0 { 4 } else { 2 };
             let mut reactions = [None; 4];
             for (index, component) in reactions.iter_mut().zip(COMPONENTS).take(needed) {
-                let reaction = Reaction {
-                    joint: friction.joint,
-                    component,
-                };
+                let reaction = Reaction { joint, component };
                 let known = all.iter().position(|other| *other == reaction);
                 *index = known.or(Some(all.len()));
                 if known.is_none() {
@@ -283,7 +268,7 @@ impl Model {
 mod tests {
     use super::*;
     use dwell_geometry::space::Vec3;
-    use dwell_geometry::{BodyId, JointId};
+    use dwell_geometry::{BodyId, Guide, JointId};
     use dwell_numerics::Dual;
 
     /// The slopes with which the friction is solved are the derivatives of its contact force.
@@ -300,11 +285,11 @@ mod tests {
             };
             let law = FrictionLaw {
                 friction,
-                sliding: Sliding::Along(CoordinateFunction::Travel {
+                sliding: Sliding::Along(CoordinateFunction::Travel(Guide {
                     bodies: [BodyId(0), BodyId(1)],
                     points: [Vec3::AXES[0]; 2],
                     axis: Vec3::AXES[2],
-                }),
+                })),
                 lever,
                 distance,
             };

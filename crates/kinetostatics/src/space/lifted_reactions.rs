@@ -223,8 +223,8 @@ impl LiftedReactions {
             };
         }
         for (moment, product) in memory.products.iter_mut().zip(&self.products) {
-            let (u, w) = (product.at(pose), motion.angular_velocity[product.frame]);
-            let acceleration = motion.angular_acceleration[product.frame];
+            let (u, w) = (product.at(pose), motion.velocity.angular[product.frame]);
+            let acceleration = motion.acceleration.angular[product.frame];
             *moment = [u * w, u * acceleration + u.perp() * (w * w)];
         }
         let mut last = None;

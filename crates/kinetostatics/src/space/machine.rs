@@ -7,7 +7,7 @@
 //! Column i of M is what the actuators do at unit acceleration of coordinate i from rest; c − Q is what they do without
 //! acceleration, under all loads. All passes share the pose and its factors.
 
-use super::action::CompiledKind;
+use super::action::{BodyAction, CompiledKind};
 use super::compiled_loads::CompiledLoads;
 use super::friction::JointFriction;
 use super::load::{Load, LoadKind};
@@ -18,9 +18,8 @@ use crate::friction::{self, FrictionState};
 use crate::load::{Friction, Magnitude, Signal};
 use crate::model::{EvaluatedState, KinematicState, MachineModel};
 use crate::pass::InverseDynamics;
-use crate::reduced::{Coefficients, ReducibleModel};
-use dwell_geometry::space::{BodyMotion, Coordinate, CoordinateFunction, Wrench};
-use dwell_geometry::{PositionError, Range};
+use dwell_geometry::PositionError;
+use dwell_geometry::space::{Coordinate, CoordinateFunction, Wrench};
 use dwell_laws::HeldPieces;
 use dwell_numerics::Scalar;
 
@@ -56,25 +55,6 @@ impl Model {
         state.apply_loads(t)?.evaluate(q_ddot, result)
     }
 
-    /// The actions and reactions of inertia and of all loads, at the accelerations of the pose.
-    fn balance_loaded<T: Scalar>(
-        &self,
-        workspace: &mut Workspace<T>,
-        result: &mut InverseDynamics<T>,
-    ) {
-        self.require_inertia(workspace);
-        let Workspace {
-            forces,
-            load_wrenches,
-            ..
-        } = &mut *workspace;
-        for ([required], load) in forces.required.iter_mut().zip(load_wrenches) {
-            required.force -= load.force;
-            required.moment -= load.moment;
-        }
-        self.balance(workspace, result);
-    }
-
     /// The wrench of a load on each body, about the origin of its evaluation frame, goes to `add`.
     fn act<T: Scalar>(
         &self,
@@ -88,18 +68,19 @@ impl Model {
         };
         let at = (self.plan(), &workspace.pose);
         let mut act = |kind: &CompiledKind, magnitude: T| {
-            kind.act(magnitude, at, self.inner_masses(), |action| {
+            let add_one = |(body, [arm, force, couple]): BodyAction<T>| {
                 let mut wrench = Wrench::default();
-                wrench.add_at(action.arm, action.force, action.couple);
-                add(action.body, wrench);
-            })
+                wrench.add_at(arm, force, couple);
+                add(body, wrench);
+            };
+            kind.act(magnitude, at, self.inner_masses(), add_one)
         };
         let acted = match self.surface_friction(load, &workspace.surface_directions) {
             None => act(kind, magnitude),
-            Some((surface, direction)) => surface
-                .parts(direction)
-                .into_iter()
-                .try_for_each(|(kind, part)| act(kind, magnitude * part)),
+            Some((surface, direction)) => {
+                let mut parts = surface.parts(direction).into_iter();
+                parts.try_for_each(|(kind, part)| act(kind, magnitude * part))
+            }
         };
         acted.ok_or(KinetostaticsError::NoDirection { load })
     }
@@ -109,33 +90,6 @@ impl MachineModel for Model {
     type Coordinate = Coordinate;
     type CoordinateFunction = CoordinateFunction;
     type LoadKind = LoadKind;
-    type Workspace<T: Scalar> = Workspace<T>;
-
-    fn pass_workspace<T: Scalar>(&self) -> Workspace<T> {
-        self.workspace()
-    }
-
-    fn reduced_inertia<T: Scalar>(
-        &self,
-        q: T,
-        workspace: &mut Workspace<T>,
-    ) -> PositionResult<[T; 2]> {
-        let mut out = Coefficients::default();
-        self.reduce_at(q, workspace, &mut out)?;
-        Ok([out.m, out.half_dm])
-    }
-
-    fn actuators(&self) -> usize {
-        self.plan().actuators()
-    }
-
-    fn range(&self) -> Range {
-        self.plan().range()
-    }
-
-    fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T> {
-        self.result_buffer()
-    }
 
     fn is_angle(&self, actuator: usize) -> bool {
         self.plan().is_angle(actuator)
@@ -240,7 +194,7 @@ impl MachineModel for Model {
     }
 
     #[inline]
-    fn update_accelerations<T: Scalar>(&self, q_ddot: &[T], workspace: &mut Workspace<T>) {
+    fn set_accelerations<T: Scalar>(&self, q_ddot: &[T], workspace: &mut Workspace<T>) {
         self.plan().accelerations(q_ddot, &mut workspace.pose);
     }
 
@@ -313,14 +267,22 @@ impl MachineModel for Model {
     }
 
     #[inline]
-    fn loaded_dynamics<T: Scalar>(
+    fn loaded_balance<T: Scalar>(
         &self,
-        q_ddot: &[T],
         workspace: &mut Workspace<T>,
         result: &mut InverseDynamics<T>,
     ) {
-        self.plan().accelerations(q_ddot, &mut workspace.pose);
-        self.balance_loaded(workspace, result);
+        self.require_inertia(workspace);
+        let Workspace {
+            forces,
+            load_wrenches,
+            ..
+        } = &mut *workspace;
+        for ([required], load) in forces.required.iter_mut().zip(load_wrenches) {
+            required.force -= load.force;
+            required.moment -= load.moment;
+        }
+        self.balance(workspace, result);
     }
 
     #[inline]
@@ -367,16 +329,11 @@ impl MachineModel for Model {
     fn load_power<T: Scalar>(&self, load: usize, workspace: &Workspace<T>) -> T {
         let mut power = T::from_f64(0.0);
         let plan = self.plan();
-        let acted = self.act(
-            load,
-            workspace.magnitudes[load],
-            workspace,
-            |body, wrench| {
-                let state = plan.state(&workspace.pose, body);
-                power +=
-                    wrench.force.dot(state.velocity) + wrench.moment.dot(state.angular_velocity);
-            },
-        );
+        let magnitude = workspace.magnitudes[load];
+        let acted = self.act(load, magnitude, workspace, |body, wrench| {
+            let state = plan.state(&workspace.pose, body);
+            power += wrench.force.dot(state.velocity) + wrench.moment.dot(state.angular_velocity);
+        });
         // Its wrenches were computed before: it has a direction.
         acted.map_or(T::from_f64(f64::NAN), |()| power)
     }
@@ -385,13 +342,8 @@ impl MachineModel for Model {
         let energy = |&b: &usize| {
             let state = self.plan().state(&workspace.pose, b);
             // The momentum is what an acceleration equal to the velocity from rest requires.
-            let from_rest = BodyMotion {
-                acceleration: state.velocity,
-                angular_acceleration: state.angular_velocity,
-                ..BodyMotion::default()
-            };
             let frame = self.plan().frame(&workspace.pose, b);
-            let momentum = self.inner_masses()[b].required(frame, &from_rest);
+            let momentum = self.inner_masses()[b].required(frame, &state.from_rest());
             0.5 * (momentum.force.dot(state.velocity) + momentum.moment.dot(state.angular_velocity))
         };
         self.inertial().iter().map(energy).sum()
@@ -414,6 +366,10 @@ impl MachineModel for Model {
         &mut workspace.friction_workspace.known
     }
 
+    fn friction_responses<T: Scalar>(workspace: &mut Workspace<T>) -> &mut Vec<InverseDynamics<T>> {
+        &mut workspace.friction_responses
+    }
+
     fn solve_friction<T: Scalar>(
         &self,
         frictionless: &[T],
@@ -433,28 +389,5 @@ impl MachineModel for Model {
             magnitudes[friction.load] = *force;
         }
         self.update_wrenches(workspace)
-    }
-
-    fn solve_prescribed_friction<T: Scalar>(
-        &self,
-        _: &[T],
-        workspace: &mut Workspace<T>,
-        result: &mut InverseDynamics<T>,
-    ) -> Result<()> {
-        if self.frictions.is_empty() {
-            return Ok(());
-        }
-        let mut responses = std::mem::take(&mut workspace.friction_responses);
-        let mut respond = || -> Result<()> {
-            for (load, response) in self.frictions().zip(&mut responses) {
-                self.load_response(load, workspace, response)?;
-            }
-            self.solve_friction(&result.reactions, &responses, workspace)
-        };
-        let solved = respond();
-        workspace.friction_responses = responses;
-        solved?;
-        self.balance_loaded(workspace, result);
-        Ok(())
     }
 }

@@ -167,18 +167,14 @@ impl Model {
             return Err(ModelError::UnbalancedRod { body: idle.body });
         }
         let frame = |b: usize| plan.evaluation_frame(b);
-        let mut internal: Vec<Mass> = masses
-            .iter()
-            .enumerate()
-            .map(|(b, m)| m.in_frame(&frame(b)))
-            .collect();
+        let inner = |(b, mass): (usize, &Mass)| mass.in_frame(&frame(b));
+        let mut internal: Vec<Mass> = masses.iter().enumerate().map(inner).collect();
         internal[mechanism.ground] = Mass::default();
         let has_inertia = |b: &usize| internal[*b].mass > 0.0 || internal[*b].inertia != [0.0; 6];
         let inertial = (0..internal.len()).filter(has_inertia).collect();
-        let reactions = reactions
-            .iter()
-            .map(|reaction| compile_reaction(mechanism, &plan, reaction))
-            .collect::<Result<Vec<_>, _>>()?;
+        let compiled = |reaction| compile_reaction(mechanism, &plan, reaction);
+        let reactions = reactions.iter().map(compiled);
+        let reactions = reactions.collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
             mechanism: Arc::new(mechanism.clone()),
             plan,
@@ -350,10 +346,7 @@ impl Model {
 
     /// A buffer for the results of this model.
     pub fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T> {
-        InverseDynamics {
-            tau: vec![T::from_f64(0.0); self.plan.actuators()],
-            reactions: vec![T::from_f64(0.0); self.reactions.len()],
-        }
+        InverseDynamics::buffer(self.plan.actuators(), self.reactions.len())
     }
 
     /// What inertia alone requires at coordinates (rad or m), speeds and accelerations: actuators' actions and reactions.
@@ -406,12 +399,7 @@ impl Model {
         let Workspace { pose, forces, .. } = workspace;
         forces.required.fill([Wrench::default()]);
         for &b in &self.inertial {
-            let moving = self.plan.state(pose, b);
-            let from_rest = dwell_geometry::space::BodyMotion {
-                acceleration: moving.velocity,
-                angular_acceleration: moving.angular_velocity,
-                ..Default::default()
-            };
+            let from_rest = self.plan.state(pose, b).from_rest();
             forces.required[b] = [self.masses[b].required(self.plan.frame(pose, b), &from_rest)];
         }
     }
@@ -445,11 +433,10 @@ impl Model {
             let (Component::Force(_, k) | Component::Moment(_, k)) = reaction.component;
             let along = match axes {
                 None => Vec3::AXES[k].cast(),
-                Some((body, axes)) => self
-                    .plan
-                    .frame(pose, *body)
-                    .rotation
-                    .apply(axes.columns[k].cast()),
+                Some((body, axes)) => {
+                    let frame = self.plan.frame(pose, *body);
+                    frame.rotation.apply(axes.columns[k].cast())
+                }
             };
             let part = |wrench: Wrench<T>| match reaction.component {
                 Component::Force(..) => along.dot(wrench.force),

@@ -38,9 +38,14 @@ impl Model {
         required.fill([Wrench::default()]);
         let at = (self.plan(), &*pose);
         for (kind, magnitude) in parts {
-            kind.act(*magnitude, at, self.inner_masses(), |action| {
-                required[action.body][0].add_at(action.arm, -action.force, -action.couple);
-            })?;
+            kind.act(
+                *magnitude,
+                at,
+                self.inner_masses(),
+                |(body, [arm, force, couple])| {
+                    required[body][0].add_at(arm, -force, -couple);
+                },
+            )?;
         }
         self.balance(workspace, result);
         Some(())

@@ -4,12 +4,12 @@ use super::build::SlopeSampler;
 use super::{Result, TableQuantity};
 use crate::model::{KinematicState, MachineModel, Model};
 use crate::pass::InverseDynamics;
-use crate::reduced::{Batch, Coefficients, ExactModel, Inertia, ReducedModel, ReducibleModel};
+use crate::reduced::{Batch, Coefficients, ExactModel, Inertia, ReducedModel};
 use crate::space;
 use dwell_numerics::{Dual, Scalar};
 
 /// A model whose reduced parameters and unit-load responses can be tabulated, in the plane or in space.
-pub trait TableModel: MachineModel + ReducibleModel {
+pub trait TableModel: MachineModel {
     /// The unit of a reaction: N or N m.
     fn reaction_unit(&self, reaction: usize) -> &'static str;
 
@@ -88,8 +88,8 @@ impl<M: TableModel> SlopeSampler for InertiaSampler<'_, M> {
 /// An exact model with the working memory to evaluate its reactions and loads.
 pub(super) struct ModelSampler<'a, M: TableModel> {
     model: &'a M,
-    reduction: <M as ReducibleModel>::Workspace<Dual>,
-    workspace: <M as MachineModel>::Workspace<Dual>,
+    reduction: M::Workspace<Dual>,
+    workspace: M::Workspace<Dual>,
     result: InverseDynamics<Dual>,
     coefficients: Coefficients<Dual>,
 }
@@ -99,8 +99,8 @@ impl<'a, M: TableModel> ModelSampler<'a, M> {
         let model = exact.model();
         Self {
             model,
-            reduction: ReducibleModel::pass_workspace(model),
-            workspace: MachineModel::pass_workspace(model),
+            reduction: model.pass_workspace(),
+            workspace: model.pass_workspace(),
             result: model.result_buffer(),
             coefficients: Coefficients::buffer(model.reaction_count()),
         }

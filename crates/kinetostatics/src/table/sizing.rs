@@ -14,6 +14,7 @@
 
 use super::piecewise::{Grid, TERMS};
 use super::{Result, TableError};
+use dwell_numerics::fourier::fourier_coefficients;
 use std::f64::consts::TAU;
 
 /// Samples of the first try and of the last, powers of two.
@@ -115,52 +116,15 @@ fn refine_samples(
 /// By harmonic, the largest coefficient of all values, each as a part of its scale.
 fn harmonic_magnitudes(samples: &[Vec<f64>], scales: &[f64]) -> Vec<f64> {
     let n = samples.len();
-    let angles = (0..n / 2).map(|k| -TAU * k as f64 / n as f64);
-    let roots_of_unity: Vec<[f64; 2]> = angles.map(|a| [a.cos(), a.sin()]).collect();
     let mut magnitudes = vec![0.0_f64; n / 2];
-    let (mut line, mut buffer) = (vec![[0.0; 2]; n], vec![[0.0; 2]; n]);
     for (k, &scale) in scales.iter().enumerate().filter(|(_, s)| **s > 0.0) {
-        for (z, at) in line.iter_mut().zip(samples) {
-            *z = [at[k], 0.0];
-        }
-        fft(&mut line, &mut buffer, &roots_of_unity);
-        for (magnitude, [re, im]) in magnitudes.iter_mut().zip(&line).skip(1) {
-            let whole = 2.0 / n as f64;
-            *magnitude = magnitude.max(re.hypot(*im) * whole / scale);
+        let values: Vec<f64> = samples.iter().map(|at| at[k]).collect();
+        let coefficients = fourier_coefficients(&values);
+        for (magnitude, [c, s]) in magnitudes.iter_mut().skip(1).zip(&coefficients) {
+            *magnitude = magnitude.max(c.hypot(*s) / scale);
         }
     }
     magnitudes
-}
-
-/// The discrete Fourier transform of a power of two of complex numbers (Stockham's order, which needs no
-/// reversal of bits).
-fn fft(line: &mut [[f64; 2]], buffer: &mut [[f64; 2]], roots_of_unity: &[[f64; 2]]) {
-    let n = line.len();
-    let mut stride = 1;
-    let mut in_line = true;
-    while stride < n {
-        let (from, to) = if in_line {
-            (&*line, &mut *buffer)
-        } else {
-            (&*buffer, &mut *line)
-        };
-        let groups = n / (2 * stride);
-        for group in 0..groups {
-            let [wr, wi] = roots_of_unity[group * stride];
-            for s in 0..stride {
-                let [ar, ai] = from[s + stride * group];
-                let [br, bi] = from[s + stride * (group + groups)];
-                to[s + stride * 2 * group] = [ar + br, ai + bi];
-                let (dr, di) = (ar - br, ai - bi);
-                to[s + stride * (2 * group + 1)] = [dr * wr - di * wi, dr * wi + di * wr];
-            }
-        }
-        in_line = !in_line;
-        stride *= 2;
-    }
-    if !in_line {
-        line.copy_from_slice(buffer);
-    }
 }
 
 /// The cells that a series of so many terms asks for, by (1) and (2).

@@ -66,11 +66,29 @@ fn visit_compiled_signal(signal: &mut CompiledSignal, visit: Visit<'_>) {
         return;
     };
     match function {
-        CoordinateFunction::Travel { points, .. } | CoordinateFunction::Length { points, .. } => {
+        CoordinateFunction::Travel(Guide { points, .. })
+        | CoordinateFunction::Length { points, .. } => {
             visit_points(points, visit);
         }
         CoordinateFunction::Angle(_) => {}
     }
+}
+
+/// Visits the numbers of a load and those of its compiled signals.
+fn visit_all(load: &mut Load, signals: &mut [CompiledSignal], visit: Visit<'_>) {
+    visit_load(load, visit);
+    signals
+        .iter_mut()
+        .for_each(|s| visit_compiled_signal(s, visit));
+}
+
+/// The numbers of some loads with these signals.
+fn numbers(loads: &[Load], signals: Vec<Vec<CompiledSignal>>) -> Vec<f64> {
+    let mut numbers = Vec::new();
+    for (load, mut signals) in loads.iter().zip(signals) {
+        visit_all(&mut load.clone(), &mut signals, &mut |n| numbers.push(*n));
+    }
+    numbers
 }
 
 /// Whether a load keeps its meaning with other numbers: its magnitude is known from the state alone.
@@ -127,16 +145,11 @@ impl CompiledLoads {
         if loads.len() != self.loads.len() || !self.loads.iter().zip(loads).all(same) {
             return None;
         }
-        let mut numbers = Vec::new();
-        let mut note = |number: &mut f64| numbers.push(*number);
-        for load in loads {
-            visit_load(&mut load.clone(), &mut note);
-            let mut signals = compile_signals(mechanism, &load.magnitude).ok()?;
-            signals
-                .iter_mut()
-                .for_each(|signal| visit_compiled_signal(signal, &mut note));
-        }
-        Some(numbers)
+        let signals = loads
+            .iter()
+            .map(|load| compile_signals(mechanism, &load.magnitude));
+        let signals: Vec<_> = signals.collect::<Result<_, _>>().ok()?;
+        Some(numbers(loads, signals))
     }
 
     /// Takes the numbers of a variant with these masses, by body; false where a compilation has to decide on them. The
@@ -145,10 +158,7 @@ impl CompiledLoads {
         let mut next = numbers.iter().copied();
         let mut fill = |to: &mut f64| *to = next.next().unwrap_or(f64::NAN);
         for (load, signals) in self.loads.iter_mut().zip(&mut self.compiled_signals) {
-            visit_load(load, &mut fill);
-            signals
-                .iter_mut()
-                .for_each(|signal| visit_compiled_signal(signal, &mut fill));
+            visit_all(load, signals, &mut fill);
         }
         let mut with_weight = 0;
         for (body, mass) in &mut self.weighted_bodies {
@@ -163,16 +173,7 @@ impl CompiledLoads {
 
     /// How many numbers [`numbers_of`](Self::numbers_of) gives.
     pub(super) fn number_count(&self) -> usize {
-        let mut count = 0;
-        let mut note = |_: &mut f64| count += 1;
-        for (load, signals) in self.loads.iter().zip(&self.compiled_signals) {
-            visit_load(&mut load.clone(), &mut note);
-            let mut signals = signals.clone();
-            signals
-                .iter_mut()
-                .for_each(|signal| visit_compiled_signal(signal, &mut note));
-        }
-        count
+        numbers(&self.loads, self.compiled_signals.clone()).len()
     }
 
     /// Whether all magnitudes are constant.

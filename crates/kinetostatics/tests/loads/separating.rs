@@ -3,7 +3,9 @@
 
 use crate::scenes::Case;
 use dwell_geometry::{JointId, Vec2, vec2};
-use dwell_kinetostatics::{FreeBodyForces, InverseDynamics, Load, LoadKind, Magnitude, Model};
+use dwell_kinetostatics::{
+    FreeBodyForces, InverseDynamics, Load, LoadKind, MachineModel as _, Magnitude, Model,
+};
 use dwell_scene::Scene;
 
 /// rad, about 20°.

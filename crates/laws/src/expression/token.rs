@@ -35,6 +35,11 @@ pub(super) struct Token {
 }
 
 impl Token {
+    fn new(kind: TokenKind, start: usize, length: usize) -> Self {
+        let end = start + length;
+        Self { kind, start, end }
+    }
+
     pub(super) fn span(self) -> Range<usize> {
         self.start..self.end
     }
@@ -45,20 +50,9 @@ pub(super) fn next_token(text: &str, start: usize) -> Result<Token, ExpressionEr
     let tail = text.get(start..).unwrap_or("");
     let rest = tail.trim_start();
     let start = start + tail.len() - rest.len();
+    let token = |kind, length| Ok(Token::new(kind, start, length));
     let Some(first) = rest.chars().next() else {
-        let kind = TokenKind::EndOfText;
-        return Ok(Token {
-            kind,
-            start,
-            end: start,
-        });
-    };
-    let token = |kind, length| {
-        Ok(Token {
-            kind,
-            start,
-            end: start + length,
-        })
+        return token(TokenKind::EndOfText, 0);
     };
     let second = rest[first.len_utf8()..].chars().next();
     if first.is_ascii_digit() || (first == '.' && second.is_some_and(|c| c.is_ascii_digit())) {
@@ -112,14 +106,14 @@ fn number(rest: &str, start: usize) -> Result<Token, ExpressionError> {
             length = end;
         }
     }
-    let to = start + length;
     match rest[..length].parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(Token {
-            kind: TokenKind::Number(number),
-            start,
-            end: to,
-        }),
-        _ => Err(ExpressionError::new(start..to, "this number is too large")),
+        Ok(number) if number.is_finite() => {
+            Ok(Token::new(TokenKind::Number(number), start, length))
+        }
+        _ => Err(ExpressionError::new(
+            start..start + length,
+            "this number is too large",
+        )),
     }
 }
 

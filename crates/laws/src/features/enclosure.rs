@@ -6,49 +6,37 @@ use std::f64::consts::LN_10;
 
 /// Value, first and second derivative: each an interval that contains all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Enclosure {
-    pub(super) entries: [Interval; 3],
-}
+pub(super) struct Enclosure(pub(super) [Interval; 3]);
 
 const ZERO: Interval = Interval { lo: 0.0, hi: 0.0 };
 const ONE: Interval = Interval { lo: 1.0, hi: 1.0 };
 
 impl Enclosure {
-    pub(super) const UNKNOWN: Self = Self {
-        entries: [Interval::ENTIRE; 3],
-    };
+    pub(super) const UNKNOWN: Self = Self([Interval::ENTIRE; 3]);
 
     pub(super) fn constant(value: f64) -> Self {
-        Self {
-            entries: [Interval::point(value), ZERO, ZERO],
-        }
+        Self([Interval::point(value), ZERO, ZERO])
     }
 
     /// The variable itself.
     pub(super) fn variable(over: Interval) -> Self {
-        Self {
-            entries: [over, ONE, ZERO],
-        }
+        Self([over, ONE, ZERO])
     }
 
     pub(super) fn value(self) -> Interval {
-        self.entries[0]
+        self.0[0]
     }
 
     fn is_constant(self) -> bool {
-        self.entries[1] == ZERO && self.entries[2] == ZERO
+        self.0[1] == ZERO && self.0[2] == ZERO
     }
 
     pub(super) fn hull(self, other: Self) -> Self {
-        Self {
-            entries: std::array::from_fn(|k| self.entries[k].hull(other.entries[k])),
-        }
+        Self(std::array::from_fn(|k| self.0[k].hull(other.0[k])))
     }
 
     pub(super) fn negate(self) -> Self {
-        Self {
-            entries: self.entries.map(Interval::neg),
-        }
+        Self(self.0.map(Interval::neg))
     }
 
     pub(super) fn minus(self, other: Self) -> Self {
@@ -56,33 +44,25 @@ impl Enclosure {
     }
 
     fn plus(self, other: Self) -> Self {
-        Self {
-            entries: std::array::from_fn(|k| self.entries[k].add(other.entries[k])),
-        }
+        Self(std::array::from_fn(|k| self.0[k].add(other.0[k])))
     }
 
     fn times(self, other: Self) -> Self {
-        let ([a, a1, a2], [b, b1, b2]) = (self.entries, other.entries);
-        Self {
-            entries: [
-                a.mul(b),
-                a1.mul(b).add(a.mul(b1)),
-                a2.mul(b).add(a1.mul(b1).scale(2.0)).add(a.mul(b2)),
-            ],
-        }
+        let ([a, a1, a2], [b, b1, b2]) = (self.0, other.0);
+        Self([
+            a.mul(b),
+            a1.mul(b).add(a.mul(b1)),
+            a2.mul(b).add(a1.mul(b1).scale(2.0)).add(a.mul(b2)),
+        ])
     }
 
     /// f(self) by the chain rule, from f and its first two derivatives over the values.
     fn chain(self, [f, f1, f2]: [Interval; 3]) -> Self {
-        let [_, u1, u2] = self.entries;
+        let [_, u1, u2] = self.0;
         if self.is_constant() {
-            return Self {
-                entries: [f, ZERO, ZERO],
-            };
+            return Self([f, ZERO, ZERO]);
         }
-        Self {
-            entries: [f, f1.mul(u1), f2.mul(u1.square()).add(f1.mul(u2))],
-        }
+        Self([f, f1.mul(u1), f2.mul(u1.square()).add(f1.mul(u2))])
     }
 
     fn recip(self) -> Self {
@@ -166,9 +146,7 @@ impl Enclosure {
             Binary::Multiply => self.times(other),
             Binary::Divide if other.is_constant() => {
                 let factor = other.value().recip();
-                Self {
-                    entries: self.entries.map(|e| e.mul(factor)),
-                }
+                Self(self.0.map(|e| e.mul(factor)))
             }
             Binary::Divide => self.times(other.recip()),
             Binary::Power => self.power(other),
@@ -188,18 +166,16 @@ impl Enclosure {
                 } else {
                     return Self::UNKNOWN;
                 };
-                let [value, ..] = ratio.entries;
-                let entries = [value.add(half_turn), ratio.entries[1], ratio.entries[2]];
-                Self { entries }
+                let [value, ..] = ratio.0;
+                let entries = [value.add(half_turn), ratio.0[1], ratio.0[2]];
+                Self(entries)
             }
             Binary::Atan2 if !self.value().contains(0.0) => {
                 let ratio = other.times(self.recip()).unary(Unary::Atan).negate();
                 let quarter = std::f64::consts::FRAC_PI_2 * self.value().lo.signum();
-                let [value, ..] = ratio.entries;
+                let [value, ..] = ratio.0;
                 let value = value.add(Interval::point(quarter));
-                Self {
-                    entries: [value, ratio.entries[1], ratio.entries[2]],
-                }
+                Self([value, ratio.0[1], ratio.0[2]])
             }
             Binary::Atan2 => Self::UNKNOWN,
             Binary::Min | Binary::Max => self.hull(other),

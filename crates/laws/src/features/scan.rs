@@ -183,7 +183,7 @@ impl<'f> Scan<'f> {
         let mut narrowest = None;
         for (e, (source, pieces)) in self.features.expressions.iter().enumerate() {
             for (&term, &scale) in pieces.terms.iter().zip(&self.scales[e]) {
-                let [value, slope, second] = pieces.enclose(term, over, &cell.sides[e]).entries;
+                let [value, slope, second] = pieces.enclose(term, over, &cell.sides[e]).0;
                 // From a parabola, a line or a constant: where an exponential overflows, only the value is bounded.
                 let w = over.width();
                 let deviations = [
@@ -359,7 +359,7 @@ enum Decision {
 
 fn decide(pieces: &Pieces, switch: &Switch, over: Interval, sides: &[Sides]) -> Decision {
     let enclosure = pieces.enclose_switch(switch, over, sides);
-    let [value, slope, _] = enclosure.entries;
+    let [value, slope, _] = enclosure.0;
     let level = if switch.at_integers {
         let (low, high) = (value.lo.floor(), value.hi.floor());
         if low == high {

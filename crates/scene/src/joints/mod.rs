@@ -99,17 +99,7 @@ impl<'a> Joints<'a> {
 
     /// The line along which a joint slides.
     pub(crate) fn guide(&self, joint: JointId) -> Option<Guide> {
-        let joint = self.list.get(joint.0)?.joint.as_ref()?;
-        let axis = match joint.kind {
-            JointKind::Prismatic { axes: [axis, _] } | JointKind::Slot { axis } => axis,
-            _ => return None,
-        };
-        let (bodies, points) = (joint.bodies, joint.points);
-        Some(Guide {
-            bodies,
-            points,
-            axis,
-        })
+        self.list.get(joint.0)?.joint.as_ref()?.guide()
     }
 
     /// A joint between two bodies stands in the list under its own name; the joints of a pin of

@@ -24,9 +24,7 @@ pub(super) fn actuators<'a>(
     let mut found: Vec<ParsedActuator<'a>> = Vec::new();
     for (k, entry) in fields.entries.iter().enumerate() {
         check_coordinate_name(entry, "an actuator");
-        entry
-            .log()
-            .place(SceneLocation::Actuator(ActuatorId(k)), &entry.key);
+        entry.place(SceneLocation::Actuator(ActuatorId(k)));
         if bodies.position(entry.name).is_some() {
             let message = format!(
                 "`{}` is the name of a body and of an actuator",

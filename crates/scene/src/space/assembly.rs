@@ -23,17 +23,13 @@ pub(super) fn assembly(
     for entry in fields.iter().flat_map(|f| &f.entries) {
         let name = entry.name;
         let what = format!("`{}` in [assembly]", shorten(name));
+        let place = |location| entry.log().place(location, &entry.span());
         if let Some(k) = actuators.iter().position(|a| a.name == name) {
             let value = entry.value.coordinate(actuators[k].is_angle(), what);
             found.q[k] = value.unwrap_or_default();
-            entry.log().place(
-                SceneLocation::AssemblyCoordinate(ActuatorId(k)),
-                &entry.span(),
-            );
+            place(SceneLocation::AssemblyCoordinate(ActuatorId(k)));
         } else if let Some(k) = bodies.position(name) {
-            entry
-                .log()
-                .place(SceneLocation::InitialGuess(BodyId(k)), &entry.span());
+            place(SceneLocation::InitialGuess(BodyId(k)));
             found.placements[k] = placement(entry, what).unwrap_or_default();
             if bodies.ground == Some(k) {
                 let message = format!("the ground `{}` cannot be placed", shorten(name));
@@ -62,13 +58,9 @@ fn placement(entry: &Entry<'_>, what: String) -> Option<Placement> {
     let fields = TableReader::open(entry, what)?;
     fields.reject_unknown_keys(table("placement"));
     let position = fields.get("at").map(|e| point(e.value, &fields.name_of(e)));
-    let turn = fields
-        .get("turn")
-        .map(|e| angles(e.value, &fields.name_of(e)));
-    let (position, turn) = (
-        position.unwrap_or(Some(Vec3::ZERO)),
-        turn.unwrap_or(Some(Vec3::ZERO)),
-    );
+    let turn = fields.get("turn");
+    let turn = turn.map(|e| angles(e.value, &fields.name_of(e)));
+    let [position, turn] = [position, turn].map(|given| given.unwrap_or(Some(Vec3::ZERO)));
     Some(Placement {
         position: position?,
         rotation: Rotation::of_vector(turn?),

@@ -11,7 +11,7 @@ use super::requests::{SpaceRequests, in_ground_axes, one_reaction, requests};
 use super::scene::SpaceScene;
 use crate::bodies::Bodies;
 use crate::build::is_filled;
-use crate::coordinates::{NamedActuator, ParsedCoordinate};
+use crate::coordinates::NamedActuator;
 use crate::diagnostics::Diagnostics;
 use crate::drives::{DriveReader, reject_drives_of_prescribed, reject_shared_names};
 use crate::error::{SceneError, Source};
@@ -22,15 +22,12 @@ use crate::magnitude::Magnitudes;
 use crate::motion::ParsedMotion;
 use crate::number_paths::body_numbers;
 use crate::prescribed::{coordinate_sweep, prescribed_motion};
-use crate::scene::NamedCoordinate;
 use crate::sections::{
-    needed_section, one_line, printable, report_unjoined_bodies, section, text_of, title,
+    needed_section, one_line, place_sections, printable, read_root, report_unjoined_bodies,
+    section, text_of, title,
 };
-use crate::spans::SceneLocation;
 use crate::stops::stops as stops_of;
 use crate::table_reader::TableReader;
-use crate::units::Units;
-use crate::value::Context;
 use dwell_geometry::space::{Joint, Mechanism};
 use dwell_geometry::{Body, JointId};
 use dwell_kinetostatics::space::Reaction;
@@ -39,19 +36,7 @@ impl SpaceScene {
     pub(crate) fn build(name: String, source: &Source) -> Result<Self, SceneError> {
         let root = crate::read::syntax(source)?;
         let log = &Diagnostics::new(source);
-        let fields = |units| {
-            let context = Context { units, log };
-            TableReader::new("the scene", (0..0, 0..0), root.get_ref(), context)
-        };
-        let si = Units::default();
-        let units = Units::read(fields(&si).get("units"));
-        let scene = read(name, source, &fields(&units));
-        if let Some(error) = log.to_error() {
-            return Err(error);
-        }
-        // Parts are missing only where something was found wrong.
-        let incomplete = || SceneError::without_labels("the scene is incomplete".to_owned(), None);
-        scene.ok_or_else(incomplete)
+        read_root(root.get_ref(), log, |fields| read(name, source, fields))
     }
 }
 
@@ -61,16 +46,7 @@ impl SpaceScene {
 fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<SpaceScene> {
     let log = fields.log();
     reject_unknown_sections(fields);
-    for (key, location) in [
-        ("units", SceneLocation::Units),
-        ("assembly", SceneLocation::Assembly),
-        ("prescribed", SceneLocation::Prescribed),
-        ("coordinate-sweep", SceneLocation::CoordinateSweep),
-        ("requests", SceneLocation::Requests),
-        ("motion", SceneLocation::Motion),
-    ] {
-        fields.place(key, location);
-    }
+    place_sections(fields);
     let section = |key| section(fields, key);
     let (title, note) = (title(fields), text_of(fields, "note"));
     // Without bodies every other name would be unknown: one message is enough.
@@ -163,25 +139,13 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
         };
         in_ground_axes(joint, ground).into_iter().map(reaction)
     });
-    let coordinate = |c: &ParsedCoordinate<'_, _>| {
-        let name = c.name.to_owned();
-        let coordinate = c.coordinate?;
-        Some(NamedCoordinate { name, coordinate })
-    };
-    let coordinates = named.list[named.actuators..].iter().filter_map(coordinate);
-    let points = bodies.list.iter().map(|b| {
-        let points = b.points.iter();
-        points
-            .map(|(name, at)| (str::to_owned(name), *at))
-            .collect()
-    });
     Some(SpaceScene {
         lists_reactions: listed.is_some(),
         paths,
         variables,
         reactions: listed.unwrap_or_else(|| all.collect()),
         masses: bodies.list.iter().map(|b| b.mass).collect(),
-        points: points.collect(),
+        points: bodies.named_points(),
         mechanism: Mechanism {
             bodies: bodies.list.iter().map(|b| Body::named(b.name)).collect(),
             ground,
@@ -191,7 +155,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
                 .collect(),
             joints,
         },
-        coordinates: coordinates.collect(),
+        coordinates: named.of_section(),
         prescribed,
         sweep,
         motion: motion.and_then(|m| m.into_spec(&start, events)),

@@ -1,9 +1,8 @@
 //! Friction in joints: loads that depend on the joints' own reactions and velocities.
 
 use super::joints::{Joints, kind_name};
-use crate::friction::{FrictionForm, check_static_coefficient};
+use crate::friction::{FrictionForm, check_static_coefficient, push_loads};
 use crate::keys::table;
-use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::wording::shorten;
 use dwell_geometry::JointId;
@@ -68,17 +67,7 @@ fn add_loads(
             ("viscous", "viscous", damper, viscous),
         ],
     };
-    for (key, suffix, kind, magnitude) in all {
-        let Some(magnitude) = magnitude else { continue };
-        let location = SceneLocation::Load(loads.len());
-        fields.log().place(location, &fields.key);
-        fields.place(key, SceneLocation::Magnitude(loads.len()));
-        loads.push(Load {
-            name: format!("{}.{suffix}", entry.name),
-            kind,
-            magnitude,
-        });
-    }
+    push_loads(&fields, entry.name, all, loads);
     Some(())
 }
 

@@ -42,9 +42,7 @@ impl<'a> Joints<'a> {
         let mut list = Vec::new();
         for (j, entry) in fields.iter().flat_map(|f| &f.entries).enumerate() {
             check("a joint", entry);
-            entry
-                .log()
-                .place(SceneLocation::Joint(JointId(j)), &entry.key);
+            entry.place(SceneLocation::Joint(JointId(j)));
             let count = log.count();
             let read = read_joint(entry, JointId(j), bodies);
             let (joint, has_zero) = read.filter(|_| log.count() == count).unzip();

@@ -7,11 +7,10 @@ use super::values::{direction, numbers};
 use crate::bodies::{Bodies, TWO_POINTS};
 use crate::keys::kinds;
 use crate::kind::{kind_among, reject_unread_kind};
+use crate::loads::{kind_and_size, read_loads};
 use crate::magnitude::Magnitudes;
-use crate::names::check;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
-use crate::units::SI;
 use crate::value::{NumberRule, SignRule};
 use crate::wording::shorten;
 use dwell_geometry::BodyId;
@@ -30,18 +29,7 @@ pub(super) struct LoadReader<'r> {
 impl LoadReader<'_> {
     /// Every load of the section that was read well.
     pub(super) fn loads(&self, fields: &TableReader<'_>) -> Vec<Load> {
-        let one = |(k, entry): (usize, &Entry<'_>)| {
-            check("a load", entry);
-            entry.log().place(SceneLocation::Load(k), &entry.key);
-            let fields = TableReader::open(entry, format!("load `{}`", shorten(entry.name)))?;
-            let (kind, magnitude) = self.kind_and_magnitude(&fields, k)?;
-            Some(Load {
-                name: entry.name.to_owned(),
-                kind,
-                magnitude,
-            })
-        };
-        fields.entries.iter().enumerate().filter_map(one).collect()
+        read_loads(fields, |_, fields, k| self.kind_and_magnitude(fields, k))
     }
 
     /// The k-th load without its name.
@@ -51,34 +39,16 @@ impl LoadReader<'_> {
         k: usize,
     ) -> Option<(LoadKind, Magnitude<Coordinate>)> {
         let (kind, entry) = kind_among(fields, "load", &kinds("loads-in-space"))?;
-        let location = SceneLocation::Magnitude(k);
         if kind == "gravity" {
-            fields.place(kind, location);
+            fields.place(kind, SceneLocation::Magnitude(k));
             let gravity = numbers(entry.value, &fields.name_of(entry))?;
             // Without gravity there is no direction, and no weight either.
             let along = gravity.unit().unwrap_or(Vec3::ZERO);
             let magnitude = Magnitude::Constant(gravity.norm());
             return Some((LoadKind::Gravity(along), magnitude));
         }
-        let stiffness = "a negative stiffness would push away from the free position";
-        let damping = "negative damping would accelerate the motion";
-        let (size, unit, sign, why) = match kind {
-            "force" | "point-to-point-force" | "slide-force" => {
-                ("magnitude", "N", SignRule::Any, "")
-            }
-            "torque" | "joint-torque" => ("magnitude", "N m", SignRule::Any, ""),
-            "spring" => ("stiffness", "N/m", SignRule::NotNegative, stiffness),
-            "torsion-spring" => ("stiffness", "N m/rad", SignRule::NotNegative, stiffness),
-            "damper" | "slide-damper" => ("damping", "N s/m", SignRule::NotNegative, damping),
-            "rotational-damper" => ("damping", "N m s/rad", SignRule::NotNegative, damping),
-            _ => return reject_unread_kind(entry),
-        };
-        let kind = self.load_kind(kind, entry, fields);
-        let magnitude = fields.require(size, &format!("add for instance `{size} = 10`, in {unit}"));
-        fields.place(size, location);
-        let rule = NumberRule::new(&SI, sign).because(why);
-        let magnitude = magnitude.and_then(|e| self.magnitudes.read(e, fields, &rule));
-        kind.zip(magnitude)
+        let load_kind = || self.load_kind(kind, entry, fields);
+        kind_and_size((kind, entry), (fields, k), self.magnitudes, load_kind)
     }
 
     fn load_kind(

@@ -112,11 +112,9 @@ pub(super) fn requests(
         }
     }
     let paths = fields.get("paths").map(|entry| path_points(entry, bodies));
-    let path = |(body, name, at)| SpacePathPoint { body, name, at };
-    let paths = paths.into_iter().flatten().map(path);
     SpaceRequests {
         reactions: reactions(fields, joints, ground),
-        paths: paths.collect(),
+        paths: paths.unwrap_or_default(),
         variables: fields.get("variables").map(variables_of),
     }
 }
@@ -138,11 +136,8 @@ fn reactions(
         let Some(joint) = &joints.list[j].joint else {
             continue;
         };
-        let components = match component {
-            None => in_ground_axes(joint, ground),
-            Some(component) => one(joint.kind, component, name, (entry.log(), &at)),
-        };
-        for component in components {
+        let log = entry.log();
+        for component in components(joint, (component, name), ground, (log, &at)) {
             let reaction = Reaction {
                 joint: JointId(j),
                 component,
@@ -168,10 +163,7 @@ pub(super) fn one_reaction(
     let j = joints.find(name, at)?;
     // A joint that could not be read has been reported already.
     let joint = joints.list[j].joint.as_ref()?;
-    let components = match component {
-        Some(component) => one(joint.kind, component, name, (fields.log(), at)),
-        None => in_ground_axes(joint, ground),
-    };
+    let components = components(joint, (component, name), ground, (fields.log(), at));
     match components[..] {
         [] => None,
         [component] => Some(Reaction {
@@ -190,13 +182,16 @@ pub(super) fn one_reaction(
     }
 }
 
-/// The component of that name.
-fn one(
-    kind: JointKind,
-    component: &str,
-    joint: &str,
+/// The component of that name, or those in the axes of the ground.
+fn components(
+    of: &Joint,
+    (component, joint): (Option<&str>, &str),
+    ground: usize,
     (log, at): (&crate::diagnostics::Diagnostics, &Span),
 ) -> Vec<Component> {
+    let (Some(component), kind) = (component, of.kind) else {
+        return in_ground_axes(of, ground);
+    };
     let existing = COMPONENTS.iter().filter(|(_, c)| exists(kind, *c));
     let found = existing.clone().find(|(name, _)| *name == component);
     if found.is_none() {

@@ -1,8 +1,9 @@
 //! A scene in space as plain data.
 
 use crate::file::SceneFile;
-use crate::scene::{CoordinateSweep, FreeMotionSpec, NamedCoordinate, NamedStop, PrescribedMotion};
-use dwell_geometry::BodyId;
+use crate::scene::{
+    CoordinateSweep, FreeMotionSpec, NamedCoordinate, NamedStop, PathPoint, PrescribedMotion,
+};
 use dwell_geometry::space::{Assembly, Coordinate, Mechanism, Vec3};
 use dwell_kinetostatics::Drive;
 use dwell_kinetostatics::space::{Load, Mass, Reaction};
@@ -46,15 +47,7 @@ pub struct SpaceScene {
 }
 
 /// A point of a moving body in space whose path is drawn.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SpacePathPoint {
-    /// The body.
-    pub body: BodyId,
-    /// The point's name within the body.
-    pub name: String,
-    /// The point in the body's frame, m.
-    pub at: Vec3,
-}
+pub type SpacePathPoint = PathPoint<Vec3>;
 
 impl Deref for SpaceScene {
     type Target = SceneFile;

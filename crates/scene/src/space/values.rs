@@ -30,11 +30,8 @@ fn components(
     one: impl Fn(Value<'_>, String) -> Option<f64>,
 ) -> Option<Vec3> {
     let values = triple(value, POINT, &what)?;
-    let mut found = [None; 3];
-    for ((to, value), name) in found.iter_mut().zip(values).zip(["x", "y", "z"]) {
-        *to = one(value, format!("{name} of {what}"));
-    }
-    let [x, y, z] = found;
+    let names = ["x", "y", "z"];
+    let [x, y, z] = [0, 1, 2].map(|k| one(values[k], format!("{} of {what}", names[k])));
     Some(vec3(x?, y?, z?))
 }
 
@@ -45,7 +42,7 @@ pub(super) fn point(value: Value<'_>, what: &str) -> Option<Vec3> {
 }
 
 /// Three numbers without a unit.
-pub(super) fn numbers(value: Value<'_>, what: &str) -> Option<Vec3> {
+pub(super) fn numbers(value: Value<'_>, what: impl Display) -> Option<Vec3> {
     components(value, what, |value, what| value.number(what))
 }
 
@@ -56,7 +53,7 @@ pub(super) fn angles(value: Value<'_>, what: &str) -> Option<Vec3> {
 
 /// A direction, as a unit vector.
 pub(super) fn direction(value: Value<'_>, what: impl Display) -> Option<Vec3> {
-    let v = components(value, &what, |value, what| value.number(what))?;
+    let v = numbers(value, &what)?;
     // Scaled first: the largest and the smallest numbers would lose their direction in a square.
     let largest = v.x.abs().max(v.y.abs()).max(v.z.abs());
     let unit = v.scaled(1.0 / largest).unit();

@@ -12,7 +12,7 @@ use dwell_dynamics::{
 };
 use dwell_findings::{Column, Table};
 use dwell_geometry::ActuatorId;
-use dwell_kinetostatics::MachineModel as _;
+use dwell_kinetostatics::ReducibleModel as _;
 use dwell_scene::{Scene, SceneLocation};
 
 /// Revolutions from the initial state to the first guess.

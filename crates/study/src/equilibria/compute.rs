@@ -8,7 +8,7 @@ use dwell_dynamics::{
     equilibrium_near, static_force_and_potential,
 };
 use dwell_findings::{Column, Table};
-use dwell_kinetostatics::MachineModel as _;
+use dwell_kinetostatics::{MachineModel as _, ReducibleModel as _};
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
 

@@ -12,7 +12,7 @@ use dwell_export::{
     SeveralFreedomsExport, StraightLine, record_at,
 };
 use dwell_geometry::ActuatorId;
-use dwell_kinetostatics::{InverseDynamics, Load, Model};
+use dwell_kinetostatics::{InverseDynamics, Load, MachineModel as _, Model};
 use dwell_numerics::Scalar;
 use dwell_scene::{Scene, SceneLocation};
 

@@ -105,7 +105,7 @@ impl<'a> SpaceClaims<'a> {
         };
         let rotation = rotation.after(&own.rotation.inverse());
         Placement {
-            position: plain(frame.origin) - rotation.apply(own.position),
+            position: plain(frame.position) - rotation.apply(own.position),
             rotation,
         }
     }

@@ -27,7 +27,7 @@ pub use studied_scene::{PreliminaryRun, StudiedScene};
 use dwell_dynamics::{DynamicsError, Method, TabulationError};
 use dwell_geometry::Range;
 use dwell_kinetostatics::{
-    ExactModel, MachineModel as _, ReducedModel, TableDomain, TabulatedModel,
+    ExactModel, ReducedModel, ReducibleModel as _, TableDomain, TabulatedModel,
 };
 use dwell_report::TableExport as _;
 use dwell_scene::SceneLocation;

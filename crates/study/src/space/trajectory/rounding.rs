@@ -100,7 +100,7 @@ fn numbers<T: Scalar>(plan: &Plan, pose: &Pose<T>, body: usize) -> BodyNumbers<T
     let (frame, motion) = (plan.frame(pose, body), plan.body_motion(pose, body));
     let parts = |v: Vec3<T>| vec![v.x, v.y, v.z];
     [
-        parts(frame.origin),
+        parts(frame.position),
         frame.rotation.columns.into_iter().flat_map(parts).collect(),
         parts(motion.velocity),
         parts(motion.angular_velocity),

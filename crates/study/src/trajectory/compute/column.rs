@@ -4,7 +4,7 @@ use crate::number_format::force_unit;
 use crate::trajectory::compute::{Analysis, Dyad};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::space::{self, Vec3};
-use dwell_geometry::{BodyId, JointId, Reaction, Vec2};
+use dwell_geometry::{BodyId, Guide, JointId, Reaction, Vec2};
 use dwell_scene::Scene;
 
 /// Whether a name selects a column: its full name, or a prefix up to a dot.
@@ -73,7 +73,7 @@ impl Quantity {
         match self {
             Self::Measured(
                 CoordinateFunction::Angle(bodies)
-                | CoordinateFunction::Travel { bodies, .. }
+                | CoordinateFunction::Travel(Guide { bodies, .. })
                 | CoordinateFunction::Length { bodies, .. },
                 _,
             ) => bodies.to_vec(),
