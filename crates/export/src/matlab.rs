@@ -23,14 +23,8 @@ pub fn matlab_files(export: &Export) -> Option<Vec<(String, Vec<u8>)>> {
     ])
 }
 
-/// The name of a part in the data.
-fn part_name(kind: PartKind) -> &'static str {
-    match kind {
-        PartKind::Motion => "motion",
-        PartKind::Reactions => "reactions",
-        PartKind::Positions => "positions",
-    }
-}
+/// The names of the parts in the data.
+const PARTS: [&str; 3] = ["motion", "reactions", "positions"];
 
 /// Everything that the functions read, with units and origin.
 fn data(export: &Export) -> Vec<u8> {
@@ -46,22 +40,14 @@ fn data(export: &Export) -> Vec<u8> {
         if machine.is_angle { "rad" } else { "m" },
     );
     text("m_unit", if machine.is_angle { "kg m2" } else { "kg" });
-    let loads: Vec<String> = machine
-        .loads
-        .iter()
-        .map(|load| format!("{} [{}]", load.name, load.unit))
-        .collect();
+    let with_unit = |(name, unit): (&String, &str)| format!("{name} [{unit}]");
+    let loads = machine.loads.iter().map(|load| (&load.name, load.unit));
+    let loads: Vec<String> = loads.map(with_unit).collect();
     text("loads", &loads.join("; "));
-    let reactions = machine.reactions.iter();
-    let reactions: Vec<String> = reactions
-        .map(|(name, unit)| format!("{name} [{unit}]"))
-        .collect();
+    let reactions = machine.reactions.iter().map(|(name, unit)| (name, *unit));
+    let reactions: Vec<String> = reactions.map(with_unit).collect();
     text("reaction_names", &reactions.join("; "));
     text("points", &machine.points.join("; "));
-    let row = |values: Vec<f64>| Matrix::Numbers {
-        columns: values.len(),
-        values,
-    };
     let domain = machine.domain;
     file.add("domain", &row(vec![domain.from, domain.to]));
     file.add("revolutions", &row(vec![f64::from(domain.revolutions)]));
@@ -73,24 +59,24 @@ fn data(export: &Export) -> Vec<u8> {
     file.finish()
 }
 
-/// The cells of a part.
-fn cells(export: &Export, kind: PartKind, file: &mut MatFile) {
-    let row = |values: Vec<f64>| Matrix::Numbers {
+fn row(values: Vec<f64>) -> Matrix {
+    Matrix::Numbers {
         columns: values.len(),
         values,
-    };
-    let (part, name) = (&export.parts[kind as usize], part_name(kind));
+    }
+}
+
+/// The cells of a part.
+fn cells(export: &Export, kind: PartKind, file: &mut MatFile) {
+    let (part, name) = (&export.parts[kind as usize], PARTS[kind as usize]);
     // By column: its number in the cells, or zero and a constant.
-    let places = part.columns.iter().map(|(_, column)| match column {
-        Column::Tabulated(k) => (*k + 1) as f64,
-        Column::Constant(_) => 0.0,
+    let columns = part.columns.iter().map(|(_, column)| match *column {
+        Column::Tabulated(k) => ((k + 1) as f64, 0.0),
+        Column::Constant(value) => (0.0, value),
     });
-    let constants = part.columns.iter().map(|(_, column)| match column {
-        Column::Tabulated(_) => 0.0,
-        Column::Constant(value) => *value,
-    });
-    file.add(&format!("{name}_places"), &row(places.collect()));
-    file.add(&format!("{name}_constants"), &row(constants.collect()));
+    let (places, constants) = columns.unzip();
+    file.add(&format!("{name}_places"), &row(places));
+    file.add(&format!("{name}_constants"), &row(constants));
     let index = part.index.iter().map(|&cell| f64::from(cell) + 1.0);
     file.add(&format!("{name}_index"), &row(index.collect()));
     file.add(

@@ -1,20 +1,19 @@
 //! The constants of the cells, and the places where functions are found in them.
 
 use super::CWriter;
+use crate::export::Export;
 use crate::machine::PartKind;
-use crate::part::{CURVE, Column, HEAD, TERMS};
+use crate::part::{CURVE, Column, HEAD, Part, TERMS};
 use std::fmt::Write as _;
 
-/// The name of a part in the code.
-pub(super) fn name(kind: PartKind) -> &'static str {
-    match kind {
-        PartKind::Motion => "motion",
-        PartKind::Reactions => "reaction",
-        PartKind::Positions => "position",
-    }
-}
+/// The names of the parts in the code.
+pub(super) const NAMES: [&str; 3] = ["motion", "reaction", "position"];
 
-impl CWriter<'_> {
+impl CWriter<'_, Export> {
+    pub(super) fn part(&self, kind: PartKind) -> &Part {
+        &self.export.parts[kind as usize]
+    }
+
     /// Whether anything of a part is in cells.
     pub(super) fn has_cells(&self, kind: PartKind) -> bool {
         !self.part(kind).index.is_empty()
@@ -25,7 +24,7 @@ impl CWriter<'_> {
         if !self.has_cells(kind) {
             return;
         }
-        let (part, name) = (self.part(kind), name(kind));
+        let (part, name) = (self.part(kind), NAMES[kind as usize]);
         let (cells, stride, bins) = (part.cell_count(), part.stride(), part.index.len());
         let index = match part.index_bytes() {
             1 => "uint8_t",
@@ -119,10 +118,5 @@ impl CWriter<'_> {
             };
             k += run;
         }
-    }
-
-    /// Whether [`Self::assign_columns`] needs the counter `k`.
-    pub(super) fn needs_counter(&self, text: &str) -> bool {
-        text.contains("for (k = 0;")
     }
 }
