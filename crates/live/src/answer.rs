@@ -78,9 +78,10 @@ fn page(
 ) -> Result<EncodedPage, SceneError> {
     let scene = AnyScene::parse(SOURCE_NAME, text)?.named("scene".to_owned());
     messages.extend(diagnostics::warnings(&scene.file().warnings));
-    let run = runs::run(command, &scene)?;
-    messages.extend(run.early_stop.iter().flat_map(diagnostics::errors));
-    let page = run.page.encode();
+    let (page, early_stop) = runs::run(command, &scene)?;
+    let early_stop = early_stop.map(SceneError::from);
+    messages.extend(early_stop.iter().flat_map(diagnostics::errors));
+    let page = page.encode();
     page.map_err(|error| SceneError::without_labels(error.to_string(), None))
 }
 

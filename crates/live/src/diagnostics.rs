@@ -1,7 +1,6 @@
 //! Errors and warnings as an editor shows them: the words of the command line, and where in the text they belong.
 
 use dwell_scene::{SceneError, SceneWarning};
-use dwell_study::StudyError;
 use serde::Serialize;
 
 /// A message about a scene.
@@ -58,17 +57,6 @@ fn message(severity: &'static str, error: &SceneError) -> MessageInText {
         message: error.message.clone(),
         help: error.help.clone(),
         labels: spans.map(|span| label(text, span)).collect(),
-    }
-}
-
-/// The error of an analysis as the command line shows it.
-pub(crate) fn scene_error(error: StudyError) -> SceneError {
-    match error {
-        StudyError::Scene(scene) => *scene,
-        StudyError::Sweep(sweep) => SceneError::without_labels(sweep.to_string(), sweep.help()),
-        // Further kinds are those of written files, where another crate of the program asks for them.
-        #[allow(unreachable_patterns, reason = "without files there are none")]
-        other => SceneError::without_labels(other.to_string(), None),
     }
 }
 

@@ -1,10 +1,9 @@
 //! A command on a scene: what the page shows of it.
 
-use crate::diagnostics::scene_error;
 use crate::pages;
 use crate::request::Command;
 use dwell_page::Page;
-use dwell_scene::{AnyScene, CoordinateSweep, PrescribedMotion, Scene, SceneError, SpaceScene};
+use dwell_scene::{AnyScene, CoordinateSweep, PrescribedMotion, Scene, SpaceScene};
 use dwell_study::machines::MachineScene;
 use dwell_study::page::trajectory_page;
 use dwell_study::reduce::reduction_page;
@@ -15,24 +14,19 @@ use dwell_study::{
     trajectory_page_in_space,
 };
 
-/// What a command came to.
-pub(crate) struct Run {
-    /// What the page shows.
-    pub(crate) page: Page,
-    /// Why a motion ended early, or no cycle was found.
-    pub(crate) early_stop: Option<SceneError>,
-}
+/// What a page shows, and why a motion ended early.
+type PageAndStop = (Page, Option<StudyError>);
 
 /// Runs a command, with the options that the command line takes where none is given.
-pub(crate) fn run(command: Command, scene: &AnyScene) -> Result<Run, SceneError> {
+pub(crate) fn run(command: Command, scene: &AnyScene) -> Result<PageAndStop, StudyError> {
     match scene {
-        AnyScene::Plane(scene) => in_plane(command, scene).map_err(scene_error),
-        AnyScene::Space(scene) => in_space(command, scene).map_err(scene_error),
+        AnyScene::Plane(scene) => in_plane(command, scene),
+        AnyScene::Space(scene) => in_space(command, scene),
     }
 }
 
-fn in_space(command: Command, scene: &SpaceScene) -> Result<Run, StudyError> {
-    let (page, early_stop) = match command {
+fn in_space(command: Command, scene: &SpaceScene) -> Result<PageAndStop, StudyError> {
+    Ok(match command {
         Command::Motion | Command::Kinematics | Command::Statics | Command::Kinetostatics => {
             let analysis = analysis(command, &scene.prescribed, &scene.sweep);
             trajectory_page_in_space(scene, analysis, &no_progress)?
@@ -47,15 +41,11 @@ fn in_space(command: Command, scene: &SpaceScene) -> Result<Run, StudyError> {
         }
         Command::Cycle => (cycle(scene)?, None),
         Command::Equilibria => (equilibria(scene)?, None),
-    };
-    Ok(Run {
-        page,
-        early_stop: early_stop.map(scene_error),
     })
 }
 
-fn in_plane(command: Command, scene: &Scene) -> Result<Run, StudyError> {
-    let (page, early_stop) = match command {
+fn in_plane(command: Command, scene: &Scene) -> Result<PageAndStop, StudyError> {
+    Ok(match command {
         Command::Motion | Command::Kinematics | Command::Statics | Command::Kinetostatics => {
             along_motion(scene, analysis(command, &scene.prescribed, &scene.sweep))?
         }
@@ -73,10 +63,6 @@ fn in_plane(command: Command, scene: &Scene) -> Result<Run, StudyError> {
         }
         Command::Cycle => (cycle(scene)?, None),
         Command::Equilibria => (equilibria(scene)?, None),
-    };
-    Ok(Run {
-        page,
-        early_stop: early_stop.map(scene_error),
     })
 }
 
@@ -106,10 +92,7 @@ fn analysis(
 }
 
 /// An analysis along the motion, with m and ½m′ of each row where there is a reduced model, and the period where there is one.
-fn along_motion(
-    scene: &Scene,
-    analysis: Analysis,
-) -> Result<(Page, Option<StudyError>), StudyError> {
+fn along_motion(scene: &Scene, analysis: Analysis) -> Result<PageAndStop, StudyError> {
     let computed = compute_trajectory(scene, analysis, None, &no_progress)?;
     let mut page = trajectory_page(scene, &computed);
     page.printed = dwell_study::describe_scene(scene)? + &computed.notes;
