@@ -6,7 +6,7 @@ use crate::export::{Export, STATED_STEP};
 pub(crate) fn describe(export: &Export) -> Vec<String> {
     let (machine, measured) = (&export.machine, &export.measured);
     let domain = machine.domain;
-    let unit = if machine.is_angle { "rad" } else { "m" };
+    let unit = machine.unit();
     let mut lines = vec![
         machine.title.clone(),
         String::new(),

@@ -212,6 +212,16 @@ pub enum Function {
 }
 
 impl MachineDescription {
+    /// The unit of the coordinate.
+    pub(crate) fn unit(&self) -> &'static str {
+        if self.is_angle { "rad" } else { "m" }
+    }
+
+    /// The unit of m.
+    pub(crate) fn inertia_unit(&self) -> &'static str {
+        if self.is_angle { "kg m2" } else { "kg" }
+    }
+
     /// The functions of a part that come with half their slope.
     pub fn curves(&self, part: PartKind) -> Vec<Function> {
         match part {

@@ -8,7 +8,7 @@ use crate::identifiers::Identifiers;
 use crate::machine::PartKind;
 use crate::part::Column;
 use functions::{evaluation, rates};
-use level5::{MatFile, Matrix};
+use level5::MatFile;
 
 /// An export for MATLAB and Octave: names and bytes of its data and its functions. None of an exact export, which has no data.
 pub fn matlab_files(export: &Export) -> Option<Vec<(String, Vec<u8>)>> {
@@ -30,16 +30,13 @@ const PARTS: [&str; 3] = ["motion", "reactions", "positions"];
 fn data(export: &Export) -> Vec<u8> {
     let machine = &export.machine;
     let mut file = MatFile::new(&format!("dwell {}", machine.version));
-    let mut text = |name: &str, value: &str| file.add(name, &Matrix::Text(value.to_owned()));
+    let mut text = |name: &str, value: &str| file.add_text(name, value);
     text("title", &machine.title);
     text("scene_hash", &machine.scene_hash);
     text("dwell_version", &machine.version);
     text("coordinate", &machine.coordinate);
-    text(
-        "coordinate_unit",
-        if machine.is_angle { "rad" } else { "m" },
-    );
-    text("m_unit", if machine.is_angle { "kg m2" } else { "kg" });
+    text("coordinate_unit", machine.unit());
+    text("m_unit", machine.inertia_unit());
     let with_unit = |(name, unit): (&String, &str)| format!("{name} [{unit}]");
     let loads = machine.loads.iter().map(|load| (&load.name, load.unit));
     let loads: Vec<String> = loads.map(with_unit).collect();
@@ -49,21 +46,14 @@ fn data(export: &Export) -> Vec<u8> {
     text("reaction_names", &reactions.join("; "));
     text("points", &machine.points.join("; "));
     let domain = machine.domain;
-    file.add("domain", &row(vec![domain.from, domain.to]));
-    file.add("revolutions", &row(vec![f64::from(domain.revolutions)]));
-    file.add("accuracy", &row(vec![export.request.accuracy]));
-    file.add("largest_error", &row(vec![export.measured.errors.max()]));
+    file.add_row("domain", &[domain.from, domain.to]);
+    file.add_row("revolutions", &[f64::from(domain.revolutions)]);
+    file.add_row("accuracy", &[export.request.accuracy]);
+    file.add_row("largest_error", &[export.measured.errors.max()]);
     for kind in PartKind::ALL {
         cells(export, kind, &mut file);
     }
     file.finish()
-}
-
-fn row(values: Vec<f64>) -> Matrix {
-    Matrix::Numbers {
-        columns: values.len(),
-        values,
-    }
 }
 
 /// The cells of a part.
@@ -74,18 +64,11 @@ fn cells(export: &Export, kind: PartKind, file: &mut MatFile) {
         Column::Tabulated(k) => ((k + 1) as f64, 0.0),
         Column::Constant(value) => (0.0, value),
     });
-    let (places, constants) = columns.unzip();
-    file.add(&format!("{name}_places"), &row(places));
-    file.add(&format!("{name}_constants"), &row(constants));
+    let (places, constants): (Vec<f64>, Vec<f64>) = columns.unzip();
+    file.add_row(&format!("{name}_places"), &places);
+    file.add_row(&format!("{name}_constants"), &constants);
     let index = part.index.iter().map(|&cell| f64::from(cell) + 1.0);
-    file.add(&format!("{name}_index"), &row(index.collect()));
-    file.add(
-        &format!("{name}_bins_per_unit"),
-        &row(vec![part.bins_per_unit]),
-    );
-    let cells = Matrix::Numbers {
-        columns: part.stride(),
-        values: part.cells.clone(),
-    };
-    file.add(&format!("{name}_cells"), &cells);
+    file.add_row(&format!("{name}_index"), &index.collect::<Vec<_>>());
+    file.add_row(&format!("{name}_bins_per_unit"), &[part.bins_per_unit]);
+    file.add_rows(&format!("{name}_cells"), part.stride(), &part.cells);
 }

@@ -4,7 +4,7 @@
 //! Decisions are made by values, as everywhere; they are not written down. Code that was recorded at one coordinate is
 //! therefore that of another one only where all decisions are the same: [`record`] compares recordings at several.
 
-use crate::straight_line::{Operand, Operation, OperationKind, StraightLine};
+use crate::straight_line::{Operand, Operation, OperationKind as Kind, StraightLine};
 use dwell_numerics::Scalar;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -35,7 +35,7 @@ pub enum RecordingError<E> {
 struct Record {
     operations: Vec<Operation>,
     /// Where an operation stands, so that each stands once.
-    known: HashMap<(OperationKind, [OperandKey; 2]), usize>,
+    known: HashMap<(Kind, [OperandKey; 2]), usize>,
     /// Whether a function was met that has no operations.
     has_function: bool,
 }
@@ -124,7 +124,7 @@ impl RecordedNumber {
     }
 
     /// The result of an operation on two numbers, or on one twice; of constants it is one.
-    fn result(value: f64, kind: OperationKind, of: [Self; 2]) -> Self {
+    fn result(value: f64, kind: Kind, of: [Self; 2]) -> Self {
         if of.iter().all(|number| number.is_constant()) {
             return Self::from_f64(value);
         }
@@ -169,20 +169,20 @@ impl Scalar for RecordedNumber {
     }
 
     fn sqrt(self) -> Self {
-        Self::result(self.value.sqrt(), OperationKind::SquareRoot, [self; 2])
+        Self::result(self.value.sqrt(), Kind::SquareRoot, [self; 2])
     }
 
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = Scalar::sin_cos(self.value);
         (
-            Self::result(sin, OperationKind::Sine, [self; 2]),
-            Self::result(cos, OperationKind::Cosine, [self; 2]),
+            Self::result(sin, Kind::Sine, [self; 2]),
+            Self::result(cos, Kind::Cosine, [self; 2]),
         )
     }
 
     fn atan2(self, other: Self) -> Self {
         let value = self.value.atan2(other.value);
-        Self::result(value, OperationKind::Angle, [self, other])
+        Self::result(value, Kind::Angle, [self, other])
     }
 
     fn compose(self, derivatives: &[f64; 4]) -> Self {
@@ -200,10 +200,7 @@ impl Add for RecordedNumber {
         match (self.is(0.0), other.is(0.0)) {
             (true, _) => other,
             (_, true) => self,
-            _ => {
-                let value = self.value + other.value;
-                Self::result(value, OperationKind::Add, [self, other])
-            }
+            _ => Self::result(self.value + other.value, Kind::Add, [self, other]),
         }
     }
 }
@@ -215,10 +212,7 @@ impl Sub for RecordedNumber {
         match (self.is(0.0), other.is(0.0)) {
             (_, true) => self,
             (true, _) => -other,
-            _ => {
-                let value = self.value - other.value;
-                Self::result(value, OperationKind::Subtract, [self, other])
-            }
+            _ => Self::result(self.value - other.value, Kind::Subtract, [self, other]),
         }
     }
 }
@@ -239,10 +233,7 @@ impl Mul for RecordedNumber {
         match (one.is(1.0), one.is(-1.0)) {
             (true, _) => rest,
             (_, true) => -rest,
-            _ => {
-                let value = self.value * other.value;
-                Self::result(value, OperationKind::Multiply, [self, other])
-            }
+            _ => Self::result(self.value * other.value, Kind::Multiply, [self, other]),
         }
     }
 }
@@ -254,10 +245,7 @@ impl Div for RecordedNumber {
         match (self.is(0.0) && other.value != 0.0, other.is(1.0)) {
             (true, _) => Self::from_f64(0.0),
             (_, true) => self,
-            _ => {
-                let value = self.value / other.value;
-                Self::result(value, OperationKind::Divide, [self, other])
-            }
+            _ => Self::result(self.value / other.value, Kind::Divide, [self, other]),
         }
     }
 }
@@ -266,7 +254,7 @@ impl Neg for RecordedNumber {
     type Output = Self;
 
     fn neg(self) -> Self {
-        Self::result(-self.value, OperationKind::Negate, [self; 2])
+        Self::result(-self.value, Kind::Negate, [self; 2])
     }
 }
 

@@ -25,7 +25,7 @@ impl<'a> Members<'a> {
             reactions: &machine.reactions,
             points: &machine.points,
             freedoms: 1,
-            inertia_unit: Some(if machine.is_angle { "kg m2" } else { "kg" }),
+            inertia_unit: Some(machine.inertia_unit()),
         }
     }
 

@@ -36,6 +36,20 @@ impl<E> CWriter<'_, E> {
         }
     }
 
+    /// The operations of a code, and what its outputs are assigned to.
+    pub(crate) fn assignments(
+        &self,
+        code: &StraightLine,
+        targets: impl Iterator<Item = String>,
+    ) -> String {
+        let mut text = String::new();
+        self.operations(code, &mut text);
+        for (target, &output) in targets.zip(&code.outputs) {
+            _ = writeln!(text, "    {target} = {};", self.operand(output));
+        }
+        text
+    }
+
     /// An operand, or an output.
     pub(crate) fn operand(&self, operand: Operand) -> String {
         match operand {

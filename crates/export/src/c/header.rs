@@ -58,13 +58,10 @@ impl CWriter<'_, Export> {
     fn types(&self, text: &mut String) {
         let machine = &self.export.machine;
         self.constant_types(None, text);
-        let (q, speed) = match machine.is_angle {
-            true => ("rad", "rad/s"),
-            false => ("m", "m/s"),
-        };
+        let unit = machine.unit();
         *text += "/* A state; set `carry` and `periods` to zero when you set the others. */\ntypedef struct {\n";
-        member(text, "q", &format!("{q}: {}", machine.coordinate));
-        member(text, "q_dot", &format!("{speed}: its speed"));
+        member(text, "q", &format!("{unit}: {}", machine.coordinate));
+        member(text, "q_dot", &format!("{unit}/s: its speed"));
         self.state_end(text);
         *text += "    int32_t periods; /* whole periods subtracted from q */\n} @p@_state;\n\n";
         self.term_types(text);
@@ -73,13 +70,10 @@ impl CWriter<'_, Export> {
     /// The coefficients at a coordinate.
     fn term_types(&self, text: &mut String) {
         let machine = &self.export.machine;
-        let [m, half_dm] = match machine.is_angle {
-            true => ["kg m2", "kg m2/rad"],
-            false => ["kg", "kg/m"],
-        };
+        let (m, unit) = (machine.inertia_unit(), machine.unit());
         *text += "/* m q'' + half_dm q'^2 = sum of w F over the loads */\ntypedef struct {\n";
         member(text, "m", &format!("{m}: of the bodies"));
-        member(text, "half_dm", half_dm);
+        member(text, "half_dm", &format!("{m}/{unit}"));
         if self.has_loads() {
             *text += "    @p@_real w[@U@_LOAD_COUNT]; /* generalised force of one unit of each load */\n";
         }

@@ -248,26 +248,22 @@ impl CWriter<'_, Export> {
     /// The inside of a function that fills arrays with the columns of a part.
     fn columns_body(&self, kind: PartKind, targets: &[(String, usize)], text: &mut String) {
         if let Some(code) = self.code(kind) {
-            self.operations(code, text);
-            for ((array, place), &output) in targets.iter().zip(&code.outputs) {
-                _ = writeln!(text, "    {array}[{place}] = {};", self.operand(output));
-            }
+            let targets = targets.iter();
+            let targets = targets.map(|(array, place)| format!("{array}[{place}]"));
+            *text += &self.assignments(code, targets);
             return;
         }
         let mut assignments = String::new();
         self.assign_columns(kind, targets, &mut assignments);
+        if assignments.contains("for (k = 0;") {
+            *text += "    int k;\n";
+        }
         match self.has_cells(kind) {
             true => {
                 let name = tables::NAMES[kind as usize];
                 _ = writeln!(text, "    const place at = place_in_{name}(q);");
             }
             false => *text += "    (void)q;\n",
-        }
-        if assignments.contains("for (k = 0;") {
-            // C99 allows a declaration here, and every compiler an early one.
-            let declaration = "    int k;\n";
-            let at = text.rfind("{\n").map_or(text.len(), |at| at + 2);
-            text.insert_str(at, declaration);
         }
         *text += &assignments;
     }

@@ -74,37 +74,32 @@ impl CWriter<'_, Export> {
         targets: &[(String, usize)],
         text: &mut String,
     ) {
-        let columns = &self.part(kind).columns;
-        let mut k = 0;
-        while let (Some((_, column)), Some((array, place))) = (columns.get(k), targets.get(k)) {
-            let continues = |run: usize| {
-                let (Some((_, next)), Some((other, at))) =
-                    (columns.get(k + run), targets.get(k + run))
-                else {
-                    return false;
-                };
-                let follows = match (column, next) {
-                    (Column::Constant(one), Column::Constant(next)) => one == next,
-                    (Column::Tabulated(one), Column::Tabulated(next)) => *next == one + run,
-                    (Column::Constant(_), Column::Tabulated(_))
-                    | (Column::Tabulated(_), Column::Constant(_)) => false,
-                };
-                follows && other == array && *at == place + run
+        let columns = self.part(kind).columns.iter().map(|(_, column)| *column);
+        let all: Vec<(Column, &(String, usize))> = columns.zip(targets).collect();
+        let runs = all.chunk_by(|(one, (array, place)), (next, (other, at))| {
+            let follows = match (one, next) {
+                (Column::Constant(one), Column::Constant(next)) => one == next,
+                (Column::Tabulated(one), Column::Tabulated(next)) => *next == one + 1,
+                (Column::Constant(_), Column::Tabulated(_))
+                | (Column::Tabulated(_), Column::Constant(_)) => false,
             };
-            let run = (1..).find(|&run| !continues(run)).unwrap_or(1);
+            follows && other == array && *at == place + 1
+        });
+        for run in runs {
+            let (column, (array, place)) = run[0];
             let value = |index: &str| match column {
-                Column::Constant(value) => self.number(*value),
+                Column::Constant(value) => self.number(value),
                 Column::Tabulated(j) => {
                     let step = match index {
                         "" => String::new(),
                         index => format!(" + {TERMS} * {index}"),
                     };
-                    format!("polynomial(at.n + {}{step}, &at)", self.offset(kind, *j))
+                    format!("polynomial(at.n + {}{step}, &at)", self.offset(kind, j))
                 }
             };
-            _ = match run {
+            _ = match run.len() {
                 1 => writeln!(text, "    {array}[{place}] = {};", value("")),
-                _ => {
+                run => {
                     let place = match place {
                         0 => String::new(),
                         place => format!("{place} + "),
@@ -116,7 +111,6 @@ impl CWriter<'_, Export> {
                     )
                 }
             };
-            k += run;
         }
     }
 }

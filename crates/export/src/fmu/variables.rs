@@ -102,7 +102,7 @@ pub(super) fn variables(export: &Export) -> Vec<Variable> {
     list.add(name, Role::Parameter, "s", meaning, code).start = 1e-3;
     list.add_members("inputs", Role::Input, members.inputs());
     if export.machine.domain.revolutions > 0 {
-        let unit = if export.machine.is_angle { "rad" } else { "m" };
+        let unit = export.machine.unit();
         for (k, end) in ["upper", "lower"].iter().enumerate() {
             let (name, code) = (format!("next_period.{end}"), format!("indicators[{k}]"));
             let meaning = "distance from the end of the period";
@@ -117,7 +117,7 @@ pub(super) fn variables(export: &Export) -> Vec<Variable> {
 /// States, each with its derivative behind it.
 fn states(export: &Export, members: &Members<'_>, list: &mut List) {
     let machine = &export.machine;
-    let unit = if machine.is_angle { "rad" } else { "m" };
+    let unit = machine.unit();
     let (rate, second) = (format!("{unit}/s"), format!("{unit}/s2"));
     let [start, speed] = machine.initial;
     let (q, velocity) = (

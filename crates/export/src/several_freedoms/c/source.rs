@@ -4,7 +4,6 @@ use crate::c::{ACCESS, CWriter};
 use crate::part::Precision;
 use crate::several_freedoms::export::SeveralFreedomsExport;
 use crate::several_freedoms::measure::{MOTION, SampledState};
-use crate::straight_line::StraightLine;
 use crate::writer::reflected;
 use std::fmt::Write as _;
 
@@ -63,16 +62,6 @@ impl CWriter<'_, SeveralFreedomsExport> {
         lines.collect()
     }
 
-    /// The operations of a code, and what its outputs are assigned to.
-    fn assignments(&self, code: &StraightLine, targets: &[String]) -> String {
-        let mut text = String::new();
-        self.operations(code, &mut text);
-        for (target, &output) in targets.iter().zip(&code.outputs) {
-            _ = writeln!(text, "    {target} = {};", self.operand(output));
-        }
-        text
-    }
-
     fn motion(&self) -> String {
         let machine = &self.export.machine;
         let (n, pairs) = (machine.freedoms(), machine.pairs());
@@ -83,8 +72,7 @@ impl CWriter<'_, SeveralFreedomsExport> {
         let h = (0..pairs.len() * n).map(|k| format!("terms->h[{k}]"));
         let w = (0..machine.loads.len() * n).map(|k| format!("terms->w[{k}]"));
         let v = (0..machine.loads.len()).map(|k| format!("terms->v[{k}]"));
-        let targets: Vec<String> = upper.chain(h).chain(w).chain(v).collect();
-        self.assignments(&self.export.code[0], &targets)
+        self.assignments(&self.export.code[0], upper.chain(h).chain(w).chain(v))
     }
 
     fn reaction_terms(&self) -> String {
@@ -96,12 +84,9 @@ impl CWriter<'_, SeveralFreedomsExport> {
         let array = |name: &'static str, count: usize| {
             (0..count * r).map(move |k| format!("terms->{name}[{k}]"))
         };
-        let a = array("a", machine.freedoms());
-        let targets = a
-            .chain(array("b", machine.pairs().len()))
-            .chain(array("c", machine.loads.len()));
-        let targets: Vec<String> = targets.collect();
-        let terms = self.assignments(&self.export.code[1], &targets);
+        let (a, b) = (array("a", self.freedoms), array("b", machine.pairs().len()));
+        let targets = a.chain(b).chain(array("c", machine.loads.len()));
+        let terms = self.assignments(&self.export.code[1], targets);
         let [finite, clear] = match self.has_loads() {
             true => [
                 " && all_finite(terms->c, @U@_LOAD_COUNT * @U@_REACTION_COUNT)",
@@ -120,8 +105,8 @@ impl CWriter<'_, SeveralFreedomsExport> {
         if count == 0 {
             return String::new();
         }
-        let targets: Vec<String> = (0..count).map(|k| format!("xy[{k}]")).collect();
-        let body = self.assignments(&self.export.code[2], &targets);
+        let targets = (0..count).map(|k| format!("xy[{k}]"));
+        let body = self.assignments(&self.export.code[2], targets);
         format!(
             "@p@_status @p@_positions(const @p@_real q[@U@_COORDINATE_COUNT], @p@_real xy[2 * @U@_POINT_COUNT])\n{{\n{body}    if (!all_finite(xy, 2 * @U@_POINT_COUNT)) {{\n        clear(xy, 2 * @U@_POINT_COUNT);\n        return all_finite(q, N) ? @U@_OUT_OF_RANGE : @U@_NOT_FINITE;\n    }}\n    return @U@_OK;\n}}\n\n"
         )
