@@ -10,30 +10,28 @@ const SCENE: &str = "scene.toml";
 pub(crate) fn find(names: &[String], folder: &Path) -> Result<Vec<PathBuf>, Report> {
     let all = list(folder);
     if names.is_empty() {
-        return match all {
-            Ok(cases) if cases.is_empty() => Err(miette!(
-                help = "a case is a folder with a scene.toml; name the folder of the cases with --folder",
-                "there is no case in `{}`",
-                folder.display()
-            )),
-            Ok(cases) => Ok(cases),
-            Err(reason) => Err(miette!(
+        let shown = folder.display();
+        let cases = all.map_err(|reason| {
+            miette!(
                 help = "run from the folder above `validation`, or name the folder of the cases with \
                      --folder, or a case by its path",
-                "cannot list the cases in `{}`: {reason}",
-                folder.display()
+                "cannot list the cases in `{shown}`: {reason}"
+            )
+        })?;
+        return match cases.is_empty() {
+            true => Err(miette!(
+                help = "a case is a folder with a scene.toml; name the folder of the cases with --folder",
+                "there is no case in `{shown}`"
             )),
+            false => Ok(cases),
         };
     }
     let mut found: Vec<PathBuf> = Vec::new();
     for name in names {
         let case = find_one(name, folder, all.as_deref().unwrap_or(&[]))?;
         let canonical = |path: &PathBuf| path.canonicalize().unwrap_or_else(|_| path.clone());
-        if !found
-            .iter()
-            .map(canonical)
-            .any(|other| other == canonical(&case))
-        {
+        let mut known = found.iter().map(canonical);
+        if known.all(|other| other != canonical(&case)) {
             found.push(case);
         }
     }

@@ -4,8 +4,7 @@ use crate::values::{Choices, choice, parse_finite, parse_table_accuracy};
 use clap::Args;
 use dwell_export::{FmiVersion, Precision, Request};
 use dwell_report::TableFormat;
-use dwell_scene::{Scene, SpaceScene};
-use dwell_study::{ExportRequest, ExportTarget, Outcome, StudyError};
+use dwell_study::{ExportRequest, ExportTarget};
 use std::path::PathBuf;
 
 const EXPORT_TARGETS: Choices<ExportTarget> = &[
@@ -60,46 +59,36 @@ pub(crate) struct ExportArgs {
     pub(crate) to: ExportTarget,
     /// Accuracy of every function, relative to its largest value (default: 1e-9, or 1e-6 with --float)
     #[arg(long, value_parser = parse_table_accuracy, value_name = "ACCURACY", allow_hyphen_values = true)]
-    pub(crate) accuracy: Option<f64>,
+    accuracy: Option<f64>,
     /// Numbers of four bytes; an accuracy below 1e-6 buys nothing then
     #[arg(long)]
-    pub(crate) float: bool,
+    float: bool,
     /// The model's own operations instead of cells, to `c` or `fmu`: exact to rounding, with square roots, sines and cosines. Loops
     /// that are closed by Newton's method have none
     #[arg(long, conflicts_with = "accuracy")]
-    pub(crate) exact: bool,
+    exact: bool,
     /// Lower end of the coordinate, in the scene's unit (default: a full period, or the range without 2 % at each end)
     #[arg(long, requires = "to_coordinate", value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
-    pub(crate) from: Option<f64>,
+    from: Option<f64>,
     /// Upper end of the coordinate
     #[arg(long = "until", id = "to_coordinate", requires = "from", value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
-    pub(crate) until: Option<f64>,
+    until: Option<f64>,
 }
 
-/// Exports a scene as its options say.
-pub(crate) fn run(arguments: &ExportArgs, scene: &Scene) -> Result<Outcome, StudyError> {
-    dwell_study::export(scene, arguments.to, &request(arguments))
-}
-
-/// Exports a scene in space as its options say.
-pub(crate) fn run_in_space(
-    arguments: &ExportArgs,
-    scene: &SpaceScene,
-) -> Result<Outcome, StudyError> {
-    dwell_study::export_in_space(scene, arguments.to, &request(arguments))
-}
-
-fn request(arguments: &ExportArgs) -> ExportRequest {
-    let (precision, accuracy) = match arguments.float {
-        true => (Precision::Float, 1e-6),
-        false => (Precision::Double, 1e-9),
-    };
-    ExportRequest {
-        request: Request {
-            accuracy: arguments.accuracy.unwrap_or(accuracy),
-            precision,
-        },
-        exact: arguments.exact,
-        interval: arguments.from.zip(arguments.until),
+impl ExportArgs {
+    /// What is exported, and how accurately.
+    pub(crate) fn request(&self) -> ExportRequest {
+        let (precision, accuracy) = match self.float {
+            true => (Precision::Float, 1e-6),
+            false => (Precision::Double, 1e-9),
+        };
+        ExportRequest {
+            request: Request {
+                accuracy: self.accuracy.unwrap_or(accuracy),
+                precision,
+            },
+            exact: self.exact,
+            interval: self.from.zip(self.until),
+        }
     }
 }

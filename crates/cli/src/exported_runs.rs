@@ -2,12 +2,11 @@
 
 use crate::Done;
 use crate::options::Options;
+use crate::reduction::ReduceArgs;
 use crate::times::Times;
 use dwell_report::npz_columns;
 use dwell_scene::SceneError;
-use dwell_study::{
-    ColumnNames, ExportedTable, Outcome, SampleInterpolation, StudyError, no_progress,
-};
+use dwell_study::{ColumnNames, ExportedTable, Outcome, StudyError, no_progress};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -24,12 +23,12 @@ pub(crate) fn name(options: &Options, runs: &[PathBuf]) -> String {
 /// The reduced parameters of the tables of run i and run ii, with their pictures.
 pub(crate) fn reduce(
     options: &Options,
+    arguments: &ReduceArgs,
     runs: &[PathBuf],
-    (columns, interpolation): (Option<&Path>, Option<SampleInterpolation>),
     times: &mut Times,
 ) -> Result<Done, StudyError> {
     let name = name(options, runs);
-    let outcome = computed(&name, runs, columns, interpolation);
+    let outcome = computed(&name, runs, arguments);
     times.add("computing");
     let outcome = outcome?.draw((options.pictures, options.picture_format), &no_progress)?;
     times.add("drawing");
@@ -40,12 +39,7 @@ pub(crate) fn reduce(
     })
 }
 
-fn computed(
-    name: &str,
-    runs: &[PathBuf],
-    columns: Option<&Path>,
-    interpolation: Option<SampleInterpolation>,
-) -> Result<Outcome, StudyError> {
+fn computed(name: &str, runs: &[PathBuf], arguments: &ReduceArgs) -> Result<Outcome, StudyError> {
     let tables = runs
         .iter()
         .map(|path| table(path))
@@ -55,14 +49,14 @@ fn computed(
         let help = "give the tables of run i and of run ii";
         return Err(SceneError::without_labels(message, Some(help.to_owned())).into());
     };
-    let names = match columns {
+    let names = match &arguments.columns {
         Some(path) => {
             let text = fs::read_to_string(path).map_err(|e| unread(path, &e.to_string()))?;
             ColumnNames::read(&path.display().to_string(), &text)?
         }
         None => ColumnNames::default(),
     };
-    dwell_study::reduce_runs(name, [one, two], &names, interpolation)
+    dwell_study::reduce_runs(name, [one, two], &names, arguments.interpolation)
 }
 
 fn unread(path: &Path, reason: &str) -> SceneError {

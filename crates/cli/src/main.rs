@@ -7,13 +7,14 @@ mod cases;
 mod export;
 mod exported_runs;
 mod former;
-mod in_space;
 mod init;
 mod instants;
 mod interface;
 mod long_runs;
 mod options;
+mod reduction;
 mod simulation;
+mod studies;
 mod sweep;
 mod times;
 mod validate;
@@ -21,24 +22,24 @@ mod values;
 mod view;
 
 use clap::{CommandFactory as _, FromArgMatches as _};
-use dwell_dynamics::Method;
 use dwell_findings::all_pass;
 use dwell_report::{Files, OutputFolder, ReportError};
 use dwell_scene::{AnyScene, Scene, SceneError, SceneFile};
 use dwell_study::{
-    Analysis, CommandResult, Outcome, PictureFormat, PictureSpan, Pictures, Shard, SolverSettings,
-    Step, StudyError, TableRequest, TrajectoryOutcome, add_page, add_summary, no_progress,
+    CommandResult, Outcome, PictureFormat, Pictures, Shard, Step, StudyError, TrajectoryOutcome,
+    add_page, add_summary, no_progress,
 };
 use dwell_validation::ValidationError;
 use indicatif::{ProgressBar, ProgressStyle};
 use long_runs::LongRunLines;
 use miette::{Report, miette};
-use options::{Command, Options, STANDARD_INPUT, STANDARD_INPUT_NAME, TrajectoryArgs};
-use simulation::simulation;
+use options::{Command, Options, STANDARD_INPUT, STANDARD_INPUT_NAME};
+use reduction::ReduceArgs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
+use sweep::SweepArgs;
 use times::Times;
 
 fn main() -> ExitCode {
@@ -90,28 +91,20 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
                 ..Done::default()
             }
         }
-        Command::Reduce {
-            runs: Some(runs),
-            columns,
-            interpolation,
-            ..
-        } => {
-            let wanted = (columns.as_deref(), *interpolation);
-            let done = exported_runs::reduce(options, runs, wanted, &mut times);
+        Command::Reduce(
+            arguments @ ReduceArgs {
+                runs: Some(runs), ..
+            },
+        ) => {
+            let done = exported_runs::reduce(options, arguments, runs, &mut times);
             bar.finish_and_clear();
-            done.map_err(|e| Report::new(as_scene_error(e)))?
+            done.map_err(|e| Report::new(SceneError::from(e)))?
         }
         study => {
+            let progress = |step: Step<'_>| show_step(&bar, step);
             let done = read(options, study, &bar);
             let done = done.and_then(|scene| {
-                let done = match &scene {
-                    AnyScene::Plane(scene) => run_study(study, scene, &options.out, &bar),
-                    AnyScene::Space(scene) => {
-                        in_space::run_study(study, scene, &options.out, &|step| {
-                            show_step(&bar, step);
-                        })
-                    }
-                };
+                let done = studies::run(study, &scene, &options.out, &progress);
                 times.add("computing");
                 let TrajectoryOutcome {
                     outcome,
@@ -119,17 +112,17 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
                 } = done?;
                 bar.set_position(0);
                 let wanted = (options.pictures, options.picture_format);
-                let outcome = outcome.draw(wanted, &|step| show_step(&bar, step))?;
+                let outcome = outcome.draw(wanted, &progress)?;
                 Ok(Done {
                     outcome,
-                    early_stop: early_stop.map(as_scene_error),
+                    early_stop: early_stop.map(SceneError::from),
                     scene: Some(scene.file().clone()),
                     ..Done::default()
                 })
             });
             times.add("drawing");
             bar.finish_and_clear();
-            done.map_err(|e| Report::new(as_scene_error(e)))?
+            done.map_err(|e| Report::new(SceneError::from(e)))?
         }
     };
     // No line follows the results.
@@ -164,7 +157,9 @@ fn finish(
         (None, passed) => u8::from(!passed),
     };
     let errors = done.early_stop.iter().chain(&done.failures).cloned();
-    let stem = results_stem(&options.command, name, results_name(&done));
+    let of_scene = done.scene.as_ref().map(|scene| scene.name.as_str());
+    let results = of_scene.or(done.exported.as_deref());
+    let stem = results_stem(&options.command, name, results);
     let result = CommandResult {
         command: name,
         scene: done.scene.as_ref(),
@@ -180,7 +175,7 @@ fn finish(
             (true, _) => add_page(&mut done.outcome, &result, &format!("{stem}.html")),
         };
         let added = page.and_then(|()| add_summary(&mut done.outcome, &result));
-        added.map_err(|e| Report::new(as_scene_error(e)))?;
+        added.map_err(|e| Report::new(SceneError::from(e)))?;
     }
     print(&done.outcome.summary)?;
     write_files(&done.outcome.files, folder, &options.out)?;
@@ -203,146 +198,20 @@ fn draw_validation(outcome: Outcome, format: PictureFormat) -> Result<Outcome, R
         format => format,
     };
     let drawn = outcome.draw((Pictures::All, format), &no_progress);
-    drawn.map_err(|e| Report::new(as_scene_error(e)))
-}
-
-/// The name with which the names of the results begin.
-fn results_name(done: &Done) -> Option<&str> {
-    let scene = done.scene.as_ref().map(|scene| scene.name.as_str());
-    scene.or(done.exported.as_deref())
+    drawn.map_err(|e| Report::new(SceneError::from(e)))
 }
 
 /// The paths of summary and page in the output folder, without their endings. Each part of a sweep has its own.
 fn results_stem(command: &Command, name: &str, results: Option<&str>) -> String {
     let of_scene = results.map_or(String::new(), |results| format!("{results}-"));
     let part = match command {
-        Command::Sweep {
+        Command::Sweep(SweepArgs {
             shard: Some(Shard { part, of }),
             ..
-        } => format!("-{part}-of-{of}"),
+        }) => format!("-{part}-of-{of}"),
         _ => String::new(),
     };
     format!("{of_scene}{name}{part}")
-}
-
-/// Runs a study of one scene: one arm for each command, so longer than a screen.
-fn run_study(
-    command: &Command,
-    scene: &Scene,
-    out: &Path,
-    bar: &ProgressBar,
-) -> Result<TrajectoryOutcome, StudyError> {
-    let progress = |step: Step<'_>| show_step(bar, step);
-    let outcome = match command {
-        Command::Check { .. } => dwell_study::check(scene)?,
-        Command::Reduce {
-            table_accuracy,
-            accuracy,
-            points,
-            table_from,
-            table_to,
-            ..
-        } => {
-            let points = points.map(|n| n as usize);
-            let accuracies = [*table_accuracy, *accuracy];
-            let tabulation = table_request(accuracies, [*table_from, *table_to]);
-            dwell_study::reduce(scene, points, tabulation)?
-        }
-        Command::Simulate { .. } => {
-            let (solver, times, span) = simulation(command)?;
-            return dwell_study::simulate_within(scene, &solver, times.as_deref(), span, &progress);
-        }
-        Command::Cycle {
-            fluctuation,
-            method,
-            rtol,
-            ..
-        } => {
-            let settings = cycle_settings(*method, *rtol);
-            return dwell_study::cycle(scene, &settings, *fluctuation);
-        }
-        Command::WorkPrecision { .. } => dwell_validation::work_precision(scene, &progress)?,
-        Command::Equilibria { .. } => dwell_study::equilibria(scene)?,
-        Command::Linearise { about, .. } => dwell_study::linearise(scene, *about)?,
-        Command::Runs { points, .. } => {
-            let points = points.map(|n| n as usize);
-            return dwell_study::unit_runs(scene, points, &progress);
-        }
-        Command::Symbolic {
-            format, reaction, ..
-        } => dwell_study::symbolic(scene, *format, reaction.as_deref())?,
-        Command::Export(arguments) => export::run(arguments, scene)?,
-        Command::Kinematics(arguments) => {
-            return run_trajectory(arguments, scene, Analysis::Kinematics, bar);
-        }
-        Command::Statics(arguments) => {
-            return run_trajectory(arguments, scene, Analysis::Statics, bar);
-        }
-        Command::Kinetostatics(arguments) => {
-            return run_trajectory(arguments, scene, Analysis::Kinetostatics, bar);
-        }
-        Command::Calibrate {
-            parameter, period, ..
-        } => {
-            if let Some(path) = parameter {
-                sweep::note_former_path(scene, path);
-            }
-            dwell_study::calibrate(scene, parameter.as_deref(), *period)?
-        }
-        Command::Sweep { .. } => {
-            let sweep = sweep::parameter_sweep(command, scene, out);
-            dwell_study::sweep(scene, &sweep, &progress)?
-        }
-        // They are no studies of a scene.
-        Command::Validate { .. }
-        | Command::View { .. }
-        | Command::Schema
-        | Command::Init { .. } => Outcome::default(),
-    };
-    let early_stop = None;
-    Ok(TrajectoryOutcome {
-        outcome,
-        early_stop,
-    })
-}
-
-/// The table that is asked for, by the accuracy of `--table-accuracy` or `--accuracy`, over an interval if it has both ends.
-fn table_request(
-    [table_accuracy, accuracy]: [Option<f64>; 2],
-    [from, to]: [Option<f64>; 2],
-) -> Option<TableRequest> {
-    let accuracy = table_accuracy.or(accuracy)?;
-    Some(TableRequest {
-        accuracy,
-        interval: from.zip(to),
-        required: table_accuracy.is_some(),
-    })
-}
-
-/// How a steady cycle is integrated.
-fn cycle_settings(method: Method, rtol: f64) -> SolverSettings {
-    SolverSettings {
-        method,
-        rtol,
-        atol: rtol,
-        ..SolverSettings::default()
-    }
-}
-
-/// Analyses a scene along its trajectory.
-fn run_trajectory(
-    arguments: &TrajectoryArgs,
-    scene: &Scene,
-    analysis: Analysis,
-    bar: &ProgressBar,
-) -> Result<TrajectoryOutcome, StudyError> {
-    let points = arguments.points.map(|n| n as usize);
-    let progress = |step: Step<'_>| show_step(bar, step);
-    let span = PictureSpan {
-        from: arguments.from,
-        to: arguments.to,
-    };
-    dwell_study::analyse_trajectory_within(scene, analysis, points, span, &progress)
 }
 
 /// The folder of the results, tested before the work.
@@ -357,9 +226,9 @@ fn open_folder(options: &Options) -> Result<OutputFolder, Report> {
     }
     let mut folder = OutputFolder::open(out).map_err(|e| unwritten(&e))?;
     let source = match &options.command {
-        Command::Reduce {
+        Command::Reduce(ReduceArgs {
             runs: Some(runs), ..
-        } => {
+        }) => {
             let first = runs.first().map(PathBuf::as_path);
             first.map(|first| (exported_runs::name(options, runs), first))
         }
@@ -447,15 +316,7 @@ pub(crate) fn print_note(text: &str) {
 
 fn validation_error(error: ValidationError) -> SceneError {
     match error {
-        ValidationError::Study(error) => as_scene_error(error),
-        other => SceneError::without_labels(other.to_string(), None),
-    }
-}
-
-fn as_scene_error(error: StudyError) -> SceneError {
-    match error {
-        StudyError::Scene(scene) => *scene,
-        StudyError::Sweep(sweep) => SceneError::without_labels(sweep.to_string(), sweep.help()),
+        ValidationError::Study(error) => error.into(),
         other => SceneError::without_labels(other.to_string(), None),
     }
 }

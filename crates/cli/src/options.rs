@@ -1,16 +1,16 @@
 //! The command-line options: the names of fields are the names of options.
 
 use crate::export::ExportArgs;
+use crate::reduction::ReduceArgs;
+use crate::simulation::{METHODS, SimulateArgs};
+use crate::sweep::SweepArgs;
 use crate::values::{
-    Choices, choice, parse_accuracy, parse_count, parse_finite, parse_fluctuation, parse_name,
-    parse_table_accuracy, parse_time, parse_tolerance,
+    Choices, choice, parse_finite, parse_fluctuation, parse_name, parse_time, parse_tolerance,
 };
 use clap::{Args, Parser, Subcommand};
 use dwell_dynamics::Method;
-use dwell_report::TableFormat;
 use dwell_study::{
-    FormulaFormat, Language, OperatingPoint, PictureFormat, Pictures, RowStore,
-    SampleInterpolation, Shard,
+    Analysis, FormulaFormat, Language, OperatingPoint, PictureFormat, PictureSpan, Pictures,
 };
 use std::path::{Path, PathBuf};
 
@@ -46,75 +46,9 @@ pub(crate) enum Command {
         scene: PathBuf,
     },
     /// Reduced model (m, ½m′, a, b, w, c) over the range: table and figures
-    Reduce {
-        /// The scene file, or `-` for standard input
-        #[arg(required_unless_present = "runs")]
-        scene: Option<PathBuf>,
-        /// Instead of a scene: the exported tables (CSV or NPZ) of two kinetostatic runs of any program, of run i (uniform
-        /// speed) and of run ii (uniform acceleration), as `dwell runs` writes them
-        #[arg(long = "from", num_args = 2, value_names = ["RUN_I", "RUN_II"],
-              conflicts_with_all = ["scene", "table_accuracy", "accuracy", "points"])]
-        runs: Option<Vec<PathBuf>>,
-        /// TOML file that names the columns of the exported tables: coordinate, speed, acceleration, force, unit, [reactions]
-        #[arg(long, requires = "runs", value_name = "FILE")]
-        columns: Option<PathBuf>,
-        /// How values between the exported positions are found (default: trigonometric over a whole revolution at equal
-        /// distances, otherwise cubic)
-        #[arg(long, requires = "runs", value_parser = choice(INTERPOLATIONS), value_name = "INTERPOLATION")]
-        interpolation: Option<SampleInterpolation>,
-        /// Also write an interpolation table with this accuracy, relative to the largest value of each function, such
-        /// as 1e-12
-        #[arg(long, value_parser = parse_table_accuracy, value_name = "ACCURACY", allow_hyphen_values = true)]
-        table_accuracy: Option<f64>,
-        /// Required relative accuracy over the whole range; uses exact evaluation or a table, whichever is cheaper
-        #[arg(long, value_parser = parse_accuracy, value_name = "ACCURACY", allow_hyphen_values = true, conflicts_with = "table_accuracy")]
-        accuracy: Option<f64>,
-        /// Number of positions, both ends included (default: 721)
-        #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1_000_000), value_name = "COUNT", allow_hyphen_values = true)]
-        points: Option<u32>,
-        /// Lower end of the table, in the scene's unit (default: a full period, or the range without 2 % at each end)
-        #[arg(long, requires_all = ["table_accuracy", "table_to"], value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
-        table_from: Option<f64>,
-        /// Upper end of the table, in the scene's unit
-        #[arg(long, requires_all = ["table_accuracy", "table_from"], value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
-        table_to: Option<f64>,
-    },
+    Reduce(ReduceArgs),
     /// Free motion under loads and drives, with energies and reactions: tables and figures
-    Simulate {
-        /// The scene file, or `-` for standard input
-        scene: PathBuf,
-        /// The integrator
-        #[arg(long, value_parser = choice(METHODS), default_value = "bdf")]
-        method: Method,
-        /// Relative tolerance
-        #[arg(long, default_value = "1e-10", value_parser = parse_tolerance, value_name = "TOLERANCE", allow_hyphen_values = true)]
-        rtol: f64,
-        /// Absolute tolerance, in rad and rad/s, or m and m/s (default: that of --rtol)
-        #[arg(long, value_parser = parse_tolerance, value_name = "TOLERANCE", allow_hyphen_values = true)]
-        atol: Option<f64>,
-        /// Maximum step, s (default: no limit)
-        #[arg(long, value_parser = parse_time, value_name = "SECONDS", allow_hyphen_values = true)]
-        max_step: Option<f64>,
-        /// Required accuracy, instead of method and tolerance. The cheapest method that meets it is chosen. In rad for
-        /// angles, otherwise relative to the largest value: a number such as 1e-6, or draft (1e-3), standard (1e-6),
-        /// precise (1e-9) or reference (1e-10)
-        #[arg(long, value_parser = parse_accuracy, value_name = "ACCURACY", allow_hyphen_values = true,
-              conflicts_with_all = ["method", "rtol", "atol", "max_step"])]
-        accuracy: Option<f64>,
-        /// Time between the rows of the table, s (default: a thousandth of the duration)
-        #[arg(long, value_parser = parse_time, value_name = "SECONDS", allow_hyphen_values = true)]
-        sample_interval: Option<f64>,
-        /// File of the wanted instants, instead of a sample interval: one time in s on each line, in ascending order.
-        /// The last instant of the motion is a row, too
-        #[arg(long, value_name = "FILE", conflicts_with = "sample_interval")]
-        times: Option<PathBuf>,
-        /// Time at which curves begin in the pictures, s; files keep all rows
-        #[arg(long, value_parser = parse_finite, value_name = "SECONDS", allow_hyphen_values = true)]
-        from: Option<f64>,
-        /// Time at which they end, s
-        #[arg(long, value_parser = parse_finite, value_name = "SECONDS", allow_hyphen_values = true)]
-        to: Option<f64>,
-    },
+    Simulate(SimulateArgs),
     /// Steady cycle of a driven machine, and the flywheel for a given coefficient of fluctuation
     Cycle {
         /// The scene file, or `-` for standard input
@@ -189,42 +123,7 @@ pub(crate) enum Command {
     },
     /// Parameter study over many variants of a scene, on all cores, stored in an SQLite file or in Parquet files; an
     /// interrupted run can be resumed
-    Sweep {
-        /// The scene file, or `-` for standard input
-        scene: PathBuf,
-        /// Parameter to vary, in the scene's unit: PATH=FROM:TO:COUNT, PATH=A,B,C, PATH~normal(MEAN,SD),
-        /// PATH~uniform(FROM,TO), PATH±TOLERANCE or PATH±PERCENT%; may be given several times
-        #[arg(
-            long,
-            required = true,
-            value_name = "VARIATION",
-            allow_hyphen_values = true
-        )]
-        vary: Vec<String>,
-        /// Number of random samples for each combination of listed values
-        #[arg(long, value_parser = parse_count, value_name = "COUNT", allow_hyphen_values = true)]
-        samples: Option<u64>,
-        /// Random seed
-        #[arg(
-            long,
-            default_value_t = 1,
-            value_name = "NUMBER",
-            allow_hyphen_values = true
-        )]
-        seed: u64,
-        /// Result columns to compute, by name or prefix, such as period or m (default: all)
-        #[arg(long = "result", value_name = "RESULT", value_delimiter = ',')]
-        results: Vec<String>,
-        /// Compute only this part of the points, such as 2/8, in files of its own
-        #[arg(long, value_name = "PART/PARTS", allow_hyphen_values = true)]
-        shard: Option<Shard>,
-        /// Compute nothing; export the stored results, including those of all shards
-        #[arg(long, value_parser = choice(TABLE_FORMATS), value_name = "FORMAT")]
-        export: Option<TableFormat>,
-        /// Where rows are stored (default: sqlite below 100 000 points, parquet from there on)
-        #[arg(long, value_parser = choice(ROW_STORES), value_name = "KIND")]
-        store: Option<RowStore>,
-    },
+    Sweep(SweepArgs),
     /// Run all checks on all cases, or on the named ones; exit status 1 if a check fails
     Validate {
         /// Names of cases, or folders with a scene.toml (default: all cases)
@@ -258,12 +157,23 @@ pub(crate) enum Command {
 }
 
 impl Command {
+    /// What is analysed along a trajectory, of a command that does so.
+    pub(crate) fn trajectory(&self) -> Option<(&TrajectoryArgs, Analysis)> {
+        match self {
+            Self::Kinematics(arguments) => Some((arguments, Analysis::Kinematics)),
+            Self::Statics(arguments) => Some((arguments, Analysis::Statics)),
+            Self::Kinetostatics(arguments) => Some((arguments, Analysis::Kinetostatics)),
+            _ => None,
+        }
+    }
+
     /// The scene file, of a command that studies one.
     pub(crate) fn scene(&self) -> Option<&Path> {
         match self {
-            Self::Reduce { scene, .. } => scene.as_deref(),
+            Self::Reduce(arguments) => arguments.scene.as_deref(),
+            Self::Simulate(arguments) => Some(&arguments.scene),
+            Self::Sweep(arguments) => Some(&arguments.scene),
             Self::Check { scene }
-            | Self::Simulate { scene, .. }
             | Self::Cycle { scene, .. }
             | Self::WorkPrecision { scene }
             | Self::Equilibria { scene }
@@ -271,7 +181,6 @@ impl Command {
             | Self::Runs { scene, .. }
             | Self::Symbolic { scene, .. }
             | Self::Calibrate { scene, .. }
-            | Self::Sweep { scene, .. }
             | Self::View { scene, .. } => Some(scene),
             Self::Export(arguments) => Some(&arguments.scene),
             Self::Kinematics(arguments)
@@ -295,38 +204,25 @@ pub(crate) struct TrajectoryArgs {
     pub(crate) scene: PathBuf,
     /// Number of positions, both ends included (default: the scene's `points`, or 361)
     #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1_000_000), value_name = "COUNT", allow_hyphen_values = true)]
-    pub(crate) points: Option<u32>,
+    points: Option<u32>,
     /// Where curves begin in the pictures: the time in s, or the swept coordinate in the scene's unit; files keep all rows
     #[arg(long, value_parser = parse_finite, value_name = "ABSCISSA", allow_hyphen_values = true)]
-    pub(crate) from: Option<f64>,
+    from: Option<f64>,
     /// Where they end
     #[arg(long, value_parser = parse_finite, value_name = "ABSCISSA", allow_hyphen_values = true)]
-    pub(crate) to: Option<f64>,
+    to: Option<f64>,
 }
 
-const METHODS: Choices<Method> = &[
-    (
-        "bdf",
-        Method::Bdf,
-        "Implicit, variable order 1 to 5: for stiff equations, such as those of friction",
-    ),
-    (
-        "esdirk34",
-        Method::Esdirk34,
-        "Implicit Runge–Kutta of order 4",
-    ),
-    ("tr-bdf2", Method::TrBdf2, "Implicit, order 2"),
-    (
-        "tsit45",
-        Method::Tsit45,
-        "Explicit Runge–Kutta of order 5: for smooth motions",
-    ),
-    (
-        "dop853",
-        Method::Dop853,
-        "Explicit Runge–Kutta of order 8: for smooth motions at high accuracy",
-    ),
-];
+impl TrajectoryArgs {
+    pub(crate) fn points(&self) -> Option<usize> {
+        self.points.map(|n| n as usize)
+    }
+
+    pub(crate) fn span(&self) -> PictureSpan {
+        let Self { from, to, .. } = *self;
+        PictureSpan { from, to }
+    }
+}
 
 const PICTURES: Choices<Pictures> = &[
     ("none", Pictures::None, "None"),
@@ -346,24 +242,6 @@ const PICTURE_FORMATS: Choices<PictureFormat> = &[
     ("png", PictureFormat::Png, "Pixels, for screens"),
     ("svg", PictureFormat::Svg, "Lines and letters, for papers"),
     ("both", PictureFormat::Both, "PNG and SVG"),
-];
-
-const INTERPOLATIONS: Choices<SampleInterpolation> = &[
-    (
-        "linear",
-        SampleInterpolation::Linear,
-        "Straight lines, as tables are usually read",
-    ),
-    (
-        "cubic",
-        SampleInterpolation::Cubic,
-        "Cubic polynomials; of m with ½m′ for its slope",
-    ),
-    (
-        "trigonometric",
-        SampleInterpolation::Trigonometric,
-        "A trigonometric series over a whole revolution",
-    ),
 ];
 
 const OPERATING_POINTS: Choices<OperatingPoint> = &[
@@ -396,14 +274,4 @@ const FORMATS: Choices<FormulaFormat> = &[
         FormulaFormat::Code(Language::Python),
         "A function in Python",
     ),
-];
-
-const TABLE_FORMATS: Choices<TableFormat> = &[
-    ("csv", TableFormat::Csv, "Text"),
-    ("npz", TableFormat::Npz, "A NumPy archive"),
-];
-
-const ROW_STORES: Choices<RowStore> = &[
-    ("sqlite", RowStore::Sqlite, "One SQLite file"),
-    ("parquet", RowStore::Parquet, "A folder of Parquet files"),
 ];

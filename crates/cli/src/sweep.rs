@@ -1,53 +1,78 @@
-//! The options of `dwell sweep`, of scenes in the plane and in space.
+//! `dwell sweep`: its options, and the sweep that they ask for, of scenes in the plane and in space.
 
-use crate::options::Command;
 use crate::print_note;
+use crate::values::{Choices, choice, parse_count};
+use clap::Args;
+use dwell_report::TableFormat;
 use dwell_scene::SceneFile;
-use dwell_study::ParameterSweep;
-use std::path::Path;
+use dwell_study::{ParameterSweep, RowStore, Shard};
+use std::path::{Path, PathBuf};
 
-/// The sweep that a command asks for; other commands ask for none.
-pub(crate) fn parameter_sweep<'a>(
-    command: &'a Command,
-    scene: &SceneFile,
-    folder: &'a Path,
-) -> ParameterSweep<'a> {
-    let nothing = ParameterSweep {
-        vary: &[],
-        samples: None,
-        seed: 1,
-        requests: &[],
-        shard: None,
-        export: None,
-        store: None,
-        folder,
-    };
-    let Command::Sweep {
-        vary,
-        samples,
-        seed,
-        results,
-        shard,
-        export,
-        store,
-        ..
-    } = command
-    else {
-        return nothing;
-    };
-    for axis in vary {
-        let path = axis.split(['=', '~', '±']).next().unwrap_or_default();
-        note_former_path(scene, path.trim());
-    }
-    ParameterSweep {
-        vary,
-        samples: *samples,
-        seed: *seed,
-        requests: results,
-        shard: *shard,
-        export: *export,
-        store: *store,
-        folder,
+const TABLE_FORMATS: Choices<TableFormat> = &[
+    ("csv", TableFormat::Csv, "Text"),
+    ("npz", TableFormat::Npz, "A NumPy archive"),
+];
+
+const ROW_STORES: Choices<RowStore> = &[
+    ("sqlite", RowStore::Sqlite, "One SQLite file"),
+    ("parquet", RowStore::Parquet, "A folder of Parquet files"),
+];
+
+#[derive(Debug, Args)]
+pub(crate) struct SweepArgs {
+    /// The scene file, or `-` for standard input
+    pub(crate) scene: PathBuf,
+    /// Parameter to vary, in the scene's unit: PATH=FROM:TO:COUNT, PATH=A,B,C, PATH~normal(MEAN,SD),
+    /// PATH~uniform(FROM,TO), PATH±TOLERANCE or PATH±PERCENT%; may be given several times
+    #[arg(
+        long,
+        required = true,
+        value_name = "VARIATION",
+        allow_hyphen_values = true
+    )]
+    vary: Vec<String>,
+    /// Number of random samples for each combination of listed values
+    #[arg(long, value_parser = parse_count, value_name = "COUNT", allow_hyphen_values = true)]
+    samples: Option<u64>,
+    /// Random seed
+    #[arg(
+        long,
+        default_value_t = 1,
+        value_name = "NUMBER",
+        allow_hyphen_values = true
+    )]
+    seed: u64,
+    /// Result columns to compute, by name or prefix, such as period or m (default: all)
+    #[arg(long = "result", value_name = "RESULT", value_delimiter = ',')]
+    results: Vec<String>,
+    /// Compute only this part of the points, such as 2/8, in files of its own
+    #[arg(long, value_name = "PART/PARTS", allow_hyphen_values = true)]
+    pub(crate) shard: Option<Shard>,
+    /// Compute nothing; export the stored results, including those of all shards
+    #[arg(long, value_parser = choice(TABLE_FORMATS), value_name = "FORMAT")]
+    export: Option<TableFormat>,
+    /// Where rows are stored (default: sqlite below 100 000 points, parquet from there on)
+    #[arg(long, value_parser = choice(ROW_STORES), value_name = "KIND")]
+    store: Option<RowStore>,
+}
+
+impl SweepArgs {
+    /// The sweep that is asked for, with its files in a folder.
+    pub(crate) fn sweep<'a>(&'a self, scene: &SceneFile, folder: &'a Path) -> ParameterSweep<'a> {
+        for axis in &self.vary {
+            let path = axis.split(['=', '~', '±']).next().unwrap_or_default();
+            note_former_path(scene, path.trim());
+        }
+        ParameterSweep {
+            vary: &self.vary,
+            samples: self.samples,
+            seed: self.seed,
+            requests: &self.results,
+            shard: self.shard,
+            export: self.export,
+            store: self.store,
+            folder,
+        }
     }
 }
 

@@ -2,12 +2,12 @@
 
 use crate::interface::interface;
 use crate::options::DEFAULT_CASE_FOLDER;
-use crate::{as_scene_error, cases, print_warnings, validation_error};
+use crate::{cases, print_warnings, validation_error};
 use dwell_scene::{Scene, SceneError, SpaceScene};
-use dwell_study::{Outcome, Progress, Step, StudyError};
+use dwell_study::{Outcome, Step, StudyError};
 use dwell_validation::manual::KeyStudy;
 use dwell_validation::{
-    CaseResult, Validation, ValidationError, export_study, extremes, index, work_precision,
+    CaseResult, Validation, export_study, extremes, index, validate_program, work_precision,
 };
 use indicatif::ProgressBar;
 use miette::{Report, miette};
@@ -43,7 +43,12 @@ pub(crate) fn validate(
             bar.set_message(format!("{}: {}", scene.name, step.done));
             bar.inc(1);
         };
-        validate_case(scene, case, program.as_deref(), &progress).map_err(validation_error)
+        // What leaves the program is judged, too: it runs itself. Where the system does not say where it is, the library alone is.
+        let done = match &program {
+            Some(program) => validate_program(scene, case, program, &progress),
+            None => dwell_validation::validate(scene, case, &progress),
+        };
+        done.map_err(validation_error)
     };
     let all_cases = names.is_empty() && folder == Path::new(DEFAULT_CASE_FOLDER);
     let read: Vec<&Scene> = scenes.iter().flatten().collect();
@@ -62,14 +67,22 @@ pub(crate) fn validate(
         .map(|path| case_in_space(path, program.as_deref()));
     let spatial = spatial.collect();
     bar.finish_and_clear();
-    let mut others = studies.map_err(as_scene_error)?;
+    let mut others = studies.map_err(SceneError::from)?;
+    let names: Vec<String> = cases.iter().map(|c| c.display().to_string()).collect();
+    let by_case = case_results(&names, &scenes, &results);
     if let Some(keys) = keys {
         let extremes: Vec<_> = others.iter().flat_map(|o| o.findings.clone()).collect();
-        let names: Vec<String> = cases.iter().map(|c| c.display().to_string()).collect();
-        let results = case_results(&names, &scenes, &results);
-        others.push(keys.manual(&results, &extremes, &interface()));
+        others.push(keys.manual(&by_case, &extremes, &interface()));
     }
-    let (mut all, failures) = collect_reports(&cases, &scenes, results);
+    let mut all = Outcome::default();
+    if cases.len() > 1 && results.iter().any(Result::is_ok) {
+        let overview = index(&by_case);
+        all.files.extend("", overview.files);
+        all.pictures.extend(overview.pictures);
+    }
+    let (done, failed) = separate(results);
+    done.into_iter().for_each(|one| add(&mut all, one.outcome));
+    let failures = combined_error(failed);
     let failures = add_cases_in_space(spatial, &mut all, failures);
     all.record.add_count("cases", cases.len() + in_space.len());
     others.into_iter().for_each(|added| add(&mut all, added));
@@ -103,20 +116,6 @@ fn studies(all: Option<&[&Scene]>, (slow, seed): (bool, u64)) -> Result<Vec<Outc
     [extremes, costs, exports].into_iter().flatten().collect()
 }
 
-/// Validates a case. What leaves the program is judged, too: it runs itself. Where the system does not say where it is, the
-/// library alone is.
-fn validate_case(
-    scene: &Scene,
-    case: &Path,
-    program: Option<&Path>,
-    progress: Progress<'_>,
-) -> Result<Validation, ValidationError> {
-    match program {
-        Some(program) => dwell_validation::validate_program(scene, case, program, progress),
-        None => dwell_validation::validate(scene, case, progress),
-    }
-}
-
 /// A scene in space with its validation, by the reference beside it if there is one, and what leaves the program of it.
 fn case_in_space(
     path: &Path,
@@ -136,15 +135,13 @@ fn add_cases_in_space(
     all: &mut Outcome,
     failures: Option<SceneError>,
 ) -> Option<SceneError> {
-    let (done, failed): (Vec<_>, Vec<_>) = results.into_iter().partition(Result::is_ok);
-    let done: Vec<(SpaceScene, Validation)> = done.into_iter().flatten().collect();
+    let (done, failed) = separate(results);
     if done.len() > 1 {
         let pairs: Vec<_> = done.iter().map(|(scene, done)| (scene, done)).collect();
         let overview = dwell_validation::index_in_space(&pairs);
         all.files.extend("", overview.files);
     }
     done.into_iter().for_each(|(_, one)| add(all, one.outcome));
-    let failed = failed.into_iter().filter_map(Result::err);
     combined_error(failures.into_iter().chain(failed).collect())
 }
 
@@ -182,31 +179,11 @@ fn case_results<'a>(
     names.iter().map(String::as_str).zip(results_of).collect()
 }
 
-fn collect_reports(
-    cases: &[PathBuf],
-    scenes: &[Result<Scene, SceneError>],
-    results: Vec<Result<Validation, SceneError>>,
-) -> (Outcome, Option<SceneError>) {
-    let mut all = Outcome::default();
-    let names: Vec<String> = cases.iter().map(|c| c.display().to_string()).collect();
-    let mut failures = Vec::new();
-    if cases.len() > 1 && results.iter().any(Result::is_ok) {
-        let overview = index(&case_results(&names, scenes, &results));
-        all.files.extend("", overview.files);
-        all.pictures.extend(overview.pictures);
-    }
-    for result in results {
-        match result {
-            Ok(one) => {
-                all.summary += &one.outcome.summary;
-                all.findings.extend(one.outcome.findings);
-                all.files.extend("", one.outcome.files);
-                all.pictures.extend(one.outcome.pictures);
-            }
-            Err(error) => failures.push(error),
-        }
-    }
-    (all, combined_error(failures))
+/// What was validated, and what could not be.
+fn separate<T>(results: Vec<Result<T, SceneError>>) -> (Vec<T>, Vec<SceneError>) {
+    let (done, failed): (Vec<_>, Vec<_>) = results.into_iter().partition(Result::is_ok);
+    let failed = failed.into_iter().filter_map(Result::err);
+    (done.into_iter().flatten().collect(), failed.collect())
 }
 
 /// All the errors in one.

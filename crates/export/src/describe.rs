@@ -1,14 +1,12 @@
 //! What an export is and what it is worth, in words.
 
-use crate::export::Export;
-use crate::measure::STATED_STEP;
-use crate::part::Precision;
+use crate::export::{Export, STATED_STEP};
 
 /// What the export of a machine is and what it is worth, line by line, for every target.
 pub(crate) fn describe(export: &Export) -> Vec<String> {
     let (machine, measured) = (&export.machine, &export.measured);
     let domain = machine.domain;
-    let unit = if machine.is_angle { "rad" } else { "m" };
+    let unit = machine.unit();
     let mut lines = vec![
         machine.title.clone(),
         String::new(),
@@ -54,16 +52,13 @@ fn accuracy(export: &Export) -> [String; 2] {
     let (machine, measured) = (&export.machine, &export.measured);
     let errors = measured.errors;
     let accuracy = export.request.accuracy;
-    let kind = match export.request.precision {
-        Precision::Double => "double precision",
-        Precision::Float => "single precision, its rounding included",
-    };
     let asked = match export.code {
         None => format!("accuracy: asked for {accuracy:e}"),
         Some(_) => "accuracy: the operations of the model itself".to_owned(),
     };
     let asked = format!(
-        "{asked}; largest errors measured at 4096 positions in {kind}, relative to the largest value of each function:"
+        "{asked}; largest errors measured at 4096 positions in {}, relative to the largest value of each function:",
+        export.request.precision.measured_in()
     );
     let mut all = vec![("m", errors.m), ("half_dm", errors.half_dm)];
     if !machine.loads.is_empty() {

@@ -1,11 +1,14 @@
 //! The exported code in Rust, operation by operation: with it the export measures its own errors, its step and its worst
 //! case before it is written, and its tests compare what is compiled.
 
+mod load;
 mod motion;
 mod pieces;
 
+pub(crate) use load::Load;
 pub use motion::{Evaluator, MotionTerms, ReactionTerms, State};
-pub(crate) use motion::{has_rotor, scene_value};
+
+use crate::real::Real;
 
 /// Why exported code has no value. Its outputs are zero then, and a state stays as it was.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -19,4 +22,24 @@ pub enum Status {
     /// m with everything added is not above zero.
     #[error("no inertia")]
     NoInertia,
+}
+
+/// The change of a state's `y` in a step of `h` seconds, by the classical Runge–Kutta method of fourth order.
+pub(crate) fn runge_kutta<R: Real>(
+    y: &[R],
+    h: R,
+    rates: impl Fn(&[R]) -> Result<Vec<R>, Status>,
+) -> Result<Vec<R>, Status> {
+    let half = R::of(0.5) * h;
+    let moved = |by: R, rates: &[R]| -> Vec<R> {
+        let both = y.iter().zip(rates);
+        both.map(|(y, rate)| *y + by * *rate).collect()
+    };
+    let one = rates(y)?;
+    let two = rates(&moved(half, &one))?;
+    let three = rates(&moved(half, &two))?;
+    let four = rates(&moved(h, &three))?;
+    let sixth = h / R::of(6.0);
+    let change = |i| sixth * (one[i] + R::of(2.0) * (two[i] + three[i]) + four[i]);
+    Ok((0..y.len()).map(change).collect())
 }

@@ -1,14 +1,18 @@
 //! A machine with its fitted parts and what was measured of them: all that a target needs.
 
+mod measure;
+
+pub use measure::{Errors, Measured, STATED_STEP, SelfTestMotion, SelfTestRow};
+
 use crate::error::FitError;
-use crate::evaluator::{Evaluator, has_rotor, scene_value};
-use crate::fit::{FittedPart, fit, scales};
-use crate::machine::{FunctionSampler, MachineDescription, PartKind};
-use crate::measure::{self, Measurable, Measured, measure};
+use crate::evaluator::Evaluator;
+use crate::fit::fit;
+use crate::machine::{FunctionSampler, LoadDescription, MachineDescription, Motor, PartKind};
 use crate::part::{Column, Part, Precision};
 use crate::real::Real;
 use crate::slopes::with_slopes;
 use crate::straight_line::StraightLine;
+use measure::{measure, row};
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,28 +48,8 @@ impl Export {
         request: Request,
         sampler: &mut S,
     ) -> Result<Self, FitError<S::Error>> {
-        let Request {
-            accuracy,
-            precision,
-        } = request;
-        let mut one = |kind| fit(&machine, kind, accuracy, precision, sampler);
-        let fitted: [FittedPart; 3] = [
-            one(PartKind::Motion)?,
-            one(PartKind::Reactions)?,
-            one(PartKind::Positions)?,
-        ];
-        let scales = measure::scales(&machine, &fitted);
-        let parts = fitted.map(|fitted| fitted.part);
-        let cells = Measurable::Cells(&parts);
-        let measured = measure(&machine, &cells, scales, (precision, sampler));
-        Self {
-            measured: measured.map_err(FitError::Sampler)?,
-            machine,
-            request,
-            parts,
-            code: None,
-        }
-        .within_precision()
+        let asked = (Some(request.accuracy), request.precision);
+        Self::measured(machine, asked, None, sampler)?.within_precision()
     }
 
     /// Takes the operations of all functions of a machine, and measures them. By part in the order of [`PartKind::ALL`], the
@@ -80,39 +64,54 @@ impl Export {
         code: [StraightLine; 3],
         sampler: &mut S,
     ) -> Result<Self, FitError<S::Error>> {
-        let mut one = |kind| scales(&machine, kind, precision, sampler);
-        let scaled: [FittedPart; 3] = [
-            one(PartKind::Motion)?,
-            one(PartKind::Reactions)?,
-            one(PartKind::Positions)?,
-        ];
-        let scales = measure::scales(&machine, &scaled);
         let [motion, reactions, positions] = code;
-        let motion = with_slopes(&motion, &rotor_columns(&machine));
-        let code = [motion, reactions, positions];
-        let measurable = Measurable::Code(&code);
-        let measured = measure(&machine, &measurable, scales, (precision, sampler));
-        let measured = measured.map_err(FitError::Sampler)?;
+        let first = 2 * machine.curves(PartKind::Motion).len();
+        let motion = with_slopes(&motion, first, &machine.rotor_columns());
+        let code = Some([motion, reactions, positions]);
+        let mut export = Self::measured(machine, (None, precision), code, sampler)?;
         let accuracy = match precision {
             Precision::Double => 1e-7,
             Precision::Float => 1e-3,
         };
         // Operations of another branch are off by much more.
-        let error = measured.errors.max();
+        let error = export.measured.errors.max();
         if error.is_nan() || error > accuracy {
             return Err(FitError::OtherOperations { error });
         }
-        Self {
-            measured,
+        export.request.accuracy = error;
+        export.within_precision()
+    }
+
+    /// Of a machine in cells of an accuracy, or as operations.
+    fn measured<S: FunctionSampler>(
+        machine: MachineDescription,
+        asked: (Option<f64>, Precision),
+        code: Option<[StraightLine; 3]>,
+        sampler: &mut S,
+    ) -> Result<Self, FitError<S::Error>> {
+        let mut one = |kind| fit(&machine, kind, asked, sampler);
+        let fitted = [
+            one(PartKind::Motion)?,
+            one(PartKind::Reactions)?,
+            one(PartKind::Positions)?,
+        ];
+        let scales = row(
+            &machine,
+            fitted.each_ref().map(|part| &part.scales[..]),
+            2.0,
+        );
+        let mut export = Self {
             machine,
             request: Request {
-                accuracy: error,
-                precision,
+                accuracy: asked.0.unwrap_or_default(),
+                precision: asked.1,
             },
-            parts: scaled.map(|scaled| scaled.part),
-            code: Some(code),
-        }
-        .within_precision()
+            parts: fitted.map(|fitted| fitted.part),
+            code,
+            measured: Measured::default(),
+        };
+        export.measured = measure(&export, &scales, sampler).map_err(FitError::Sampler)?;
+        Ok(export)
     }
 
     /// Its code in Rust, in one kind of number.
@@ -153,18 +152,10 @@ impl Export {
         if !constants.all(fits) {
             return Some("a constant of the code".to_owned());
         }
-        for load in &self.machine.loads {
-            let motor = load.effect.motor().map_or([0.0; 5], |m| {
-                [
-                    m.torque_constant,
-                    m.resistance,
-                    m.inductance,
-                    m.gear_ratio,
-                    m.rotor_inertia,
-                ]
-            });
-            if !fits(scene_value(&load.effect)) || !motor.into_iter().all(fits) {
-                return Some(load.name.clone());
+        for LoadDescription { name, effect, .. } in &self.machine.loads {
+            let motor = effect.motor().map_or([0.0; 5], Motor::constants);
+            if !fits(effect.scene_value()) || !motor.into_iter().all(fits) {
+                return Some(name.clone());
             }
         }
         let starts = self.machine.initial.into_iter().all(fits);
@@ -182,13 +173,4 @@ impl Export {
         let bytes = |part: &Part| part.bytes(self.request.precision);
         self.parts.iter().map(bytes).sum()
     }
-}
-
-/// By column of motion: which output it is, and whether its slope is needed, since it moves a rotor.
-fn rotor_columns(machine: &MachineDescription) -> Vec<(usize, bool)> {
-    let first = 2 * machine.curves(PartKind::Motion).len();
-    let columns = machine.loads.iter();
-    let columns = columns.filter(|load| !load.effect.is_conservative());
-    let columns = columns.map(|load| has_rotor(&load.effect)).enumerate();
-    columns.map(|(k, rotor)| (first + k, rotor)).collect()
 }

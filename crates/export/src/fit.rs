@@ -24,198 +24,137 @@ const CHECKS: usize = 3 * TERMS;
 /// Part of the accuracy that the errors at these points may reach.
 const SHARE: f64 = 0.5;
 
-/// A fitted part, with the scale of each function: of value and half slope of the curves, then of the columns.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FittedPart {
+/// A fitted part, with the scale of each of its [values](sample_values).
+pub(crate) struct FittedPart {
     /// The cells.
-    pub part: Part,
-    /// By curve: of its value and of half its slope.
-    pub curve_scales: Vec<[f64; 2]>,
-    /// By column.
-    pub column_scales: Vec<f64>,
+    pub(crate) part: Part,
+    /// Of value and half slope of the curves, then of the columns.
+    pub(crate) scales: Vec<f64>,
 }
 
-/// One evaluation of all functions of a part.
-#[derive(Debug, Clone, Default)]
-struct Row {
-    curves: Vec<[f64; 2]>,
-    columns: Vec<f64>,
+/// All functions of a part at a coordinate (rad or m): value and half slope of the curves, then the columns.
+///
+/// # Errors
+/// Those of the sampler.
+pub(crate) fn sample_values<S: FunctionSampler>(
+    machine: &MachineDescription,
+    kind: PartKind,
+    q: f64,
+    sampler: &mut S,
+) -> Result<Vec<f64>, S::Error> {
+    let mut curves = vec![[0.0; 2]; machine.curves(kind).len()];
+    let mut columns = vec![0.0; machine.columns(kind).len()];
+    sampler.sample(kind, q, &mut curves, &mut columns)?;
+    Ok(curves.into_iter().flatten().chain(columns).collect())
 }
 
 struct Fitter<'a, S> {
     machine: &'a MachineDescription,
     kind: PartKind,
     sampler: &'a mut S,
-    curves: Vec<Function>,
-    columns: Vec<Function>,
+    accuracy: f64,
     precision: Precision,
-    /// By curve, and by column: the largest error.
-    curve_tolerances: Vec<[f64; 2]>,
-    column_tolerances: Vec<f64>,
-    /// Columns that are in the cells.
-    tabulated: Vec<usize>,
+    /// The part without its cells.
+    part: Part,
+    /// By value: the largest error.
+    tolerances: Vec<f64>,
 }
 
-/// Fits a part of a machine to an accuracy relative to the largest value of each function.
+/// Fits a part of a machine to an accuracy relative to the largest value of each function. Without an accuracy it has no cells:
+/// its functions are operations.
 ///
 /// # Errors
 /// [`FitError`] where there is no position, a function is not periodic, or the accuracy cannot be reached.
-pub fn fit<S: FunctionSampler>(
+pub(crate) fn fit<S: FunctionSampler>(
     machine: &MachineDescription,
     kind: PartKind,
-    accuracy: f64,
-    precision: Precision,
+    (accuracy, precision): (Option<f64>, Precision),
     sampler: &mut S,
 ) -> Result<FittedPart, FitError<S::Error>> {
-    let mut fitter = Fitter::new(machine, kind, precision, sampler);
-    let (curve_scales, column_scales, found) = fitter.sizes()?;
-    fitter.require_periodic(&curve_scales, &column_scales)?;
-    let allowed = SHARE * accuracy;
-    let both = |s: &[f64; 2]| s.map(|s| s * allowed);
-    fitter.curve_tolerances = curve_scales.iter().map(both).collect();
-    fitter.column_tolerances = column_scales.iter().map(|s| s * allowed).collect();
-    let is_tabulated = |k: &usize| matches!(found[*k], Column::Tabulated(_));
-    fitter.tabulated = (0..found.len()).filter(is_tabulated).collect();
-    let columns = fitter.columns.iter().copied().zip(found).collect();
-    let (index, mut cells, bins_per_unit) = fitter.smallest(accuracy)?;
-    if kind == PartKind::Motion && precision == Precision::Float {
-        balance(&mut cells, fitter.stride(), &index, machine.domain);
-    }
-    let part = Part {
-        curves: fitter.curves,
-        columns,
-        index,
-        cells,
-        bins_per_unit,
-    };
-    Ok(FittedPart {
-        part,
-        curve_scales,
-        column_scales,
-    })
-}
-
-/// The scales of a part whose functions are operations; nothing of it is in cells.
-///
-/// # Errors
-/// [`FitError`] where there is no position, or a function is not periodic.
-pub(crate) fn scales<S: FunctionSampler>(
-    machine: &MachineDescription,
-    kind: PartKind,
-    precision: Precision,
-    sampler: &mut S,
-) -> Result<FittedPart, FitError<S::Error>> {
-    let mut fitter = Fitter::new(machine, kind, precision, sampler);
-    let (curve_scales, column_scales, found) = fitter.sizes()?;
-    fitter.require_periodic(&curve_scales, &column_scales)?;
-    let part = Part {
-        columns: fitter.columns.iter().copied().zip(found).collect(),
-        curves: fitter.curves,
-        index: Vec::new(),
-        cells: Vec::new(),
-        bins_per_unit: 0.0,
-    };
-    Ok(FittedPart {
-        part,
-        curve_scales,
-        column_scales,
-    })
-}
-
-type Sizes = (Vec<[f64; 2]>, Vec<f64>, Vec<Column>);
-type Cells = (Vec<u16>, Vec<f64>, f64);
-
-impl<'a, S: FunctionSampler> Fitter<'a, S> {
-    fn new(
-        machine: &'a MachineDescription,
-        kind: PartKind,
-        precision: Precision,
-        sampler: &'a mut S,
-    ) -> Self {
-        Self {
-            machine,
-            kind,
-            sampler,
+    let columns = machine.columns(kind).into_iter();
+    let mut fitter = Fitter {
+        machine,
+        kind,
+        sampler,
+        accuracy: accuracy.unwrap_or_default(),
+        precision,
+        part: Part {
             curves: machine.curves(kind),
-            columns: machine.columns(kind),
-            precision,
-            curve_tolerances: Vec::new(),
-            column_tolerances: Vec::new(),
-            tabulated: Vec::new(),
+            columns: columns.map(|of| (of, Column::Constant(0.0))).collect(),
+            index: Vec::new(),
+            cells: Vec::new(),
+            bins_per_unit: 0.0,
+        },
+        tolerances: Vec::new(),
+    };
+    let scales = fitter.sizes()?;
+    fitter.require_periodic(&scales)?;
+    let mut part = fitter.part.clone();
+    if let Some(accuracy) = accuracy
+        && part.stride() > HEAD
+    {
+        let allowed = SHARE * accuracy;
+        fitter.tolerances = scales.iter().map(|scale| scale * allowed).collect();
+        part = fitter.smallest()?;
+        if kind == PartKind::Motion && precision == Precision::Float {
+            let stride = part.stride();
+            balance(&mut part.cells, stride, &part.index, machine.domain);
         }
     }
+    Ok(FittedPart { part, scales })
+}
 
-    fn row(&mut self, q: f64) -> Result<Row, FitError<S::Error>> {
-        let mut row = Row {
-            curves: vec![[0.0; 2]; self.curves.len()],
-            columns: vec![0.0; self.columns.len()],
-        };
-        self.sampler
-            .sample(self.kind, q, &mut row.curves, &mut row.columns)
-            .map_err(FitError::Sampler)?;
-        Ok(row)
+impl<S: FunctionSampler> Fitter<'_, S> {
+    fn row(&mut self, q: f64) -> Result<Vec<f64>, FitError<S::Error>> {
+        sample_values(self.machine, self.kind, q, self.sampler).map_err(FitError::Sampler)
     }
 
-    /// Numbers of a cell.
-    fn stride(&self) -> usize {
-        HEAD + CURVE * self.curves.len() + TERMS * self.tabulated.len()
-    }
-
-    /// Scales of all functions, and which columns are constants.
-    fn sizes(&mut self) -> Result<Sizes, FitError<S::Error>> {
-        let Domain { from, .. } = self.machine.domain;
-        let length = self.machine.domain.length();
-        let mut curves = vec![[0.0_f64; 2]; self.curves.len()];
-        let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.columns.len()];
+    /// Scales of all values; notes which columns are constants.
+    fn sizes(&mut self) -> Result<Vec<f64>, FitError<S::Error>> {
+        let (machine, length) = (self.machine, self.machine.domain.length());
+        let first = 2 * self.part.curves.len();
+        let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; first + self.part.columns.len()];
         for i in 0..=SIZE_POINTS {
-            let row = self.row(from + length * (i as f64 / SIZE_POINTS as f64))?;
-            for (size, value) in curves.iter_mut().zip(&row.curves) {
-                *size = [0, 1].map(|k| size[k].max(value[k].abs()));
-            }
-            for ([low, high], value) in ranges.iter_mut().zip(&row.columns) {
-                (*low, *high) = (low.min(*value), high.max(*value));
+            let row = self.row(machine.domain.from + length * (i as f64 / SIZE_POINTS as f64))?;
+            for ([low, high], value) in ranges.iter_mut().zip(row) {
+                (*low, *high) = (low.min(value), high.max(value));
             }
         }
+        let sizes: Vec<f64> = ranges.iter().map(|[l, h]| l.abs().max(h.abs())).collect();
         // A function and its slope are of one kind over a radian of a revolution, or over the domain.
-        let span = match self.machine.domain.revolutions {
+        let span = match machine.domain.revolutions {
             0 => length,
             revolutions => length / (std::f64::consts::TAU * f64::from(revolutions)),
         };
-        let curve_scale = |(size, &of): (&[f64; 2], &Function)| {
-            let value = size[0].max(KIND_FLOOR * self.machine.reference_size(of));
-            [value, size[1].max(KIND_FLOOR * value / span)]
-        };
-        let curve_scales = curves.iter().zip(&self.curves).map(curve_scale).collect();
-        let sizes: Vec<f64> = ranges.iter().map(|[l, h]| l.abs().max(h.abs())).collect();
-        let scale = |(k, &of): (usize, &Function)| {
-            let others = sizes.iter().zip(&self.columns);
-            let alike = others.filter(|(_, other)| self.machine.same_kind(of, **other));
-            let kind = alike.fold(self.machine.reference_size(of), |max, (s, _)| max.max(*s));
-            sizes[k].max(KIND_FLOOR * kind)
-        };
-        let column_scales: Vec<f64> = self.columns.iter().enumerate().map(scale).collect();
+        let mut scales = Vec::with_capacity(sizes.len());
+        for (size, &of) in sizes.chunks_exact(2).zip(&self.part.curves) {
+            let value = size[0].max(KIND_FLOOR * machine.reference_size(of));
+            scales.extend([value, size[1].max(KIND_FLOOR * value / span)]);
+        }
+        for (size, (of, _)) in sizes[first..].iter().zip(&self.part.columns) {
+            let others = sizes[first..].iter().zip(&self.part.columns);
+            let alike = others.filter(|(_, (other, _))| machine.same_kind(*of, *other));
+            let kind = alike.fold(machine.reference_size(*of), |max, (s, _)| max.max(*s));
+            scales.push(size.max(KIND_FLOOR * kind));
+        }
         let mut tabulated = 0;
-        let place = |((range, scale), &of): ((&[f64; 2], &f64), &Function)| {
-            let [low, high] = *range;
-            let rounding = ROUNDING * scale.max(self.machine.reference_size(of));
+        let columns = self.part.columns.iter_mut();
+        let ranges_and_scales = ranges[first..].iter().zip(&scales[first..]);
+        for ((of, column), ([low, high], scale)) in columns.zip(ranges_and_scales) {
+            let rounding = ROUNDING * scale.max(machine.reference_size(*of));
             if high - low > rounding {
+                *column = Column::Tabulated(tabulated);
                 tabulated += 1;
-                return Column::Tabulated(tabulated - 1);
+                continue;
             }
             let middle = 0.5 * (low + high);
-            Column::Constant(if middle.abs() > rounding { middle } else { 0.0 })
-        };
-        let both = ranges.iter().zip(&column_scales).zip(&self.columns);
-        let found = both.map(place).collect();
-        Ok((curve_scales, column_scales, found))
+            *column = Column::Constant(if middle.abs() > rounding { middle } else { 0.0 });
+        }
+        Ok(scales)
     }
 
     /// Refuses functions that are not the same a period later.
-    fn require_periodic(
-        &mut self,
-        curve_scales: &[[f64; 2]],
-        column_scales: &[f64],
-    ) -> Result<(), FitError<S::Error>> {
+    fn require_periodic(&mut self, scales: &[f64]) -> Result<(), FitError<S::Error>> {
         let domain = self.machine.domain;
         if domain.revolutions == 0 {
             return Ok(());
@@ -223,14 +162,15 @@ impl<'a, S: FunctionSampler> Fitter<'a, S> {
         for part in [0.0, 0.131, 0.292, 0.583, 0.877] {
             let q = domain.from + part * domain.length();
             let (here, later) = (self.row(q)?, self.row(q + domain.length())?);
-            let curves = here.curves.iter().zip(&later.curves).zip(curve_scales);
-            let curves = curves.map(|((a, b), scale)| (a[0] - b[0]).abs() / scale[0]);
-            let columns = here.columns.iter().zip(&later.columns).zip(column_scales);
-            let columns = columns.map(|((a, b), scale)| (a - b).abs() / scale);
-            let functions = self.curves.iter().chain(&self.columns);
-            let all = curves.chain(columns).zip(functions);
-            let changed = all.filter(|(change, _)| *change > PERIODICITY_TOLERANCE);
-            if let Some((_, &function)) = changed.into_iter().next() {
+            let Part {
+                curves, columns, ..
+            } = &self.part;
+            let places = (0..2 * curves.len()).step_by(2).chain(2 * curves.len()..);
+            let functions = curves.iter().chain(columns.iter().map(|(of, _)| of));
+            let changed = |&(k, _): &(usize, &Function)| {
+                (here[k] - later[k]).abs() / scales[k] > PERIODICITY_TOLERANCE
+            };
+            if let Some((_, &function)) = places.zip(functions).find(changed) {
                 let name = self.machine.function_name(function);
                 return Err(FitError::NotPeriodic { name, function });
             }
@@ -239,50 +179,41 @@ impl<'a, S: FunctionSampler> Fitter<'a, S> {
     }
 
     /// The cells that take the least memory, over all numbers of bins.
-    fn smallest(&mut self, accuracy: f64) -> Result<Cells, FitError<S::Error>> {
-        if self.curves.is_empty() && self.tabulated.is_empty() {
-            return Ok((Vec::new(), Vec::new(), 0.0));
-        }
-        let mut best: Option<(usize, Cells)> = None;
-        let mut failure = None;
+    fn smallest(&mut self) -> Result<Part, FitError<S::Error>> {
+        let mut best = Err(self.not_reached(Function::Inertia, 0.0));
+        let precision = self.precision;
+        let bytes = |part: &Part| part.bytes(precision);
         for exponent in BINS {
-            let bins = 1_usize << exponent;
-            let (index, cells) = match self.cells(bins)? {
-                Ok(found) => found,
-                Err(failed) => {
-                    failure = Some(failed);
-                    continue;
-                }
+            best = match (self.cells(1 << exponent), best) {
+                (Ok(found), Ok(best)) if bytes(&best) <= bytes(&found) => return Ok(best),
+                (Ok(found), _) => Ok(found),
+                (Err(FitError::NotReached { .. }), Ok(best)) => Ok(best),
+                (Err(failed @ FitError::NotReached { .. }), Err(_)) => Err(failed),
+                (Err(error), _) => return Err(error),
             };
-            let entry = if cells.len() / self.stride() <= 256 {
-                1
-            } else {
-                2
-            };
-            let bytes = cells.len() * self.precision.bytes() + bins * entry;
-            if best.as_ref().is_some_and(|(least, _)| *least <= bytes) {
-                break;
-            }
-            let per_unit = bins as f64 / self.machine.domain.length();
-            best = Some((bytes, (index, cells, self.precision.round(per_unit))));
         }
-        match (best, failure) {
-            (Some((_, cells)), _) => Ok(cells),
-            (None, failure) => {
-                let (function, q) = failure.unwrap_or((Function::Inertia, 0.0));
-                let name = self.machine.function_name(function);
-                Err(FitError::NotReached { name, q, accuracy })
-            }
+        best
+    }
+
+    /// The function that a cell of one bin does not hold, and where.
+    fn not_reached(&self, function: Function, q: f64) -> FitError<S::Error> {
+        FitError::NotReached {
+            name: self.machine.function_name(function),
+            q,
+            accuracy: self.accuracy,
         }
     }
 
-    /// Cells over so many bins; else the function that one bin does not hold, and where.
-    #[expect(clippy::type_complexity, reason = "one caller")]
-    fn cells(
-        &mut self,
-        bins: usize,
-    ) -> Result<Result<(Vec<u16>, Vec<f64>), (Function, f64)>, FitError<S::Error>> {
-        let (mut index, mut cells) = (Vec::with_capacity(bins), Vec::new());
+    /// The part with cells over so many bins.
+    ///
+    /// # Errors
+    /// [`FitError::NotReached`] where one bin is too wide.
+    fn cells(&mut self, bins: usize) -> Result<Part, FitError<S::Error>> {
+        let per_unit = bins as f64 / self.machine.domain.length();
+        let mut part = Part {
+            bins_per_unit: self.precision.round(per_unit),
+            ..self.part.clone()
+        };
         let (mut begin, mut guess, mut count) = (0, bins, 0_usize);
         while begin < bins {
             let remaining = bins - begin;
@@ -290,10 +221,10 @@ impl<'a, S: FunctionSampler> Fitter<'a, S> {
             let (mut holds, mut fails) = (None, remaining + 1);
             let mut width = guess.clamp(1, remaining);
             while width > 0 {
-                match self.cell(bins, begin, width)? {
+                match self.cell(bins, begin, width) {
                     Ok(numbers) => holds = Some((width, numbers)),
-                    Err(failed) if width == 1 => return Ok(Err(failed)),
-                    Err(_) => fails = width,
+                    Err(FitError::NotReached { .. }) if width > 1 => fails = width,
+                    Err(error) => return Err(error),
                 }
                 let held = holds.as_ref().map_or(0, |(width, _)| *width);
                 if fails - held <= 1 {
@@ -310,24 +241,25 @@ impl<'a, S: FunctionSampler> Fitter<'a, S> {
                 break;
             };
             if count > usize::from(u16::MAX) {
-                let q = self.machine.domain.from;
-                return Ok(Err((Function::Inertia, q)));
+                return Err(self.not_reached(Function::Inertia, self.machine.domain.from));
             }
-            index.extend(std::iter::repeat_n(count as u16, width));
-            cells.extend(numbers);
+            part.index.extend(std::iter::repeat_n(count as u16, width));
+            part.cells.extend(numbers);
             (begin, guess, count) = (begin + width, width, count + 1);
         }
-        Ok(Ok((index, cells)))
+        Ok(part)
     }
 
-    /// The numbers of a cell; else the function whose error is too large, and where.
-    #[expect(clippy::type_complexity, reason = "one caller")]
+    /// The numbers of a cell.
+    ///
+    /// # Errors
+    /// [`FitError::NotReached`] where the error of a function is too large.
     fn cell(
         &mut self,
         bins: usize,
         begin: usize,
         width: usize,
-    ) -> Result<Result<Vec<f64>, (Function, f64)>, FitError<S::Error>> {
+    ) -> Result<Vec<f64>, FitError<S::Error>> {
         let Domain { from, to, .. } = self.machine.domain;
         let step = self.machine.domain.length() / bins as f64;
         let ends = [begin, begin + width].map(|bin| (from + step * bin as f64).min(to));
@@ -339,14 +271,17 @@ impl<'a, S: FunctionSampler> Fitter<'a, S> {
             nodes.push(self.row(coordinate(x))?);
         }
         let outer = [self.row(coordinate(-1.0))?, self.row(coordinate(1.0))?];
+        let at_nodes = |value: usize| std::array::from_fn(|i| nodes[i][value]);
         let mut numbers = vec![middle, per_half, self.precision.round(2.0 / per_half)];
-        for k in 0..self.curves.len() {
-            let slopes = std::array::from_fn(|i| nodes[i].curves[k][1]);
-            let ends = [outer[0].curves[k][0], outer[1].curves[k][0]];
-            numbers.extend(curve(slopes, ends, 2.0 / per_half));
+        let first = 2 * self.part.curves.len();
+        for k in (0..first).step_by(2) {
+            let ends = outer.each_ref().map(|row| row[k]);
+            numbers.extend(curve(at_nodes(k + 1), ends, 2.0 / per_half));
         }
-        for &k in &self.tabulated {
-            numbers.extend(interpolate(std::array::from_fn(|i| nodes[i].columns[k])));
+        for (k, (_, column)) in self.part.columns.iter().enumerate() {
+            if matches!(column, Column::Tabulated(_)) {
+                numbers.extend(interpolate(at_nodes(first + k)));
+            }
         }
         for i in 0..=CHECKS {
             let x = -(std::f64::consts::PI * i as f64 / CHECKS as f64).cos();
@@ -354,36 +289,40 @@ impl<'a, S: FunctionSampler> Fitter<'a, S> {
             let exact = self.row(q)?;
             if let Some(function) = self.error_too_large(&numbers, (q - middle) * per_half, &exact)
             {
-                return Ok(Err((function, q)));
+                return Err(self.not_reached(function, q));
             }
         }
         let rounded = numbers.into_iter().map(|n| self.precision.round(n));
-        Ok(Ok(rounded.collect()))
+        Ok(rounded.collect())
     }
 
     /// The first function that is not within its tolerance.
-    fn error_too_large(&self, numbers: &[f64], x: f64, exact: &Row) -> Option<Function> {
-        let beyond = |found: f64, exact: f64, tolerance: f64| {
+    fn error_too_large(&self, numbers: &[f64], x: f64, exact: &[f64]) -> Option<Function> {
+        let beyond = |found: f64, value: usize| {
             // NaN counts as the largest error.
-            let within = (found - exact).abs() <= tolerance;
+            let within = (found - exact[value]).abs() <= self.tolerances[value];
             !within
         };
-        for (k, &function) in self.curves.iter().enumerate() {
+        let Part {
+            curves, columns, ..
+        } = &self.part;
+        for (k, &function) in curves.iter().enumerate() {
             let of = &numbers[HEAD + CURVE * k..][..CURVE];
             let half_slope = polynomial(&of[1..], x);
             let value = of[0] + numbers[2] * integral(&of[1..], x);
-            let [value_tolerance, slope_tolerance] = self.curve_tolerances[k];
-            if beyond(value, exact.curves[k][0], value_tolerance)
-                || beyond(half_slope, exact.curves[k][1], slope_tolerance)
-            {
+            if beyond(value, 2 * k) || beyond(half_slope, 2 * k + 1) {
                 return Some(function);
             }
         }
-        let first = HEAD + CURVE * self.curves.len();
-        for (j, &k) in self.tabulated.iter().enumerate() {
-            let value = polynomial(&numbers[first + TERMS * j..][..TERMS], x);
-            if beyond(value, exact.columns[k], self.column_tolerances[k]) {
-                return Some(self.columns[k]);
+        let first = HEAD + CURVE * curves.len();
+        for (k, &(function, column)) in columns.iter().enumerate() {
+            if let Column::Tabulated(j) = column
+                && beyond(
+                    polynomial(&numbers[first + TERMS * j..][..TERMS], x),
+                    2 * curves.len() + k,
+                )
+            {
+                return Some(function);
             }
         }
         None

@@ -61,7 +61,6 @@ mod fmu;
 mod identifiers;
 mod machine;
 mod matlab;
-mod measure;
 mod part;
 mod real;
 mod recording;
@@ -74,8 +73,7 @@ mod writer;
 pub use c::c_files;
 pub use error::FitError;
 pub use evaluator::{Evaluator, MotionTerms, ReactionTerms, State, Status};
-pub use export::{Export, Request};
-pub use fit::{FittedPart, fit};
+pub use export::{Errors, Export, Measured, Request, STATED_STEP, SelfTestMotion, SelfTestRow};
 pub use fmu::{FmiVersion, FmuFiles, fmu_files};
 pub use identifiers::Identifiers;
 pub use machine::{
@@ -83,7 +81,6 @@ pub use machine::{
     PartKind, ReferenceSizes,
 };
 pub use matlab::matlab_files;
-pub use measure::{Errors, Measured, STATED_STEP, SelfTestMotion, SelfTestRow};
 pub use part::{Column, Part, Precision};
 pub use real::Real;
 pub use recording::{RecordedNumber, RecordingError, record, record_at};
@@ -92,4 +89,4 @@ pub use several_freedoms::{
     FreeCoordinate, SampledState, SeveralFreedomsDescription, SeveralFreedomsErrors,
     SeveralFreedomsEvaluator, SeveralFreedomsExport, c_files_of_several_freedoms,
 };
-pub use straight_line::{Operand, Operation, StraightLine};
+pub use straight_line::{Operand, Operation, OperationKind, StraightLine};

@@ -47,6 +47,14 @@ impl Domain {
     pub fn length(&self) -> f64 {
         self.to - self.from
     }
+
+    /// A coordinate at which there is no value: outside of it, or beyond so many revolutions.
+    pub(crate) fn outside(&self) -> f64 {
+        match self.revolutions {
+            0 => 2.0 * self.to.abs().max(self.from.abs()) + 1.0,
+            _ => 1e30,
+        }
+    }
 }
 
 /// What the functions of a machine come to: a function far below is rounding.
@@ -120,28 +128,50 @@ pub struct Motor {
     pub initial_voltage: f64,
 }
 
+impl Motor {
+    /// N, k, R, L and J.
+    pub(crate) fn constants(&self) -> [f64; 5] {
+        [
+            self.gear_ratio,
+            self.torque_constant,
+            self.resistance,
+            self.inductance,
+            self.rotor_inertia,
+        ]
+    }
+}
+
 impl LoadEffect {
     /// Whether it has a potential.
     pub fn is_conservative(&self) -> bool {
-        match self {
-            Self::Conservative { .. } => true,
-            Self::Constant { .. }
-            | Self::Damper { .. }
-            | Self::VariableDamper { .. }
-            | Self::Input { .. }
-            | Self::Motor(_) => false,
-        }
+        matches!(self, Self::Conservative { .. })
     }
 
     /// The motor, if it is one.
     pub fn motor(&self) -> Option<&Motor> {
         match self {
             Self::Motor(motor) => Some(motor),
-            Self::Conservative { .. }
-            | Self::Constant { .. }
-            | Self::Damper { .. }
-            | Self::VariableDamper { .. }
-            | Self::Input { .. } => None,
+            _ => None,
+        }
+    }
+
+    /// Whether it has a rotor whose inertia counts.
+    pub(crate) fn has_rotor(&self) -> bool {
+        self.motor().is_some_and(|motor| motor.rotor_inertia != 0.0)
+    }
+
+    /// Whether it has a current that does not follow the voltage at once.
+    pub(crate) fn has_current(&self) -> bool {
+        self.motor().is_some_and(|motor| motor.inductance > 0.0)
+    }
+
+    /// The value of its parameter or input in the scene.
+    pub(crate) fn scene_value(&self) -> f64 {
+        match *self {
+            Self::Conservative { magnitude } | Self::Constant { magnitude } => magnitude,
+            Self::Damper { damping } => damping,
+            Self::VariableDamper { initial } | Self::Input { initial } => initial,
+            Self::Motor(motor) => motor.initial_voltage,
         }
     }
 }
@@ -182,6 +212,16 @@ pub enum Function {
 }
 
 impl MachineDescription {
+    /// The unit of the coordinate.
+    pub(crate) fn unit(&self) -> &'static str {
+        if self.is_angle { "rad" } else { "m" }
+    }
+
+    /// The unit of m.
+    pub(crate) fn inertia_unit(&self) -> &'static str {
+        if self.is_angle { "kg m2" } else { "kg" }
+    }
+
     /// The functions of a part that come with half their slope.
     pub fn curves(&self, part: PartKind) -> Vec<Function> {
         match part {
@@ -220,10 +260,24 @@ impl MachineDescription {
     /// The loads of some effects.
     pub fn loads_where(&self, is: impl Fn(&LoadEffect) -> bool) -> impl Iterator<Item = usize> {
         let all = self.loads.iter().enumerate();
-        let some: Vec<usize> = (all.filter(|(_, load)| is(&load.effect)))
+        all.filter(move |(_, load)| is(&load.effect))
             .map(|(k, _)| k)
-            .collect();
-        some.into_iter()
+    }
+
+    /// Where the function of a load is in the part of motion: of a conservative one its curve, of others its column.
+    pub(crate) fn place(&self, load: usize) -> usize {
+        let conservative = self.loads[load].effect.is_conservative();
+        let before = self.loads[..load].iter();
+        let alike = before.filter(|load| load.effect.is_conservative() == conservative);
+        // The first curve is that of m.
+        alike.count() + usize::from(conservative)
+    }
+
+    /// By column of motion: whether it moves a rotor, so that its slope is needed.
+    pub(crate) fn rotor_columns(&self) -> Vec<bool> {
+        let loads = self.loads.iter().map(|load| &load.effect);
+        let columns = loads.filter(|effect| !effect.is_conservative());
+        columns.map(LoadEffect::has_rotor).collect()
     }
 
     /// What a function is called in messages.

@@ -28,6 +28,14 @@ impl Precision {
         }
     }
 
+    /// In what errors are measured.
+    pub(crate) fn measured_in(self) -> &'static str {
+        match self {
+            Self::Double => "double precision",
+            Self::Float => "single precision, its rounding included",
+        }
+    }
+
     /// The number that is stored.
     pub fn round(self, value: f64) -> f64 {
         match self {

@@ -5,12 +5,7 @@ use std::ops::{Add, Div, Mul, Sub};
 
 /// A number of exported code: the operations that it uses, and no others.
 pub trait Real:
-    Copy
-    + PartialOrd
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// The number nearest to a constant.
     fn of(value: f64) -> Self;
@@ -81,7 +76,7 @@ thread_local! {
 }
 
 /// A double that counts additions, subtractions, multiplications and divisions; its functions are not counted.
-#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Counted(f64);
 
 impl Counted {

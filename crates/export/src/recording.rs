@@ -4,7 +4,7 @@
 //! Decisions are made by values, as everywhere; they are not written down. Code that was recorded at one coordinate is
 //! therefore that of another one only where all decisions are the same: [`record`] compares recordings at several.
 
-use crate::straight_line::{Operand, Operation, StraightLine};
+use crate::straight_line::{Operand, Operation, OperationKind as Kind, StraightLine};
 use dwell_numerics::Scalar;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -35,7 +35,7 @@ pub enum RecordingError<E> {
 struct Record {
     operations: Vec<Operation>,
     /// Where an operation stands, so that each stands once.
-    known: HashMap<(u8, [OperandKey; 2]), usize>,
+    known: HashMap<(Kind, [OperandKey; 2]), usize>,
     /// Whether a function was met that has no operations.
     has_function: bool,
 }
@@ -70,13 +70,11 @@ pub fn record_at<E>(
     let mut first: Option<(&Vec<f64>, StraightLine)> = None;
     for position in positions {
         RECORD.take();
-        let coordinates = position
-            .iter()
-            .enumerate()
-            .map(|(k, &value)| RecordedNumber {
-                value,
-                operand: Recorded::Coordinate(k),
-            });
+        let coordinates = position.iter().enumerate();
+        let coordinates = coordinates.map(|(k, &value)| RecordedNumber {
+            value,
+            operand: Operand::Coordinate(k),
+        });
         let outputs = evaluate(&coordinates.collect::<Vec<_>>());
         let record = RECORD.take();
         let outputs = outputs.map_err(RecordingError::Evaluation)?;
@@ -85,7 +83,7 @@ pub fn record_at<E>(
         }
         let code = StraightLine {
             operations: record.operations,
-            outputs: outputs.iter().map(RecordedNumber::operand).collect(),
+            outputs: outputs.iter().map(|output| output.operand).collect(),
         };
         let code = code.without_unused();
         match &first {
@@ -102,33 +100,22 @@ pub fn record_at<E>(
     Ok(first.map(|(_, code)| code).unwrap_or_default())
 }
 
-/// Where a number comes from.
-#[derive(Debug, Clone, Copy, Default)]
-enum Recorded {
-    #[default]
-    Constant,
-    Coordinate(usize),
-    Result(usize),
-}
-
 /// A number of which each operation is recorded.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct RecordedNumber {
     value: f64,
-    operand: Recorded,
+    operand: Operand,
+}
+
+impl Default for RecordedNumber {
+    fn default() -> Self {
+        Self::from_f64(0.0)
+    }
 }
 
 impl RecordedNumber {
-    fn operand(&self) -> Operand {
-        match self.operand {
-            Recorded::Constant => Operand::Constant(self.value),
-            Recorded::Coordinate(k) => Operand::Coordinate(k),
-            Recorded::Result(k) => Operand::Result(k),
-        }
-    }
-
     fn is_constant(self) -> bool {
-        matches!(self.operand, Recorded::Constant)
+        matches!(self.operand, Operand::Constant(_))
     }
 
     /// Whether it is this constant.
@@ -136,39 +123,25 @@ impl RecordedNumber {
         self.is_constant() && self.value == value
     }
 
-    /// The result of an operation; of constants it is one.
-    fn result(value: f64, operation: Operation) -> Self {
-        let operands = operation.operands();
-        if operands.iter().all(|o| matches!(o, Operand::Constant(_))) {
+    /// The result of an operation on two numbers, or on one twice; of constants it is one.
+    fn result(value: f64, kind: Kind, of: [Self; 2]) -> Self {
+        if of.iter().all(|number| number.is_constant()) {
             return Self::from_f64(value);
         }
-        let key = (kind(&operation), operands.map(key));
+        let operands = of.map(|number| number.operand);
         let index = RECORD.with_borrow_mut(|record| {
             let next = record.operations.len();
-            let index = *record.known.entry(key).or_insert(next);
+            let known = record.known.entry((kind, operands.map(key)));
+            let index = *known.or_insert(next);
             if index == next {
-                record.operations.push(operation);
+                record.operations.push(Operation { kind, operands });
             }
             index
         });
         Self {
             value,
-            operand: Recorded::Result(index),
+            operand: Operand::Result(index),
         }
-    }
-}
-
-fn kind(operation: &Operation) -> u8 {
-    match operation {
-        Operation::Add(..) => 0,
-        Operation::Subtract(..) => 1,
-        Operation::Multiply(..) => 2,
-        Operation::Divide(..) => 3,
-        Operation::Negate(_) => 4,
-        Operation::SquareRoot(_) => 5,
-        Operation::Sine(_) => 6,
-        Operation::Cosine(_) => 7,
-        Operation::Angle(..) => 8,
     }
 }
 
@@ -187,7 +160,7 @@ impl Scalar for RecordedNumber {
     fn from_f64(value: f64) -> Self {
         Self {
             value,
-            operand: Recorded::Constant,
+            operand: Operand::Constant(value),
         }
     }
 
@@ -196,21 +169,20 @@ impl Scalar for RecordedNumber {
     }
 
     fn sqrt(self) -> Self {
-        Self::result(self.value.sqrt(), Operation::SquareRoot(self.operand()))
+        Self::result(self.value.sqrt(), Kind::SquareRoot, [self; 2])
     }
 
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = Scalar::sin_cos(self.value);
-        let of = self.operand();
         (
-            Self::result(sin, Operation::Sine(of)),
-            Self::result(cos, Operation::Cosine(of)),
+            Self::result(sin, Kind::Sine, [self; 2]),
+            Self::result(cos, Kind::Cosine, [self; 2]),
         )
     }
 
     fn atan2(self, other: Self) -> Self {
-        let operation = Operation::Angle(self.operand(), other.operand());
-        Self::result(self.value.atan2(other.value), operation)
+        let value = self.value.atan2(other.value);
+        Self::result(value, Kind::Angle, [self, other])
     }
 
     fn compose(self, derivatives: &[f64; 4]) -> Self {
@@ -228,10 +200,7 @@ impl Add for RecordedNumber {
         match (self.is(0.0), other.is(0.0)) {
             (true, _) => other,
             (_, true) => self,
-            _ => {
-                let operation = Operation::Add(self.operand(), other.operand());
-                Self::result(self.value + other.value, operation)
-            }
+            _ => Self::result(self.value + other.value, Kind::Add, [self, other]),
         }
     }
 }
@@ -243,10 +212,7 @@ impl Sub for RecordedNumber {
         match (self.is(0.0), other.is(0.0)) {
             (_, true) => self,
             (true, _) => -other,
-            _ => {
-                let operation = Operation::Subtract(self.operand(), other.operand());
-                Self::result(self.value - other.value, operation)
-            }
+            _ => Self::result(self.value - other.value, Kind::Subtract, [self, other]),
         }
     }
 }
@@ -267,10 +233,7 @@ impl Mul for RecordedNumber {
         match (one.is(1.0), one.is(-1.0)) {
             (true, _) => rest,
             (_, true) => -rest,
-            _ => {
-                let operation = Operation::Multiply(self.operand(), other.operand());
-                Self::result(self.value * other.value, operation)
-            }
+            _ => Self::result(self.value * other.value, Kind::Multiply, [self, other]),
         }
     }
 }
@@ -282,10 +245,7 @@ impl Div for RecordedNumber {
         match (self.is(0.0) && other.value != 0.0, other.is(1.0)) {
             (true, _) => Self::from_f64(0.0),
             (_, true) => self,
-            _ => {
-                let operation = Operation::Divide(self.operand(), other.operand());
-                Self::result(self.value / other.value, operation)
-            }
+            _ => Self::result(self.value / other.value, Kind::Divide, [self, other]),
         }
     }
 }
@@ -294,7 +254,7 @@ impl Neg for RecordedNumber {
     type Output = Self;
 
     fn neg(self) -> Self {
-        Self::result(-self.value, Operation::Negate(self.operand()))
+        Self::result(-self.value, Kind::Negate, [self; 2])
     }
 }
 

@@ -8,7 +8,7 @@ use crate::describe::describe;
 use crate::export::Export;
 use crate::identifiers::comment;
 use crate::part::Precision;
-use crate::writer::Writer;
+use crate::writer::Members;
 use std::fmt::Write as _;
 use std::ops::Deref;
 
@@ -20,7 +20,8 @@ pub fn rust_files(export: &Export) -> Option<[(String, String); 2]> {
     if export.code.is_some() {
         return None;
     }
-    let writer = RustWriter(Writer::new(export));
+    let members = Members::new(export);
+    let writer = RustWriter { export, members };
     let name = &writer.names.prefix;
     let manifest = format!(
         "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2021\"\n\n[features]\nself-test = []\n\n[dependencies]\n"
@@ -32,13 +33,16 @@ pub fn rust_files(export: &Export) -> Option<[(String, String); 2]> {
 }
 
 /// Writes an export in Rust.
-struct RustWriter<'a>(Writer<'a>);
+struct RustWriter<'a> {
+    export: &'a Export,
+    members: Members<'a>,
+}
 
 impl<'a> Deref for RustWriter<'a> {
-    type Target = Writer<'a>;
+    type Target = Members<'a>;
 
-    fn deref(&self) -> &Writer<'a> {
-        &self.0
+    fn deref(&self) -> &Members<'a> {
+        &self.members
     }
 }
 

@@ -15,66 +15,48 @@ pub enum Operand {
 
 /// An operation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Operation {
-    /// A sum.
-    Add(Operand, Operand),
-    /// A difference.
-    Subtract(Operand, Operand),
-    /// A product.
-    Multiply(Operand, Operand),
-    /// A quotient.
-    Divide(Operand, Operand),
-    /// The opposite.
-    Negate(Operand),
-    /// A square root.
-    SquareRoot(Operand),
-    /// A sine.
-    Sine(Operand),
-    /// A cosine.
-    Cosine(Operand),
-    /// The angle of the direction (second, first) from the first axis, in (−π, π].
-    Angle(Operand, Operand),
+pub struct Operation {
+    /// What it does.
+    pub kind: OperationKind,
+    /// What it works on; an operation on one has it twice.
+    pub operands: [Operand; 2],
 }
 
-impl Operation {
-    /// What it works on; an operation on one has it twice.
-    pub(crate) fn operands(&self) -> [Operand; 2] {
-        match *self {
-            Self::Add(a, b)
-            | Self::Subtract(a, b)
-            | Self::Multiply(a, b)
-            | Self::Divide(a, b)
-            | Self::Angle(a, b) => [a, b],
-            Self::Negate(a) | Self::SquareRoot(a) | Self::Sine(a) | Self::Cosine(a) => [a, a],
-        }
-    }
+/// What an operation does with its operands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum OperationKind {
+    /// A sum.
+    Add,
+    /// A difference.
+    Subtract,
+    /// A product.
+    Multiply,
+    /// A quotient.
+    Divide,
+    /// The opposite.
+    Negate,
+    /// A square root.
+    SquareRoot,
+    /// A sine.
+    Sine,
+    /// A cosine.
+    Cosine,
+    /// The angle of the direction (second, first) from the first axis, in (−π, π].
+    Angle,
+}
 
-    /// The same operation on other operands.
-    pub(crate) fn with_operands(&self, [a, b]: [Operand; 2]) -> Self {
+impl OperationKind {
+    fn evaluate<R: Real>(self, [a, b]: [R; 2]) -> R {
         match self {
-            Self::Add(..) => Self::Add(a, b),
-            Self::Subtract(..) => Self::Subtract(a, b),
-            Self::Multiply(..) => Self::Multiply(a, b),
-            Self::Divide(..) => Self::Divide(a, b),
-            Self::Angle(..) => Self::Angle(a, b),
-            Self::Negate(_) => Self::Negate(a),
-            Self::SquareRoot(_) => Self::SquareRoot(a),
-            Self::Sine(_) => Self::Sine(a),
-            Self::Cosine(_) => Self::Cosine(a),
-        }
-    }
-
-    fn evaluate<R: Real>(&self, value: impl Fn(Operand) -> R) -> R {
-        match *self {
-            Self::Add(a, b) => value(a) + value(b),
-            Self::Subtract(a, b) => value(a) - value(b),
-            Self::Multiply(a, b) => value(a) * value(b),
-            Self::Divide(a, b) => value(a) / value(b),
-            Self::Negate(a) => R::of(0.0) - value(a),
-            Self::SquareRoot(a) => value(a).sqrt(),
-            Self::Sine(a) => value(a).sin(),
-            Self::Cosine(a) => value(a).cos(),
-            Self::Angle(a, b) => value(a).atan2(value(b)),
+            Self::Add => a + b,
+            Self::Subtract => a - b,
+            Self::Multiply => a * b,
+            Self::Divide => a / b,
+            Self::Negate => R::of(0.0) - a,
+            Self::SquareRoot => a.sqrt(),
+            Self::Sine => a.sin(),
+            Self::Cosine => a.cos(),
+            Self::Angle => a.atan2(b),
         }
     }
 }
@@ -92,18 +74,15 @@ impl StraightLine {
     /// The same without operations that no output needs.
     pub(crate) fn without_unused(self) -> Self {
         let mut needed = vec![false; self.operations.len()];
-        let mark = |operand: Operand, needed: &mut Vec<bool>| {
+        let mark = |operand: &Operand, needed: &mut Vec<bool>| {
             if let Operand::Result(k) = operand {
-                needed[k] = true;
+                needed[*k] = true;
             }
         };
-        for &output in &self.outputs {
-            mark(output, &mut needed);
-        }
+        self.outputs.iter().for_each(|o| mark(o, &mut needed));
         for (k, operation) in self.operations.iter().enumerate().rev() {
             if needed[k] {
-                let operands = operation.operands();
-                operands.into_iter().for_each(|o| mark(o, &mut needed));
+                operation.operands.iter().for_each(|o| mark(o, &mut needed));
             }
         }
         let mut new_index = vec![0; needed.len()];
@@ -112,11 +91,11 @@ impl StraightLine {
             Operand::Result(k) => Operand::Result(new_index[k]),
             other @ (Operand::Coordinate(_) | Operand::Constant(_)) => other,
         };
-        for (k, operation) in self.operations.iter().enumerate() {
+        for (k, mut operation) in self.operations.into_iter().enumerate() {
             if needed[k] {
                 new_index[k] = operations.len();
-                let operands = operation.operands().map(|o| renamed(o, &new_index));
-                operations.push(operation.with_operands(operands));
+                operation.operands = operation.operands.map(|o| renamed(o, &new_index));
+                operations.push(operation);
             }
         }
         let outputs = self.outputs.iter();
@@ -134,8 +113,8 @@ impl StraightLine {
             Operand::Constant(value) => R::of(value),
             Operand::Result(k) => results[k],
         };
-        for operation in &self.operations {
-            let result = operation.evaluate(|operand| value(operand, &results));
+        for Operation { kind, operands } in &self.operations {
+            let result = kind.evaluate(operands.map(|operand| value(operand, &results)));
             results.push(result);
         }
         let outputs = self.outputs.iter();
@@ -144,25 +123,20 @@ impl StraightLine {
 
     /// How many of its operations are square roots, sines, cosines and angles.
     pub fn functions(&self) -> usize {
-        let is_function = |operation: &&Operation| match operation {
-            Operation::SquareRoot(_)
-            | Operation::Sine(_)
-            | Operation::Cosine(_)
-            | Operation::Angle(..) => true,
-            Operation::Add(..)
-            | Operation::Subtract(..)
-            | Operation::Multiply(..)
-            | Operation::Divide(..)
-            | Operation::Negate(_) => false,
-        };
+        use OperationKind::{Angle, Cosine, Sine, SquareRoot};
+        let is_function = |o: &&Operation| matches!(o.kind, SquareRoot | Sine | Cosine | Angle);
         self.operations.iter().filter(is_function).count()
+    }
+
+    /// What its operations work on, and its outputs.
+    pub(crate) fn operands(&self) -> impl Iterator<Item = Operand> + '_ {
+        let used = self.operations.iter().flat_map(|o| o.operands);
+        used.chain(self.outputs.iter().copied())
     }
 
     /// All constants.
     pub(crate) fn constants(&self) -> impl Iterator<Item = f64> + '_ {
-        let used = self.operations.iter().flat_map(Operation::operands);
-        let all = used.chain(self.outputs.iter().copied());
-        all.filter_map(|operand| match operand {
+        self.operands().filter_map(|operand| match operand {
             Operand::Constant(value) => Some(value),
             Operand::Coordinate(_) | Operand::Result(_) => None,
         })
@@ -176,11 +150,12 @@ mod tests {
     #[test]
     fn what_no_output_needs_goes() {
         use Operand::{Constant, Coordinate, Result};
+        let of = |kind, operands| Operation { kind, operands };
         let code = StraightLine {
             operations: vec![
-                Operation::Sine(Coordinate(0)),
-                Operation::Cosine(Coordinate(0)),
-                Operation::Multiply(Result(1), Constant(2.0)),
+                of(OperationKind::Sine, [Coordinate(0); 2]),
+                of(OperationKind::Cosine, [Coordinate(0); 2]),
+                of(OperationKind::Multiply, [Result(1), Constant(2.0)]),
             ],
             outputs: vec![Result(2), Coordinate(0)],
         };

@@ -1,136 +1,210 @@
-//! What the texts of all targets share: names, members and what there is.
+//! What the texts of all targets share: names, members, what there is, and how a load acts.
 
-use crate::evaluator::has_rotor;
 use crate::export::Export;
-use crate::identifiers::Identifiers;
-use crate::machine::{LoadDescription, LoadEffect, PartKind};
-use crate::part::Part;
+use crate::identifiers::{Identifiers, comment};
+use crate::machine::{LoadDescription, LoadEffect};
 
-/// An export with the names of its functions and members.
-pub(crate) struct Writer<'a> {
-    pub(crate) export: &'a Export,
+/// The names of the functions and members of an export of one or several degrees of freedom.
+pub(crate) struct Members<'a> {
     pub(crate) names: Identifiers,
+    pub(crate) loads: &'a [LoadDescription],
+    pub(crate) reactions: &'a [(String, &'static str)],
+    pub(crate) points: &'a [String],
+    pub(crate) freedoms: usize,
+    /// The unit of the inertia that may be added along the coordinate; none where there are several.
+    pub(crate) inertia_unit: Option<&'static str>,
 }
 
-impl<'a> Writer<'a> {
+impl<'a> Members<'a> {
+    /// Those of a machine of one degree of freedom.
     pub(crate) fn new(export: &'a Export) -> Self {
+        let machine = &export.machine;
         Self {
-            export,
-            names: Identifiers::new(&export.machine),
+            names: Identifiers::new(machine),
+            loads: &machine.loads,
+            reactions: &machine.reactions,
+            points: &machine.points,
+            freedoms: 1,
+            inertia_unit: Some(machine.inertia_unit()),
         }
     }
 
-    pub(crate) fn part(&self, kind: PartKind) -> &Part {
-        &self.export.parts[kind as usize]
-    }
-
     pub(crate) fn has_reactions(&self) -> bool {
-        !self.export.machine.reactions.is_empty()
+        !self.reactions.is_empty()
     }
 
     pub(crate) fn has_points(&self) -> bool {
-        !self.export.machine.points.is_empty()
+        !self.points.is_empty()
     }
 
     pub(crate) fn has_loads(&self) -> bool {
-        !self.export.machine.loads.is_empty()
+        !self.loads.is_empty()
     }
 
     pub(crate) fn has_rotors(&self) -> bool {
-        let mut loads = self.export.machine.loads.iter();
-        loads.any(|load| has_rotor(&load.effect))
+        self.loads.iter().any(|load| load.effect.has_rotor())
     }
 
     pub(crate) fn has_potentials(&self) -> bool {
-        let mut loads = self.export.machine.loads.iter();
-        loads.any(|load| load.effect.is_conservative())
+        self.conservative().next().is_some()
     }
 
-    /// The loads with a current: their index, and the place of the current in the state.
-    pub(crate) fn currents(&self) -> Vec<(usize, usize)> {
-        let has_current = |effect: &LoadEffect| effect.motor().is_some_and(|m| m.inductance > 0.0);
-        let loads = self.export.machine.loads_where(has_current);
-        loads.zip(2..).collect()
+    /// The conservative loads.
+    pub(crate) fn conservative(&self) -> impl Iterator<Item = usize> {
+        let loads = self.loads.iter().enumerate();
+        let some = loads.filter(|(_, load)| load.effect.is_conservative());
+        some.map(|(k, _)| k)
+    }
+
+    /// The loads with a current: their index, the name of the current, and its place in the state.
+    pub(crate) fn currents(&self) -> Vec<(usize, String, usize)> {
+        let loads = self.loads.iter().zip(&self.names.loads).enumerate();
+        let some = loads.filter(|(_, (load, _))| load.effect.has_current());
+        let places = some.zip(2 * self.freedoms..);
+        places
+            .map(|((k, (_, name)), place)| (k, format!("current_{name}"), place))
+            .collect()
+    }
+
+    /// The numbers of a state: coordinates, velocities, currents.
+    pub(crate) fn order(&self) -> usize {
+        2 * self.freedoms + self.currents().len()
+    }
+
+    /// The members of a state of one degree of freedom that change at rates.
+    pub(crate) fn state_members(&self) -> Vec<String> {
+        let currents = self.currents().into_iter().map(|(_, name, _)| name);
+        let first = ["q", "q_dot"].map(str::to_owned);
+        first.into_iter().chain(currents).collect()
+    }
+
+    /// Loads, reactions and points: what they are, and the name in capitals and the meaning of each.
+    pub(crate) fn lists(&self) -> [(&'static str, Vec<[String; 2]>); 3] {
+        let loads = self.loads.iter().map(|load| &load.name);
+        let reactions = self.reactions.iter().map(|(name, _)| name);
+        [
+            ("LOAD", list(&self.names.loads, loads)),
+            ("REACTION", list(&self.names.reactions, reactions)),
+            ("POINT", list(&self.names.points, self.points)),
+        ]
     }
 
     /// The members of the parameters: name, value and meaning.
     pub(crate) fn parameters(&self) -> Vec<(String, f64, String)> {
-        let machine = &self.export.machine;
-        let inertia = if machine.is_angle { "kg m2" } else { "kg" };
-        let added = format!("{inertia}: added along the coordinate, such as a flywheel");
-        let mut all = vec![("added_inertia".to_owned(), 0.0, added)];
-        all.extend(load_parameters(&machine.loads, &self.names.loads));
+        let added = self.inertia_unit.map(|unit| {
+            let meaning = format!("{unit}: added along the coordinate, such as a flywheel");
+            ("added_inertia".to_owned(), 0.0, meaning)
+        });
+        let mut all = Vec::from_iter(added);
+        for (load, name) in self.loads.iter().zip(&self.names.loads) {
+            let unit = load.unit;
+            let mut one = |what: &str, value, text: &str| {
+                all.push((format!("{what}_{name}"), value, text.to_owned()));
+            };
+            match load.effect {
+                LoadEffect::Conservative { magnitude } | LoadEffect::Constant { magnitude } => {
+                    one("magnitude", magnitude, &format!("{unit}: magnitude"));
+                }
+                LoadEffect::Damper { damping } => {
+                    one("damping", damping, &format!("{unit}: constant"));
+                }
+                LoadEffect::Motor(motor) => {
+                    let torque = motor.torque_constant;
+                    one("torque_constant", torque, "N m/A: torque constant");
+                    one("resistance", motor.resistance, "Ohm: not zero");
+                    if load.effect.has_current() {
+                        one("inductance", motor.inductance, "H: not zero");
+                    }
+                    one("gear_ratio", motor.gear_ratio, "1: gear ratio");
+                    if load.effect.has_rotor() {
+                        let inertia = motor.rotor_inertia;
+                        one("rotor_inertia", inertia, "kg m2: inertia of the rotor");
+                    }
+                }
+                LoadEffect::VariableDamper { .. } | LoadEffect::Input { .. } => {}
+            }
+        }
         all
     }
 
-    /// The members of the inputs: load, name, value at the start and meaning.
-    pub(crate) fn inputs(&self) -> Vec<(usize, String, f64, String)> {
-        load_inputs(&self.export.machine.loads, &self.names.loads)
-    }
-}
-
-/// The parameters of loads: name, value and meaning.
-pub(crate) fn load_parameters(
-    loads: &[LoadDescription],
-    names: &[String],
-) -> Vec<(String, f64, String)> {
-    let mut all = Vec::new();
-    for (load, name) in loads.iter().zip(names) {
-        let unit = load.unit;
-        let mut one = |what: &str, value, text: &str| {
-            all.push((format!("{what}_{name}"), value, text.to_owned()));
+    /// The members of the inputs: name, value at the start and meaning.
+    pub(crate) fn inputs(&self) -> Vec<(String, f64, String)> {
+        let input = |(load, name): (&LoadDescription, &String)| {
+            let (what, meaning) = match load.effect {
+                LoadEffect::Input { .. } => ("load", format!("{}: force or couple", load.unit)),
+                LoadEffect::VariableDamper { .. } => {
+                    ("damping", format!("{}: constant of the damper", load.unit))
+                }
+                LoadEffect::Motor(_) => ("voltage", "V: voltage".to_owned()),
+                LoadEffect::Conservative { .. }
+                | LoadEffect::Constant { .. }
+                | LoadEffect::Damper { .. } => return None,
+            };
+            Some((format!("{what}_{name}"), load.effect.scene_value(), meaning))
         };
-        match load.effect {
-            LoadEffect::Conservative { magnitude } | LoadEffect::Constant { magnitude } => {
-                one("magnitude", magnitude, &format!("{unit}: magnitude"));
-            }
-            LoadEffect::Damper { damping } => {
-                one("damping", damping, &format!("{unit}: constant"));
-            }
-            LoadEffect::Motor(motor) => {
-                let torque = motor.torque_constant;
-                one("torque_constant", torque, "N m/A: torque constant");
-                one("resistance", motor.resistance, "Ohm: not zero");
-                if motor.inductance > 0.0 {
-                    one("inductance", motor.inductance, "H: not zero");
-                }
-                one("gear_ratio", motor.gear_ratio, "1: gear ratio");
-                if motor.rotor_inertia != 0.0 {
-                    let inertia = motor.rotor_inertia;
-                    one("rotor_inertia", inertia, "kg m2: inertia of the rotor");
-                }
-            }
-            LoadEffect::VariableDamper { .. } | LoadEffect::Input { .. } => {}
-        }
+        let loads = self.loads.iter().zip(&self.names.loads);
+        loads.filter_map(input).collect()
     }
-    all
 }
 
-/// The inputs of loads: load, name, value at the start and meaning.
-pub(crate) fn load_inputs(
-    loads: &[LoadDescription],
+/// Names in capitals, with what they mean.
+pub(crate) fn list<'a>(
     names: &[String],
-) -> Vec<(usize, String, f64, String)> {
-    let input = |(k, (load, name)): (usize, (&LoadDescription, &String))| {
-        let unit = load.unit;
-        match load.effect {
-            LoadEffect::Input { initial } => {
-                let text = format!("{unit}: force or couple");
-                Some((k, format!("load_{name}"), initial, text))
+    meanings: impl IntoIterator<Item = &'a String>,
+) -> Vec<[String; 2]> {
+    let both = names.iter().zip(meanings);
+    both.map(|(name, meaning)| [name.to_ascii_uppercase(), comment(meaning)])
+        .collect()
+}
+
+/// How code reaches the members of parameters, inputs and state, and writes zero.
+pub(crate) struct Access {
+    pub(crate) parameters: &'static str,
+    pub(crate) inputs: &'static str,
+    pub(crate) state: &'static str,
+    pub(crate) zero: &'static str,
+}
+
+impl Access {
+    /// F of a load with this velocity, without that of a rotor.
+    pub(crate) fn force(&self, effect: &LoadEffect, name: &str, velocity: &str) -> String {
+        let Self {
+            parameters: p,
+            inputs,
+            state,
+            zero,
+        } = self;
+        match effect {
+            LoadEffect::Conservative { .. } | LoadEffect::Constant { .. } => {
+                format!("{p}magnitude_{name}")
             }
-            LoadEffect::VariableDamper { initial } => {
-                let text = format!("{unit}: constant of the damper");
-                Some((k, format!("damping_{name}"), initial, text))
+            LoadEffect::Input { .. } => format!("{inputs}load_{name}"),
+            LoadEffect::Damper { .. } => format!("{zero} - {p}damping_{name} * {velocity}"),
+            LoadEffect::VariableDamper { .. } => {
+                format!("{zero} - {inputs}damping_{name} * {velocity}")
             }
-            LoadEffect::Motor(motor) => {
-                let (name, text) = (format!("voltage_{name}"), "V: voltage".to_owned());
-                Some((k, name, motor.initial_voltage, text))
+            LoadEffect::Motor(_) => {
+                let constant = format!("({p}gear_ratio_{name} * {p}torque_constant_{name})");
+                match effect.has_current() {
+                    true => format!("{constant} * {state}current_{name}"),
+                    false => format!(
+                        "{constant} * ({inputs}voltage_{name} - {constant} * {velocity}) / {p}resistance_{name}"
+                    ),
+                }
             }
-            LoadEffect::Conservative { .. }
-            | LoadEffect::Constant { .. }
-            | LoadEffect::Damper { .. } => None,
         }
-    };
-    let loads = loads.iter().zip(names).enumerate();
-    loads.filter_map(input).collect()
+    }
+
+    /// The rate of the current of a motor with this velocity.
+    pub(crate) fn current_rate(&self, name: &str, velocity: &str) -> String {
+        let (p, inputs, state) = (self.parameters, self.inputs, self.state);
+        format!(
+            "({inputs}voltage_{name} - {p}resistance_{name} * {state}current_{name} - ({p}gear_ratio_{name} * {p}torque_constant_{name}) * {velocity}) / {p}inductance_{name}"
+        )
+    }
+}
+
+/// The inertia of a rotor along its load, N² J, from members of the parameters `p`.
+pub(crate) fn reflected(p: &str, name: &str) -> String {
+    format!("({p}gear_ratio_{name} * {p}gear_ratio_{name} * {p}rotor_inertia_{name})")
 }

@@ -4,7 +4,7 @@ use crate::diagnostics::{self, MessageInText};
 use crate::request::{Command, Request};
 use crate::{export, runs};
 use dwell_page::EncodedPage;
-use dwell_scene::AnyScene;
+use dwell_scene::{AnyScene, SceneError};
 use serde::Serialize;
 
 /// An answer: JSON, and the numbers that it refers to.
@@ -42,7 +42,7 @@ pub fn answer(request: &str) -> Answer {
         Ok(Request::C { text }) => exported(&text),
         Err(error) => {
             let message = format!("the request cannot be read: {error}");
-            let error = dwell_scene::SceneError::without_labels(message, None);
+            let error = SceneError::without_labels(message, None);
             of_messages(diagnostics::errors(&error), Vec::new())
         }
     }
@@ -52,38 +52,37 @@ pub fn answer(request: &str) -> Answer {
 const SOURCE_NAME: &str = "scene.toml";
 
 fn run(command: Command, text: &str) -> Answer {
-    let scene = match AnyScene::parse(SOURCE_NAME, text) {
-        Ok(scene) => scene.named("scene".to_owned()),
-        Err(error) => return of_messages(diagnostics::errors(&error), Vec::new()),
-    };
-    let mut messages = diagnostics::warnings(&scene.file().warnings);
-    let page = match runs::run(command, &scene) {
-        Ok(run) => {
-            messages.extend(run.early_stop.iter().flat_map(diagnostics::errors));
-            run.page.encode()
-        }
-        Err(error) => {
-            messages.extend(diagnostics::errors(&error));
-            return of_messages(messages, Vec::new());
-        }
-    };
-    match page {
-        Ok(EncodedPage {
-            description,
-            numbers,
-        }) => {
+    let mut messages = Vec::new();
+    match page(command, text, &mut messages) {
+        Ok(page) => {
             let Answer { mut text, .. } = of_messages(messages, Vec::new());
             // The description is JSON already: it becomes the last member of the object.
             text.pop();
-            text = format!(r#"{text},"page":{description}}}"#);
-            Answer { text, numbers }
+            Answer {
+                text: format!(r#"{text},"page":{}}}"#, page.description),
+                numbers: page.numbers,
+            }
         }
         Err(error) => {
-            let error = dwell_scene::SceneError::without_labels(error.to_string(), None);
             messages.extend(diagnostics::errors(&error));
             of_messages(messages, Vec::new())
         }
     }
+}
+
+/// What a command shows of a scene; warnings, and why a motion ended early, are further messages.
+fn page(
+    command: Command,
+    text: &str,
+    messages: &mut Vec<MessageInText>,
+) -> Result<EncodedPage, SceneError> {
+    let scene = AnyScene::parse(SOURCE_NAME, text)?.named("scene".to_owned());
+    messages.extend(diagnostics::warnings(&scene.file().warnings));
+    let (page, early_stop) = runs::run(command, &scene)?;
+    let early_stop = early_stop.map(SceneError::from);
+    messages.extend(early_stop.iter().flat_map(diagnostics::errors));
+    let page = page.encode();
+    page.map_err(|error| SceneError::without_labels(error.to_string(), None))
 }
 
 fn exported(text: &str) -> Answer {

@@ -1,7 +1,6 @@
 //! Errors and warnings as an editor shows them: the words of the command line, and where in the text they belong.
 
 use dwell_scene::{SceneError, SceneWarning};
-use dwell_study::StudyError;
 use serde::Serialize;
 
 /// A message about a scene.
@@ -32,49 +31,32 @@ pub struct LabelInText {
 
 /// The errors that one reports, in the order of the file.
 pub(crate) fn errors(error: &SceneError) -> Vec<MessageInText> {
-    let message = |error: &SceneError| {
-        let text = error.text.as_ref().map_or("", |text| text.inner().as_str());
-        let spans = error.labels.iter().map(|label| {
-            let remark = label.label().unwrap_or_default();
-            (label.offset(), label.len(), remark)
-        });
-        MessageInText {
-            severity: "error",
-            message: error.message.clone(),
-            help: error.help.clone(),
-            labels: spans.map(|span| label(text, span)).collect(),
-        }
-    };
-    error.errors().iter().map(message).collect()
+    let errors = error.errors();
+    errors.iter().map(|one| message("error", one)).collect()
 }
 
 /// The warnings of a scene.
 pub(crate) fn warnings(warnings: &[SceneWarning]) -> Vec<MessageInText> {
-    let message = |warning: &SceneWarning| {
-        let text = warning.text.as_ref();
-        let text = text.map_or("", |text| text.inner().as_str());
-        let spans = warning.labels.iter().map(|label| {
-            let remark = label.label().unwrap_or_default();
-            (label.offset(), label.len(), remark)
-        });
-        MessageInText {
-            severity: "warning",
-            message: warning.message.clone(),
-            help: None,
-            labels: spans.map(|span| label(text, span)).collect(),
-        }
+    let as_error = |warning: &SceneWarning| SceneError {
+        labels: warning.labels.clone(),
+        text: warning.text.clone(),
+        ..SceneError::without_labels(warning.message.clone(), None)
     };
-    warnings.iter().map(message).collect()
+    let all = warnings.iter().map(as_error);
+    all.map(|one| message("warning", &one)).collect()
 }
 
-/// The error of an analysis as the command line shows it.
-pub(crate) fn scene_error(error: StudyError) -> SceneError {
-    match error {
-        StudyError::Scene(scene) => *scene,
-        StudyError::Sweep(sweep) => SceneError::without_labels(sweep.to_string(), sweep.help()),
-        // Further kinds are those of written files, where another crate of the program asks for them.
-        #[allow(unreachable_patterns, reason = "without files there are none")]
-        other => SceneError::without_labels(other.to_string(), None),
+fn message(severity: &'static str, error: &SceneError) -> MessageInText {
+    let text = error.text.as_ref().map_or("", |text| text.inner().as_str());
+    let spans = error.labels.iter().map(|label| {
+        let remark = label.label().unwrap_or_default();
+        (label.offset(), label.len(), remark)
+    });
+    MessageInText {
+        severity,
+        message: error.message.clone(),
+        help: error.help.clone(),
+        labels: spans.map(|span| label(text, span)).collect(),
     }
 }
 

@@ -1,6 +1,5 @@
 //! A scene's machine in C.
 
-use crate::diagnostics::scene_error;
 use dwell_export::{Precision, Request, c_files as c_files_of};
 use dwell_scene::{AnyScene, SceneError};
 use dwell_study::{ExportRequest, compute_export_in_cells};
@@ -23,6 +22,5 @@ pub(crate) fn c_files(scene: &AnyScene) -> Result<Vec<(String, String)>, SceneEr
         interval: None,
         exact: false,
     };
-    let export = compute_export_in_cells(scene, &asked).map_err(scene_error)?;
-    Ok(c_files_of(&export).into())
+    Ok(c_files_of(&compute_export_in_cells(scene, &asked)?).into())
 }

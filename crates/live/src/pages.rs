@@ -1,6 +1,6 @@
 //! Pages of results that are no trajectories, and what the live page adds to one.
 
-use dwell_findings::{Column, RecordedEvent, RecordedNumber, Table};
+use dwell_findings::{Column, Record, RecordedEvent, Table};
 use dwell_page::{Page, PageColumn};
 use dwell_scene::Scene;
 use dwell_study::cycle::compute::{COORDINATE_COLUMN, CycleResults};
@@ -13,33 +13,23 @@ use dwell_study::{PreparedScene, compute_period};
 /// One steady cycle.
 pub(crate) fn cycle<S: MachineScene>(scene: &S, found: &CycleResults<'_, S>) -> Page {
     let (steady, errors) = (&found.steady, &found.errors);
-    let of_speed = |value: f64| Some(errors.speed * value.abs());
-    let fluctuation = steady.fluctuation;
-    let mut numbers = vec![
-        number("period", "s", steady.period, of_speed(steady.period)),
-        number(
-            "mean_speed",
-            "rad/s",
-            steady.mean_speed,
-            of_speed(steady.mean_speed),
-        ),
-        number(
-            "coefficient_of_fluctuation",
-            "",
-            fluctuation,
-            Some(errors.fluctuation),
-        ),
-    ];
-    let works = found
-        .works
-        .columns
-        .iter()
-        .zip(found.works.rows.iter().flatten());
-    numbers.extend(works.map(|(of, &work)| number(&of.name, &of.unit, work, Some(errors.work))));
+    let mut record = Record::default();
+    for (name, unit, value) in [
+        ("period", "s", steady.period),
+        ("mean_speed", "rad/s", steady.mean_speed),
+    ] {
+        record.add_within(name, unit, value, errors.speed * value.abs());
+    }
+    let (name, fluctuation) = ("coefficient_of_fluctuation", steady.fluctuation);
+    record.add_within(name, "", fluctuation, errors.fluctuation);
+    let works = found.works.rows.iter().flatten();
+    for (of, &work) in found.works.columns.iter().zip(works) {
+        record.add_within(&of.name, &of.unit, work, errors.work);
+    }
     let page = table_page(scene_page(scene, "cycle"), &found.samples, unit_group);
     Page {
         subtitle: "one steady cycle".to_owned(),
-        numbers,
+        numbers: record.numbers,
         drawing: scene.drawing_along(&page.columns[COORDINATE_COLUMN].values),
         ..page
     }
@@ -47,19 +37,14 @@ pub(crate) fn cycle<S: MachineScene>(scene: &S, found: &CycleResults<'_, S>) -> 
 
 /// The equilibria, and the static force around them.
 pub(crate) fn equilibria<S: MachineScene>(scene: &S, results: &EquilibriaResults<'_, S>) -> Page {
-    let rows = results.table.rows.iter().enumerate();
-    let numbers = rows.flat_map(|(k, row)| {
+    let mut record = Record::default();
+    for (k, row) in results.table.rows.iter().enumerate() {
         let values = results.table.columns.iter().zip(row);
-        let known = values.filter(|(_, value)| value.is_finite());
-        known.map(move |(of, &value)| {
-            number(
-                &format!("equilibrium.{}.{}", k + 1, of.name),
-                &of.unit,
-                value,
-                None,
-            )
-        })
-    });
+        for (of, &value) in values.filter(|(_, value)| value.is_finite()) {
+            let name = format!("equilibrium.{}.{}", k + 1, of.name);
+            record.add(name, &of.unit, value);
+        }
+    }
     let subtitle = match results.found.len() {
         1 => "1 equilibrium".to_owned(),
         found => format!("{found} equilibria"),
@@ -74,7 +59,7 @@ pub(crate) fn equilibria<S: MachineScene>(scene: &S, results: &EquilibriaResults
     };
     Page {
         subtitle,
-        numbers: numbers.collect(),
+        numbers: record.numbers,
         ..page
     }
 }
@@ -135,21 +120,14 @@ pub(crate) fn add_period(scene: &Scene, page: &mut Page) {
         return;
     }
     if let Ok(orbit) = compute_period(scene) {
-        page.numbers.push(number("period", "s", orbit.period, None));
-        page.numbers.push(number("energy", "J", orbit.energy, None));
+        let mut record = Record::default();
+        record.add("period", "s", orbit.period);
+        record.add("energy", "J", orbit.energy);
+        page.numbers.extend(record.numbers);
     }
 }
 
 pub(crate) fn events(events: Vec<(f64, String)>) -> Vec<RecordedEvent> {
     let event = |(t, name)| RecordedEvent { name, t };
     events.into_iter().map(event).collect()
-}
-
-fn number(name: &str, unit: &str, value: f64, error: Option<f64>) -> RecordedNumber {
-    RecordedNumber {
-        name: name.to_owned(),
-        unit: unit.to_owned(),
-        value,
-        error,
-    }
 }

@@ -1,10 +1,9 @@
 //! A command on a scene: what the page shows of it.
 
-use crate::diagnostics::scene_error;
 use crate::pages;
 use crate::request::Command;
 use dwell_page::Page;
-use dwell_scene::{AnyScene, CoordinateSweep, PrescribedMotion, Scene, SceneError, SpaceScene};
+use dwell_scene::{AnyScene, CoordinateSweep, PrescribedMotion, Scene, SpaceScene};
 use dwell_study::machines::MachineScene;
 use dwell_study::page::trajectory_page;
 use dwell_study::reduce::reduction_page;
@@ -15,114 +14,89 @@ use dwell_study::{
     trajectory_page_in_space,
 };
 
-/// What a command came to.
-pub(crate) struct Run {
-    /// What the page shows.
-    pub(crate) page: Page,
-    /// Why a motion ended early, or no cycle was found.
-    pub(crate) early_stop: Option<SceneError>,
-}
-
-impl From<Page> for Run {
-    fn from(page: Page) -> Self {
-        Self {
-            page,
-            early_stop: None,
-        }
-    }
-}
+/// What a page shows, and why a motion ended early.
+type PageAndStop = (Page, Option<StudyError>);
 
 /// Runs a command, with the options that the command line takes where none is given.
-pub(crate) fn run(command: Command, scene: &AnyScene) -> Result<Run, SceneError> {
+pub(crate) fn run(command: Command, scene: &AnyScene) -> Result<PageAndStop, StudyError> {
     match scene {
-        AnyScene::Plane(scene) => in_plane(command, scene).map_err(scene_error),
-        AnyScene::Space(scene) => in_space(command, scene).map_err(scene_error),
+        AnyScene::Plane(scene) => in_plane(command, scene),
+        AnyScene::Space(scene) => in_space(command, scene),
     }
 }
 
-fn in_space(command: Command, scene: &SpaceScene) -> Result<Run, StudyError> {
-    let analysis = match command {
-        Command::Motion => follows(&scene.prescribed, &scene.sweep),
-        Command::Kinematics => Analysis::Kinematics,
-        Command::Statics => Analysis::Statics,
-        Command::Kinetostatics => Analysis::Kinetostatics,
+fn in_space(command: Command, scene: &SpaceScene) -> Result<PageAndStop, StudyError> {
+    Ok(match command {
+        Command::Motion | Command::Kinematics | Command::Statics | Command::Kinetostatics => {
+            let analysis = analysis(command, &scene.prescribed, &scene.sweep);
+            trajectory_page_in_space(scene, analysis, &no_progress)?
+        }
         Command::Reduce => {
             let reduction = compute_reduction_in_space(scene, None)?;
-            return Ok(reduction_page_in_space(&reduction)?.into());
+            (reduction_page_in_space(&reduction)?, None)
         }
         Command::Simulate => {
             let solver = MotionSolver::Settings(SolverSettings::default());
-            let (page, early_stop) = free_motion_page_in_space(scene, &solver, &no_progress)?;
-            return Ok(Run {
-                page,
-                early_stop: early_stop.map(scene_error),
-            });
+            free_motion_page_in_space(scene, &solver, &no_progress)?
         }
-        Command::Cycle => return cycle(scene),
-        Command::Equilibria => return equilibria(scene),
-    };
-    let (page, early_stop) = trajectory_page_in_space(scene, analysis, &no_progress)?;
-    Ok(Run {
-        page,
-        early_stop: early_stop.map(scene_error),
+        Command::Cycle => (cycle(scene)?, None),
+        Command::Equilibria => (equilibria(scene)?, None),
     })
 }
 
-fn in_plane(command: Command, scene: &Scene) -> Result<Run, StudyError> {
-    match command {
-        Command::Motion => along_motion(scene, follows(&scene.prescribed, &scene.sweep)),
-        Command::Kinematics => along_motion(scene, Analysis::Kinematics),
-        Command::Statics => along_motion(scene, Analysis::Statics),
-        Command::Kinetostatics => along_motion(scene, Analysis::Kinetostatics),
-        Command::Reduce => {
-            let reduction = compute_reduction(scene, None)?;
-            Ok(reduction_page(&reduction).into())
+fn in_plane(command: Command, scene: &Scene) -> Result<PageAndStop, StudyError> {
+    Ok(match command {
+        Command::Motion | Command::Kinematics | Command::Statics | Command::Kinetostatics => {
+            along_motion(scene, analysis(command, &scene.prescribed, &scene.sweep))?
         }
+        Command::Reduce => (reduction_page(&compute_reduction(scene, None)?), None),
         Command::Simulate => {
             let solver = MotionSolver::Settings(SolverSettings::default());
             let motion = compute_free_motion(scene, &solver, &no_progress)?;
-            let mut page = trajectory_page(&motion.loaded_scene, &motion.computed);
-            page.printed = motion.summary;
-            page.numbers = motion.record.numbers;
-            page.events = pages::events(motion.events);
-            Ok(Run {
-                page,
-                early_stop: motion.computed.early_stop.map(scene_error),
-            })
+            let page = Page {
+                printed: motion.summary,
+                numbers: motion.record.numbers,
+                events: pages::events(motion.events),
+                ..trajectory_page(&motion.loaded_scene, &motion.computed)
+            };
+            (page, motion.computed.early_stop)
         }
-        Command::Cycle => cycle(scene),
-        Command::Equilibria => equilibria(scene),
-    }
+        Command::Cycle => (cycle(scene)?, None),
+        Command::Equilibria => (equilibria(scene)?, None),
+    })
 }
 
-fn cycle(scene: &impl MachineScene) -> Result<Run, StudyError> {
+fn cycle(scene: &impl MachineScene) -> Result<Page, StudyError> {
     match compute_cycle(scene, &SolverSettings::default(), None)? {
-        CycleSearch::Steady(found) => Ok(pages::cycle(scene, &found).into()),
+        CycleSearch::Steady(found) => Ok(pages::cycle(scene, &found)),
         CycleSearch::NoCycle { reason, .. } => Err(reason),
     }
 }
 
-fn equilibria(scene: &impl MachineScene) -> Result<Run, StudyError> {
-    Ok(pages::equilibria(scene, &compute_equilibria(scene)?).into())
+fn equilibria(scene: &impl MachineScene) -> Result<Page, StudyError> {
+    Ok(pages::equilibria(scene, &compute_equilibria(scene)?))
 }
 
-/// What is computed along the motion of a scene: its forces, where it has one.
-fn follows(prescribed: &Option<PrescribedMotion>, sweep: &Option<CoordinateSweep>) -> Analysis {
-    match prescribed.is_some() || sweep.is_some() {
-        true => Analysis::Kinetostatics,
-        false => Analysis::Kinematics,
+/// What a command computes along a trajectory. Along the motion of a scene these are its forces, where it has one.
+fn analysis(
+    command: Command,
+    prescribed: &Option<PrescribedMotion>,
+    sweep: &Option<CoordinateSweep>,
+) -> Analysis {
+    match command {
+        Command::Statics => Analysis::Statics,
+        Command::Kinetostatics => Analysis::Kinetostatics,
+        Command::Motion if prescribed.is_some() || sweep.is_some() => Analysis::Kinetostatics,
+        _ => Analysis::Kinematics,
     }
 }
 
 /// An analysis along the motion, with m and ½m′ of each row where there is a reduced model, and the period where there is one.
-fn along_motion(scene: &Scene, analysis: Analysis) -> Result<Run, StudyError> {
+fn along_motion(scene: &Scene, analysis: Analysis) -> Result<PageAndStop, StudyError> {
     let computed = compute_trajectory(scene, analysis, None, &no_progress)?;
     let mut page = trajectory_page(scene, &computed);
     page.printed = dwell_study::describe_scene(scene)? + &computed.notes;
     pages::add_reduced_inertia(scene, &mut page);
     pages::add_period(scene, &mut page);
-    Ok(Run {
-        page,
-        early_stop: computed.early_stop.map(scene_error),
-    })
+    Ok((page, computed.early_stop))
 }

@@ -59,7 +59,7 @@ mod symbols;
 pub mod trajectory;
 pub mod unit_runs;
 
-pub use calibrate::{CalibrationResult, find_value};
+pub use calibrate::{CalibratedScene, CalibrationResult, find_value};
 pub use check::describe_scene;
 pub use cycle::compute::{CycleSearch, CycleStability, compute_cycle};
 pub use dwell_symbolic::Language;

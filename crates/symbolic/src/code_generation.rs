@@ -2,7 +2,7 @@
 
 use crate::algebra::{Term, common_subexpressions, is_atomic, names};
 use crate::closed_form::{ClosedForm, FormulaSection};
-use crate::format::{Language, OutputStyle};
+use crate::format::{Language, OutputStyle, sign};
 use crate::symbol_table::Assignment;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,7 +16,7 @@ impl ClosedForm {
         let is_constant = |code: &str| self.constants.iter().any(|c| c.code == code);
         let style = OutputStyle::Latex(&name, &is_constant);
         let line = |assignment: &Assignment| {
-            let mut text = format!("{} &=", self.symbols.latex_names(&assignment.code));
+            let mut text = format!("{} &= ", self.symbols.latex_names(&assignment.code));
             let mut width = 0;
             for (k, (minus, one)) in style.summands(&assignment.value).iter().enumerate() {
                 if width > 0 && width + one.len() > WIDTH {
@@ -24,13 +24,8 @@ impl ClosedForm {
                     width = 0;
                 }
                 width += one.len();
-                text.push_str(match (k, minus) {
-                    (0, false) => " ",
-                    (_, false) => " + ",
-                    (0, true) => " -",
-                    (_, true) => " - ",
-                });
-                text.push_str(one);
+                text += sign(k, *minus);
+                text += one;
             }
             text
         };

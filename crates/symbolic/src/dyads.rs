@@ -66,7 +66,7 @@ impl PositionFormulas<'_> {
         let known = self.loop_part(closure, pick, Self::angle, but);
         let joint = self.loop_joint_name(closure);
         let known = self.symbols.assign_vector("d", &[&joint], &known);
-        self.loop_symbols[closure].known_part = Some(known.clone());
+        self.loops[closure].known_part = Some(known.clone());
         known
     }
 
@@ -177,7 +177,7 @@ impl PositionFormulas<'_> {
     fn close_along_normal(&mut self, closure: usize, normal: Term, travel: &Term) {
         let joint = self.loop_joint_name(closure);
         let travel = self.symbols.assign("s", &[&joint], travel);
-        self.loop_symbols[closure].normal_distance = Some((normal, travel));
+        self.loops[closure].normal_distance = Some((normal, travel));
     }
 
     /// The axis of a loop that closes along its normal only: its angle's frame and its direction.

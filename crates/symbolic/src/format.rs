@@ -61,23 +61,16 @@ impl OutputStyle<'_> {
         }
         let mut text = String::new();
         for (k, (minus, one)) in summands.iter().enumerate() {
-            text.push_str(match (k, minus) {
-                (0, true) => "-",
-                (0, false) => "",
-                (_, true) => " - ",
-                (_, false) => " + ",
-            });
-            text.push_str(one);
+            text += sign(k, *minus);
+            text += one;
         }
-        if precedence == Precedence::Lowest {
-            text
-        } else {
-            self.in_brackets(&text)
-        }
+        self.bracketed(text, precedence != Precedence::Lowest)
     }
 
-    fn in_brackets(&self, text: &str) -> String {
+    /// A text, in brackets if it needs them.
+    fn bracketed(&self, text: String, needed: bool) -> String {
         match self {
+            _ if !needed => text,
             Self::Code(_) => format!("({text})"),
             Self::Latex(..) => format!("\\left({text}\\right)"),
         }
@@ -133,10 +126,7 @@ impl OutputStyle<'_> {
                 }
             }
         };
-        match precedence > binds_tighter {
-            true => self.in_brackets(&text),
-            false => text,
-        }
+        self.bracketed(text, precedence > binds_tighter)
     }
 
     /// A factor of one half is a denominator of two.
@@ -180,11 +170,7 @@ impl OutputStyle<'_> {
             }
             (Self::Code(Language::C), Some(2)) if matches!(base.as_ref(), Node::Sym(_)) => {
                 let text = format!("{tight} * {tight}");
-                if precedence == Precedence::Lowest {
-                    text
-                } else {
-                    format!("({text})")
-                }
+                self.bracketed(text, precedence != Precedence::Lowest)
             }
             (Self::Code(Language::C), _) => {
                 let base = self.write(base, Precedence::Lowest);
@@ -240,6 +226,16 @@ impl OutputStyle<'_> {
             }
             (Self::Code(_), _) => format!("{name}({all})"),
         }
+    }
+}
+
+/// The sign before the k-th summand.
+pub(crate) fn sign(k: usize, minus: bool) -> &'static str {
+    match (k, minus) {
+        (0, true) => "-",
+        (0, false) => "",
+        (_, true) => " - ",
+        (_, false) => " + ",
     }
 }
 

@@ -1,6 +1,7 @@
 //! How a loop is composed of link vectors: found anew, body by body, so that each piece can be turned or
 //! shifted by itself when a joint is released.
 
+use crate::algebra::Term;
 use dwell_geometry::frames::Frames;
 use dwell_geometry::lower::{Owner, PairKind};
 use dwell_geometry::{Mechanism, Plan, Vec2, vec2};
@@ -28,7 +29,7 @@ pub(crate) struct SlideTerm {
 }
 
 /// A loop: P₂ − P₁ of the pair that closes it, through the tree.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct LoopEquation {
     pub(crate) loop_joint: usize,
     pub(crate) link_vectors: Vec<LinkVector>,
@@ -37,6 +38,11 @@ pub(crate) struct LoopEquation {
     pub(crate) tree_pairs: Vec<(usize, f64)>,
     /// Where only the normal part must vanish: the axis, with its body and frame.
     pub(crate) axis: Option<(usize, usize, Vec2)>,
+    /// The steps of its part that is known before its group; a released joint shifts them.
+    pub(crate) known_part: Option<[Term; 2]>,
+    /// Where it closes along a normal only: the step of the normal distance that is left for what turns or
+    /// travels, and the travel along the axis. A released joint shifts them, too.
+    pub(crate) normal_distance: Option<(Term, Term)>,
 }
 
 /// Pieces shorter than this part of the coordinates that they are differences of are nothing.
@@ -89,10 +95,7 @@ impl LoopEquation {
         let pair = &plan.pairs()[loop_joint];
         let mut loop_equation = Self {
             loop_joint,
-            link_vectors: Vec::new(),
-            slide_terms: Vec::new(),
-            tree_pairs: Vec::new(),
-            axis: None,
+            ..Self::default()
         };
         let pairs = plan.pairs();
         let point_on = |b: usize, body| pairs[b].points[usize::from(pairs[b].bodies[0] != body)];

@@ -18,16 +18,6 @@ use std::collections::HashMap;
 /// A vector in the plane.
 pub(crate) type Vector = [Term; 2];
 
-/// The quantities of a loop that a released joint shifts.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct LoopSymbols {
-    /// The steps of the known part of the loop.
-    pub(crate) known_part: Option<Vector>,
-    /// Where it closes along a normal only: the step of the normal distance that is left for what turns or
-    /// travels, and the travel along the axis.
-    pub(crate) normal_distance: Option<(Term, Term)>,
-}
-
 /// The positions of a mechanism.
 #[derive(Debug, Clone)]
 pub(crate) struct PositionFormulas<'a> {
@@ -37,7 +27,6 @@ pub(crate) struct PositionFormulas<'a> {
     /// The coordinate.
     pub(crate) q: Term,
     pub(crate) loops: Vec<LoopEquation>,
-    pub(crate) loop_symbols: Vec<LoopSymbols>,
     /// By relation: the step that solves it, and by what the relation grows with it.
     pub(crate) solved_couplings: Vec<Option<(Term, Term)>>,
     /// Numbers of relations: their size, whose they are, their names.
@@ -82,7 +71,6 @@ impl<'a> PositionFormulas<'a> {
             loops: (0..plan.loop_closures.len())
                 .map(|c| LoopEquation::of(mechanism, plan, c))
                 .collect(),
-            loop_symbols: vec![LoopSymbols::default(); plan.loop_closures.len()],
             solved_couplings: vec![None; plan.couplings.len()],
             joint_origins: vec![None; bodies],
             mass_centres: vec![None; bodies],

@@ -72,9 +72,8 @@ impl PositionFormulas<'_> {
                 add(code, "m", meaning, QuantityOrigin::Slide(slide));
             }
         }
-        let loops = self.loop_symbols.iter().zip(&self.loops);
-        for (c, (loop_symbols, loop_equation)) in loops.enumerate() {
-            let distance = loop_symbols.normal_distance.as_ref();
+        for (c, loop_equation) in self.loops.iter().enumerate() {
+            let distance = loop_equation.normal_distance.as_ref();
             if let Some(code) = distance.and_then(|n| symbol_name(&n.1)) {
                 let meaning = travel(loop_equation.loop_joint);
                 add(code, "m", meaning, QuantityOrigin::Closure(c));

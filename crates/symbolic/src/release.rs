@@ -112,11 +112,11 @@ impl PositionFormulas<'_> {
     }
 
     fn shift_loop(&mut self, closure: usize, release: &mut Release) {
-        let Some(known_part) = self.loop_symbols[closure].known_part.clone() else {
+        let loop_equation = self.loops[closure].clone();
+        let Some(known_part) = &loop_equation.known_part else {
             return;
         };
         let rotation = |body: usize| release.extra_rotation[body];
-        let loop_equation = self.loops[closure].clone();
         let mut sum = [zero(), zero()];
         let link_vectors = loop_equation.link_vectors.iter();
         for link_vector in link_vectors.filter(|p| rotation(p.body) != 0.0) {
@@ -143,7 +143,7 @@ impl PositionFormulas<'_> {
         for (step, shift) in known_part.iter().zip(sum) {
             release.shift(step, shift.simplify());
         }
-        let normal_distance = self.loop_symbols[closure].normal_distance.as_ref();
+        let normal_distance = &loop_equation.normal_distance;
         if let (Some((step, travel)), Some((body, ..))) = (normal_distance, loop_equation.axis)
             && release.extra_rotation[body] != 0.0
         {

@@ -1,48 +1,25 @@
 //! Forces of the loads, reactions, energies and inverse dynamics.
 
-use super::CWriter;
-use crate::evaluator::has_rotor;
-use crate::machine::LoadEffect;
+use super::{ACCESS, CWriter};
+use crate::export::Export;
+use crate::writer::reflected;
 use std::fmt::Write as _;
 
-impl CWriter<'_> {
+impl CWriter<'_, Export> {
     /// F of every load, and m and ½m′ with what is added.
     pub(super) fn forces(&self, text: &mut String) {
-        let machine = &self.export.machine;
         *text += "typedef struct {\n    @p@_real m, half_dm;\n";
         if self.has_loads() {
             *text += "    @p@_real f[@U@_LOAD_COUNT];\n";
         }
         *text += "} forces;\n\nstatic void forces_of(const @p@_parameters *p, const @p@_inputs *in, const @p@_motion_terms *t, const @p@_state *s, forces *out)\n{\n";
         let mut lines = String::new();
-        for (k, load) in machine.loads.iter().enumerate() {
+        for (k, load) in self.loads.iter().enumerate() {
             let name = &self.names.loads[k];
-            let value = match &load.effect {
-                LoadEffect::Conservative { .. } | LoadEffect::Constant { .. } => {
-                    format!("p->magnitude_{name}")
-                }
-                LoadEffect::Input { .. } => format!("in->load_{name}"),
-                LoadEffect::Damper { .. } => {
-                    format!("ZERO - p->damping_{name} * t->w[{k}] * s->q_dot")
-                }
-                LoadEffect::VariableDamper { .. } => {
-                    format!("ZERO - in->damping_{name} * t->w[{k}] * s->q_dot")
-                }
-                LoadEffect::Motor(motor) => {
-                    let constant = format!("(p->gear_ratio_{name} * p->torque_constant_{name})");
-                    match motor.inductance > 0.0 {
-                        true => format!("{constant} * s->current_{name}"),
-                        false => format!(
-                            "{constant} * (in->voltage_{name} - {constant} * t->w[{k}] * s->q_dot) / p->resistance_{name}"
-                        ),
-                    }
-                }
-            };
+            let value = ACCESS.force(&load.effect, name, &format!("t->w[{k}] * s->q_dot"));
             _ = writeln!(lines, "    out->f[{k}] = {value};");
-            if has_rotor(&load.effect) {
-                let reflected = format!(
-                    "(p->gear_ratio_{name} * p->gear_ratio_{name} * p->rotor_inertia_{name})"
-                );
+            if load.effect.has_rotor() {
+                let reflected = reflected("p->", name);
                 _ = writeln!(
                     lines,
                     "    out->m = out->m + {reflected} * t->w[{k}] * t->w[{k}];\n    out->half_dm = out->half_dm + {reflected} * t->w[{k}] * t->dw[{k}];"
@@ -50,32 +27,26 @@ impl CWriter<'_> {
             }
         }
         *text += "    out->m = t->m + p->added_inertia;\n    out->half_dm = t->half_dm;\n";
-        for unused in ["in", "s"] {
-            if !lines.contains(&format!("{unused}->")) {
-                _ = writeln!(text, "    (void){unused};");
-            }
-        }
+        *text += &self.unused_arguments(&lines);
         *text += &lines;
         *text += "}\n\n";
     }
 
     /// Reactions, energies and inverse dynamics.
     pub(super) fn results(&self, text: &mut String) {
-        let arguments =
-            "const @p@_parameters *parameters, const @p@_inputs *inputs, const @p@_state *state";
         let begin = "    @p@_motion_terms terms;\n    forces f;\n";
         let evaluate = "    forces_of(parameters, inputs, &terms, state, &f);\n";
         if self.has_reactions() {
             _ = write!(
                 text,
-                "@p@_status @p@_reactions({arguments}, @p@_real q_ddot, @p@_real reactions[@U@_REACTION_COUNT])\n{{\n{begin}    @p@_reaction_terms of;\n    const @p@_real speed2 = state->q_dot * state->q_dot;\n    int k;\n    @p@_status status = @p@_coefficients(state->q, &terms, &of);\n{evaluate}"
+                "@p@_status @p@_reactions(@arguments@, @p@_real q_ddot, @p@_real reactions[@U@_REACTION_COUNT])\n{{\n{begin}    @p@_reaction_terms of;\n    const @p@_real speed2 = state->q_dot * state->q_dot;\n    int k;\n    @p@_status status = @p@_coefficients(state->q, &terms, &of);\n{evaluate}"
             );
-            for (k, load) in self.export.machine.loads.iter().enumerate() {
-                if has_rotor(&load.effect) {
-                    let name = &self.names.loads[k];
+            for (k, load) in self.loads.iter().enumerate() {
+                if load.effect.has_rotor() {
+                    let reflected = reflected("parameters->", &self.names.loads[k]);
                     _ = writeln!(
                         text,
-                        "    f.f[{k}] = f.f[{k}] - (parameters->gear_ratio_{name} * parameters->gear_ratio_{name} * parameters->rotor_inertia_{name}) * (terms.w[{k}] * q_ddot + terms.dw[{k}] * speed2);"
+                        "    f.f[{k}] = f.f[{k}] - {reflected} * (terms.w[{k}] * q_ddot + terms.dw[{k}] * speed2);"
                     );
                 }
             }
@@ -83,41 +54,26 @@ impl CWriter<'_> {
                 true => {
                     "        int l;\n        @p@_real sum = of.a[k] * q_ddot + of.b[k] * speed2;\n        for (l = 0; l < @U@_LOAD_COUNT; l++) {\n            sum = sum + of.c[l * @U@_REACTION_COUNT + k] * f.f[l];\n        }\n"
                 }
-                false => "        const @p@_real sum = of.a[k] * q_ddot + of.b[k] * speed2;\n",
+                false => {
+                    *text += "    (void)f;\n";
+                    "        const @p@_real sum = of.a[k] * q_ddot + of.b[k] * speed2;\n"
+                }
             };
-            if !self.has_loads() {
-                *text += "    (void)f;\n";
-            }
             _ = write!(
                 text,
                 "    for (k = 0; k < @U@_REACTION_COUNT; k++) {{\n{loads}        if (status == @U@_OK && !is_finite(sum)) {{\n            status = @U@_NOT_FINITE;\n        }}\n        reactions[k] = sum;\n    }}\n    for (k = 0; status != @U@_OK && k < @U@_REACTION_COUNT; k++) {{\n        reactions[k] = ZERO;\n    }}\n    return status;\n}}\n\n"
             );
         }
-        let (counter, potential) = match self.has_potentials() {
-            true => {
-                let conservative = self.export.machine.loads_where(LoadEffect::is_conservative);
-                let terms: String = conservative
-                    .map(|k| format!("    energies[1] = energies[1] + f.f[{k}] * terms.v[{k}];\n"))
-                    .collect();
-                ("", terms)
-            }
-            false => ("", String::new()),
-        };
         _ = write!(
             text,
-            "@p@_status @p@_energies({arguments}, @p@_real energies[2])\n{{\n{begin}{counter}    @p@_status status = @p@_motion_terms_at(state->q, &terms);\n{evaluate}    energies[0] = {} * f.m * state->q_dot * state->q_dot;\n    energies[1] = ZERO;\n{potential}    if (status == @U@_OK && !(is_finite(energies[0]) && is_finite(energies[1]))) {{\n        status = @U@_NOT_FINITE;\n    }}\n    if (status != @U@_OK) {{\n        energies[0] = ZERO;\n        energies[1] = ZERO;\n    }}\n    return status;\n}}\n\n",
-            self.number(0.5)
+            "@p@_status @p@_energies(@arguments@, @p@_real energies[2])\n{{\n{begin}    @p@_status status = @p@_motion_terms_at(state->q, &terms);\n{evaluate}    energies[0] = {} * f.m * state->q_dot * state->q_dot;\n    energies[1] = ZERO;\n{}    if (status == @U@_OK && !(is_finite(energies[0]) && is_finite(energies[1]))) {{\n        status = @U@_NOT_FINITE;\n    }}\n    if (status != @U@_OK) {{\n        energies[0] = ZERO;\n        energies[1] = ZERO;\n    }}\n    return status;\n}}\n\n",
+            self.number(0.5),
+            self.potentials()
         );
-        let sum = match self.has_loads() {
-            true => {
-                "    for (k = 0; k < @U@_LOAD_COUNT; k++) {\n        *force = *force - f.f[k] * terms.w[k];\n    }\n"
-            }
-            false => "",
-        };
-        let counter = if self.has_loads() { "    int k;\n" } else { "" };
+        let (counter, sum) = self.sum_over_loads("*force = *force -");
         _ = write!(
             text,
-            "@p@_status @p@_required_force({arguments}, @p@_real q_ddot, @p@_real *force)\n{{\n{begin}{counter}    @p@_status status = @p@_motion_terms_at(state->q, &terms);\n{evaluate}    *force = f.m * q_ddot + f.half_dm * state->q_dot * state->q_dot;\n{sum}    if (status == @U@_OK && !is_finite(*force)) {{\n        status = @U@_NOT_FINITE;\n    }}\n    if (status != @U@_OK) {{\n        *force = ZERO;\n    }}\n    return status;\n}}\n\n"
+            "@p@_status @p@_required_force(@arguments@, @p@_real q_ddot, @p@_real *force)\n{{\n{begin}{counter}    @p@_status status = @p@_motion_terms_at(state->q, &terms);\n{evaluate}    *force = f.m * q_ddot + f.half_dm * state->q_dot * state->q_dot;\n{sum}    if (status == @U@_OK && !is_finite(*force)) {{\n        status = @U@_NOT_FINITE;\n    }}\n    if (status != @U@_OK) {{\n        *force = ZERO;\n    }}\n    return status;\n}}\n\n"
         );
     }
 }

@@ -1,9 +1,10 @@
 //! The self-test: exact values, which the cells were not fitted at, and a motion.
 
 use super::CWriter;
+use crate::export::Export;
 use std::fmt::Write as _;
 
-impl CWriter<'_> {
+impl CWriter<'_, Export> {
     pub(super) fn self_test(&self, text: &mut String) {
         let (machine, measured) = (&self.export.machine, &self.export.measured);
         let values = measured.tolerances.len();
@@ -39,14 +40,10 @@ impl CWriter<'_> {
             *text += "    @p@_real xy[2 * @U@_POINT_COUNT];\n";
         }
         self.rows_check(text);
-        let outside = match machine.domain.revolutions {
-            0 => 2.0 * machine.domain.to.abs().max(machine.domain.from.abs()) + 1.0,
-            _ => 1e30,
-        };
         _ = write!(
             text,
             "        for (k = 0; k < n; k++) {{\n            if (differs(found[k], expected[k], tolerance[k])) {{\n                return 10 + k;\n            }}\n        }}\n    }}\n    if (@p@_motion_terms_at({}, &terms) != @U@_OUT_OF_RANGE) {{\n        return 3;\n    }}\n    @p@_scene(&parameters, &inputs, &state);\n    parameters.added_inertia = {};\n    if (@p@_acceleration(&parameters, &inputs, &state, &q_ddot) != @U@_NO_INERTIA) {{\n        return 4;\n    }}\n",
-            self.number(outside),
+            self.number(machine.domain.outside()),
             self.number(-1e30)
         );
         self.motion_check(text);

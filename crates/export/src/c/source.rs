@@ -1,9 +1,10 @@
 //! The source: constants, coefficients, and what follows from them.
 
 use super::{CWriter, tables};
-use crate::evaluator::has_rotor;
+use crate::export::Export;
 use crate::machine::PartKind;
 use crate::part::{CURVE, Column, HEAD, Wrapping};
+use crate::straight_line::StraightLine;
 use std::fmt::Write as _;
 
 const PLACE: &str = "\
@@ -31,7 +32,7 @@ static int is_finite(@p@_real x)
 
 ";
 
-impl CWriter<'_> {
+impl CWriter<'_, Export> {
     pub(super) fn source(&self) -> String {
         let library = match self.export.code {
             None => "",
@@ -67,6 +68,11 @@ impl CWriter<'_> {
         self.step(&mut text);
         self.self_test(&mut text);
         text
+    }
+
+    /// The operations of a part, of an exact export.
+    fn code(&self, kind: PartKind) -> Option<&StraightLine> {
+        Some(&self.export.code.as_ref()?[kind as usize])
     }
 
     /// Brings q into the domain.
@@ -109,57 +115,46 @@ impl CWriter<'_> {
 
     /// Whether the w of a motor with a rotor is in cells, so that its derivative is needed.
     fn tabulated_rotors(&self) -> bool {
-        let machine = &self.export.machine;
-        let mut columns = self.part(PartKind::Motion).columns.iter();
-        columns.any(|(of, column)| {
-            let rotor = |k: usize| machine.loads.get(k).is_some_and(|l| has_rotor(&l.effect));
-            matches!((of, column), (crate::machine::Function::W(k), Column::Tabulated(_)) if rotor(*k))
-        })
+        let columns = self.part(PartKind::Motion).columns.iter();
+        let mut rotors = columns.zip(self.export.machine.rotor_columns());
+        rotors.any(|((_, column), rotor)| rotor && matches!(column, Column::Tabulated(_)))
     }
 
     /// Each member of the terms of motion, at a place.
     pub(super) fn motion_terms(&self, text: &mut String) {
-        let machine = &self.export.machine;
         *text += "static void motion_at(@p@_real q, @p@_motion_terms *terms)\n{\n";
         match self.code(PartKind::Motion) {
             Some(code) => self.operations(code, text),
             None => *text += "    const place at = place_in_motion(q);\n",
         }
-        let value = |k: usize| self.curve(k)[0].clone();
-        let half_slope = |k: usize| self.curve(k)[1].clone();
-        _ = writeln!(
-            text,
-            "    terms->m = {};\n    terms->half_dm = {};",
-            value(0),
-            half_slope(0)
-        );
-        let (mut next_curve, mut next_column) = (1, 0);
-        for (k, load) in machine.loads.iter().enumerate() {
-            let (mut v, mut dw) = (None, None);
-            let w = if load.effect.is_conservative() {
-                let curve = next_curve;
-                next_curve += 1;
-                v = Some(value(curve));
-                format!("{} * {}", self.number(-2.0), half_slope(curve))
-            } else {
-                let [w, slope] = self.motion_column(next_column);
-                next_column += 1;
-                dw = slope.filter(|_| has_rotor(&load.effect));
-                w.unwrap_or_else(|| self.number(0.0))
+        let [m, half_dm] = self.curve(0);
+        _ = writeln!(text, "    terms->m = {m};\n    terms->half_dm = {half_dm};");
+        for (k, load) in self.loads.iter().enumerate() {
+            let place = self.export.machine.place(k);
+            let zero = "ZERO".to_owned();
+            let (w, v, dw) = match load.effect.is_conservative() {
+                true => {
+                    let [value, half_slope] = self.curve(place);
+                    let w = format!("{} * {half_slope}", self.number(-2.0));
+                    (w, value, zero)
+                }
+                false => {
+                    let (w, slope) = self.motion_column(place);
+                    let slope = slope.filter(|_| load.effect.has_rotor());
+                    (w, zero.clone(), slope.unwrap_or(zero))
+                }
             };
             _ = writeln!(text, "    terms->w[{k}] = {w};");
             if self.has_potentials() {
-                let v = v.unwrap_or_else(|| "ZERO".to_owned());
                 _ = writeln!(text, "    terms->v[{k}] = {v};");
             }
             if self.has_rotors() {
-                let dw = dw.unwrap_or_else(|| "ZERO".to_owned());
                 _ = writeln!(text, "    terms->dw[{k}] = {dw};");
             }
         }
         *text += "}\n\n";
         *text += "@p@_status @p@_motion_terms_at(@p@_real q, @p@_motion_terms *terms)\n{\n    const @p@_status status = wrap(&q);\n    if (status == @U@_OK) {\n        motion_at(q, terms);\n    } else {\n";
-        self.clear_motion("terms", "        ", text);
+        self.clear_motion("terms", text);
         *text += "    }\n    return status;\n}\n\n";
     }
 
@@ -176,45 +171,42 @@ impl CWriter<'_> {
         ]
     }
 
-    /// A column of motion, and its slope.
-    fn motion_column(&self, k: usize) -> [Option<String>; 2] {
+    /// A column of motion, and its slope if it is no constant.
+    fn motion_column(&self, k: usize) -> (String, Option<String>) {
         let part = self.part(PartKind::Motion);
         if let Some(code) = self.code(PartKind::Motion) {
             let first = 2 * part.curves.len() + k;
-            let output = |k: usize| code.outputs.get(k).map(|&o| self.operand(o));
-            return [output(first), output(first + part.columns.len())];
+            let output = |k: usize| self.operand(code.outputs[k]);
+            return (output(first), Some(output(first + part.columns.len())));
         }
-        match part.columns.get(k) {
-            Some((_, Column::Tabulated(j))) => {
-                let offset = self.offset(PartKind::Motion, *j);
-                ["polynomial", "slope"].map(|of| Some(format!("{of}(at.n + {offset}, &at)")))
+        match part.columns[k].1 {
+            Column::Tabulated(j) => {
+                let offset = self.offset(PartKind::Motion, j);
+                let of = |function: &str| format!("{function}(at.n + {offset}, &at)");
+                (of("polynomial"), Some(of("slope")))
             }
-            Some((_, Column::Constant(value))) => [Some(self.number(*value)), None],
-            None => [None, None],
+            Column::Constant(value) => (self.number(value), None),
         }
     }
 
-    fn clear_motion(&self, terms: &str, indent: &str, text: &mut String) {
+    fn clear_motion(&self, terms: &str, text: &mut String) {
         _ = writeln!(
             text,
-            "{indent}{terms}->m = ZERO;\n{indent}{terms}->half_dm = ZERO;"
+            "        {terms}->m = ZERO;\n        {terms}->half_dm = ZERO;"
         );
         let arrays = [
             ("w", self.has_loads()),
             ("v", self.has_potentials()),
             ("dw", self.has_rotors()),
         ];
-        let arrays = arrays.into_iter().filter(|(_, there)| *there);
-        let arrays: Vec<&str> = arrays.map(|(array, _)| array).collect();
-        if !arrays.is_empty() {
+        let there = arrays.into_iter().filter(|(_, there)| *there);
+        let clear = |(array, _)| format!("                {terms}->{array}[k] = ZERO;\n");
+        let lines: String = there.map(clear).collect();
+        if self.has_loads() {
             _ = writeln!(
                 text,
-                "{indent}{{\n{indent}    int k;\n{indent}    for (k = 0; k < @U@_LOAD_COUNT; k++) {{"
+                "        {{\n            int k;\n            for (k = 0; k < @U@_LOAD_COUNT; k++) {{\n{lines}            }}\n        }}"
             );
-            for array in arrays {
-                _ = writeln!(text, "{indent}        {terms}->{array}[k] = ZERO;");
-            }
-            _ = writeln!(text, "{indent}    }}\n{indent}}}");
         }
     }
 
@@ -234,7 +226,7 @@ impl CWriter<'_> {
         self.clear_reactions("terms", text);
         *text += "    }\n    return status;\n}\n\n";
         *text += "@p@_status @p@_coefficients(@p@_real q, @p@_motion_terms *motion, @p@_reaction_terms *reactions)\n{\n    const @p@_status status = wrap(&q);\n    if (status == @U@_OK) {\n        motion_at(q, motion);\n        reactions_at(q, reactions);\n    } else {\n";
-        self.clear_motion("motion", "        ", text);
+        self.clear_motion("motion", text);
         self.clear_reactions("reactions", text);
         *text += "    }\n    return status;\n}\n\n";
     }
@@ -256,29 +248,22 @@ impl CWriter<'_> {
     /// The inside of a function that fills arrays with the columns of a part.
     fn columns_body(&self, kind: PartKind, targets: &[(String, usize)], text: &mut String) {
         if let Some(code) = self.code(kind) {
-            self.operations(code, text);
-            for ((array, place), &output) in targets.iter().zip(&code.outputs) {
-                _ = writeln!(text, "    {array}[{place}] = {};", self.operand(output));
-            }
+            let targets = targets.iter();
+            let targets = targets.map(|(array, place)| format!("{array}[{place}]"));
+            *text += &self.assignments(code, targets);
             return;
         }
         let mut assignments = String::new();
         self.assign_columns(kind, targets, &mut assignments);
+        if assignments.contains("for (k = 0;") {
+            *text += "    int k;\n";
+        }
         match self.has_cells(kind) {
             true => {
-                _ = writeln!(
-                    text,
-                    "    const place at = place_in_{}(q);",
-                    tables::name(kind)
-                );
+                let name = tables::NAMES[kind as usize];
+                _ = writeln!(text, "    const place at = place_in_{name}(q);");
             }
             false => *text += "    (void)q;\n",
-        }
-        if self.needs_counter(&assignments) {
-            // C99 allows a declaration here, and every compiler an early one.
-            let declaration = "    int k;\n";
-            let at = text.rfind("{\n").map_or(text.len(), |at| at + 2);
-            text.insert_str(at, declaration);
         }
         *text += &assignments;
     }
@@ -293,31 +278,16 @@ impl CWriter<'_> {
 
     pub(super) fn scene(&self, text: &mut String) {
         *text += "void @p@_scene(@p@_parameters *parameters, @p@_inputs *inputs, @p@_state *state)\n{\n    int k;\n";
-        for (name, value, _) in self.parameters() {
-            _ = writeln!(text, "    parameters->{name} = {};", self.number(value));
-        }
-        let inputs = self.inputs();
-        for (_, name, value, _) in &inputs {
-            _ = writeln!(text, "    inputs->{name} = {};", self.number(*value));
-        }
-        if inputs.is_empty() {
-            *text += "    inputs->none = ZERO;\n";
-        }
-        let [q, q_dot] = self.export.machine.initial;
-        let (q, q_dot) = (self.number(q), self.number(q_dot));
+        self.assign_constants(text);
+        let [q, q_dot] = self.export.machine.initial.map(|x| self.number(x));
         _ = writeln!(text, "    state->q = {q};\n    state->q_dot = {q_dot};");
-        let currents = self.currents();
-        for &(load, _) in &currents {
-            _ = writeln!(
-                text,
-                "    state->current_{} = ZERO;",
-                self.names.loads[load]
-            );
+        for (_, current, _) in self.currents() {
+            _ = writeln!(text, "    state->{current} = ZERO;");
         }
         _ = write!(
             text,
             "    for (k = 0; k < {}; k++) {{\n        state->carry[k] = ZERO;\n    }}\n    state->periods = 0;\n}}\n\n@p@_real @p@_whole_coordinate(const @p@_state *state)\n{{\n",
-            2 + currents.len()
+            self.order()
         );
         *text += match self.export.machine.domain.revolutions {
             0 => "    return state->q;\n}\n\n",

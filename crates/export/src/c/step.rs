@@ -1,52 +1,48 @@
 //! Rates of a state, and the step.
 
-use super::CWriter;
+use super::{ACCESS, CWriter};
+use crate::export::Export;
 use std::fmt::Write as _;
 
-impl CWriter<'_> {
-    /// q̇, q̈ and the rates of currents.
-    pub(super) fn rates(&self, text: &mut String) {
-        let currents = self.currents();
-        let order = 2 + currents.len();
-        let (counter, sum) = match self.has_loads() {
+impl CWriter<'_, Export> {
+    /// The counter of a sum of w F over the loads, and the sum, each with what it is added to.
+    pub(super) fn sum_over_loads(&self, sum: &str) -> (&'static str, String) {
+        match self.has_loads() {
             true => (
                 "    int k;\n",
-                "    for (k = 0; k < @U@_LOAD_COUNT; k++) {\n        force = force + f.f[k] * terms.w[k];\n    }\n",
+                format!(
+                    "    for (k = 0; k < @U@_LOAD_COUNT; k++) {{\n        {sum} f.f[k] * terms.w[k];\n    }}\n"
+                ),
             ),
-            false => ("", ""),
-        };
+            false => ("", String::new()),
+        }
+    }
+
+    /// q̇, q̈ and the rates of currents.
+    pub(super) fn rates(&self, text: &mut String) {
+        let order = self.order();
+        let (counter, sum) = self.sum_over_loads("force = force +");
         _ = write!(
             text,
             "static @p@_status rates_of(const @p@_parameters *p, const @p@_inputs *in, const @p@_state *s, @p@_real rates[{order}])\n{{\n    @p@_motion_terms terms;\n    forces f;\n    @p@_real force;\n{counter}    const @p@_status status = @p@_motion_terms_at(s->q, &terms);\n    if (status != @U@_OK) {{\n        return status;\n    }}\n    forces_of(p, in, &terms, s, &f);\n    force = ZERO - f.half_dm * s->q_dot * s->q_dot;\n{sum}    if (!(f.m > ZERO)) {{\n        return is_finite(f.m) ? @U@_NO_INERTIA : @U@_NOT_FINITE;\n    }}\n    rates[0] = s->q_dot;\n    rates[1] = force / f.m;\n"
         );
         let mut finite = "is_finite(rates[0]) && is_finite(rates[1])".to_owned();
-        for (load, place) in currents {
-            let name = &self.names.loads[load];
-            _ = writeln!(
-                text,
-                "    rates[{place}] = (in->voltage_{name} - p->resistance_{name} * s->current_{name} - (p->gear_ratio_{name} * p->torque_constant_{name}) * terms.w[{load}] * s->q_dot) / p->inductance_{name};"
-            );
+        for (load, _, place) in self.currents() {
+            let velocity = format!("terms.w[{load}] * s->q_dot");
+            let rate = ACCESS.current_rate(&self.names.loads[load], &velocity);
+            _ = writeln!(text, "    rates[{place}] = {rate};");
             finite += &format!(" && is_finite(rates[{place}])");
         }
         _ = write!(
             text,
-            "    return {finite} ? @U@_OK : @U@_NOT_FINITE;\n}}\n\n@p@_status @p@_acceleration(const @p@_parameters *parameters, const @p@_inputs *inputs, const @p@_state *state, @p@_real *q_ddot)\n{{\n    @p@_real rates[{order}];\n    const @p@_status status = rates_of(parameters, inputs, state, rates);\n    *q_ddot = status == @U@_OK ? rates[1] : ZERO;\n    return status;\n}}\n\n"
+            "    return {finite} ? @U@_OK : @U@_NOT_FINITE;\n}}\n\n@p@_status @p@_acceleration(@arguments@, @p@_real *q_ddot)\n{{\n    @p@_real rates[{order}];\n    const @p@_status status = rates_of(parameters, inputs, state, rates);\n    *q_ddot = status == @U@_OK ? rates[1] : ZERO;\n    return status;\n}}\n\n"
         );
     }
 
     pub(super) fn step(&self, text: &mut String) {
-        let currents = self.currents();
-        let order = 2 + currents.len();
-        let mut members = vec!["q".to_owned(), "q_dot".to_owned()];
-        members.extend(
-            currents
-                .iter()
-                .map(|(load, _)| format!("current_{}", self.names.loads[*load])),
-        );
-        _ = write!(
-            text,
-            "static void move_state(const @p@_state *from, @p@_real h, const @p@_real *rates, @p@_state *to)\n{{\n"
-        );
+        let members = self.state_members();
+        let order = members.len();
+        *text += "static void move_state(const @p@_state *from, @p@_real h, const @p@_real *rates, @p@_state *to)\n{\n";
         for (k, member) in members.iter().enumerate() {
             _ = writeln!(text, "    to->{member} = from->{member} + h * rates[{k}];");
         }

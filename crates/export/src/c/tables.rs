@@ -1,20 +1,19 @@
 //! The constants of the cells, and the places where functions are found in them.
 
 use super::CWriter;
+use crate::export::Export;
 use crate::machine::PartKind;
-use crate::part::{CURVE, Column, HEAD, TERMS};
+use crate::part::{CURVE, Column, HEAD, Part, TERMS};
 use std::fmt::Write as _;
 
-/// The name of a part in the code.
-pub(super) fn name(kind: PartKind) -> &'static str {
-    match kind {
-        PartKind::Motion => "motion",
-        PartKind::Reactions => "reaction",
-        PartKind::Positions => "position",
-    }
-}
+/// The names of the parts in the code.
+pub(super) const NAMES: [&str; 3] = ["motion", "reaction", "position"];
 
-impl CWriter<'_> {
+impl CWriter<'_, Export> {
+    pub(super) fn part(&self, kind: PartKind) -> &Part {
+        &self.export.parts[kind as usize]
+    }
+
     /// Whether anything of a part is in cells.
     pub(super) fn has_cells(&self, kind: PartKind) -> bool {
         !self.part(kind).index.is_empty()
@@ -25,7 +24,7 @@ impl CWriter<'_> {
         if !self.has_cells(kind) {
             return;
         }
-        let (part, name) = (self.part(kind), name(kind));
+        let (part, name) = (self.part(kind), NAMES[kind as usize]);
         let (cells, stride, bins) = (part.cell_count(), part.stride(), part.index.len());
         let index = match part.index_bytes() {
             1 => "uint8_t",
@@ -75,37 +74,32 @@ impl CWriter<'_> {
         targets: &[(String, usize)],
         text: &mut String,
     ) {
-        let columns = &self.part(kind).columns;
-        let mut k = 0;
-        while let (Some((_, column)), Some((array, place))) = (columns.get(k), targets.get(k)) {
-            let continues = |run: usize| {
-                let (Some((_, next)), Some((other, at))) =
-                    (columns.get(k + run), targets.get(k + run))
-                else {
-                    return false;
-                };
-                let follows = match (column, next) {
-                    (Column::Constant(one), Column::Constant(next)) => one == next,
-                    (Column::Tabulated(one), Column::Tabulated(next)) => *next == one + run,
-                    (Column::Constant(_), Column::Tabulated(_))
-                    | (Column::Tabulated(_), Column::Constant(_)) => false,
-                };
-                follows && other == array && *at == place + run
+        let columns = self.part(kind).columns.iter().map(|(_, column)| *column);
+        let all: Vec<(Column, &(String, usize))> = columns.zip(targets).collect();
+        let runs = all.chunk_by(|(one, (array, place)), (next, (other, at))| {
+            let follows = match (one, next) {
+                (Column::Constant(one), Column::Constant(next)) => one == next,
+                (Column::Tabulated(one), Column::Tabulated(next)) => *next == one + 1,
+                (Column::Constant(_), Column::Tabulated(_))
+                | (Column::Tabulated(_), Column::Constant(_)) => false,
             };
-            let run = (1..).find(|&run| !continues(run)).unwrap_or(1);
+            follows && other == array && *at == place + 1
+        });
+        for run in runs {
+            let (column, (array, place)) = run[0];
             let value = |index: &str| match column {
-                Column::Constant(value) => self.number(*value),
+                Column::Constant(value) => self.number(value),
                 Column::Tabulated(j) => {
                     let step = match index {
                         "" => String::new(),
                         index => format!(" + {TERMS} * {index}"),
                     };
-                    format!("polynomial(at.n + {}{step}, &at)", self.offset(kind, *j))
+                    format!("polynomial(at.n + {}{step}, &at)", self.offset(kind, j))
                 }
             };
-            _ = match run {
+            _ = match run.len() {
                 1 => writeln!(text, "    {array}[{place}] = {};", value("")),
-                _ => {
+                run => {
                     let place = match place {
                         0 => String::new(),
                         place => format!("{place} + "),
@@ -117,12 +111,6 @@ impl CWriter<'_> {
                     )
                 }
             };
-            k += run;
         }
-    }
-
-    /// Whether [`Self::assign_columns`] needs the counter `k`.
-    pub(super) fn needs_counter(&self, text: &str) -> bool {
-        text.contains("for (k = 0;")
     }
 }

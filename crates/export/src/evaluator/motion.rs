@@ -1,8 +1,8 @@
 //! Terms of the equation of motion at a coordinate, accelerations, reactions, energies and steps.
 
-use super::Status;
-use super::pieces::{Found, Functions, Pieces, Range};
-use crate::machine::{LoadEffect, MachineDescription, PartKind};
+use super::pieces::{Functions, Pieces, Range};
+use super::{Load, Status, runge_kutta};
+use crate::machine::{MachineDescription, PartKind};
 use crate::part::{Part, Precision, Wrapping};
 use crate::real::Real;
 use crate::straight_line::StraightLine;
@@ -44,19 +44,6 @@ pub struct State<R> {
     pub periods: i32,
 }
 
-/// The values of the parameters and inputs of the scene.
-#[derive(Debug, Clone)]
-struct Load<R> {
-    effect: LoadEffect,
-    /// By the conservative loads the curve, by the others the column of the motion's part.
-    place: usize,
-    value: R,
-    /// Of a motor: N k, R, L, N² J.
-    motor: [R; 4],
-    /// The place of its current in the state.
-    current: Option<usize>,
-}
-
 /// The exported code, in one kind of number, with the parameters and inputs of the scene.
 #[derive(Debug, Clone)]
 pub struct Evaluator<R> {
@@ -64,16 +51,24 @@ pub struct Evaluator<R> {
     wrapping: Option<[R; 2]>,
     parts: [Functions<R>; 3],
     reactions: usize,
-    points: usize,
-    loads: Vec<Load<R>>,
+    /// How many values of motion are those of curves, and how many columns follow.
+    motion_values: [usize; 2],
+    /// By load: itself, and the place of its curve or column.
+    loads: Vec<(Load<R>, usize)>,
     order: usize,
 }
 
 impl<R: Real> Evaluator<R> {
     /// Of a machine and its fitted parts, in the order of [`PartKind::ALL`].
     pub fn new(machine: &MachineDescription, parts: &[Part; 3], precision: Precision) -> Self {
-        let cells = |k: usize| Functions::Cells(Pieces::new(&parts[k], machine.domain));
-        Self::of_functions(machine, [0, 1, 2].map(cells), precision)
+        let cells = |part, slopes| Functions::Cells(Pieces::new(part, machine.domain, slopes));
+        let [motion, reactions, positions] = parts;
+        let parts = [
+            cells(motion, machine.rotor_columns()),
+            cells(reactions, Vec::new()),
+            cells(positions, Vec::new()),
+        ];
+        Self::of_functions(machine, parts, precision)
     }
 
     /// Of a machine and the operations of its functions, as [`Export::exact`](crate::Export::exact) takes them.
@@ -82,12 +77,7 @@ impl<R: Real> Evaluator<R> {
         code: &[StraightLine; 3],
         precision: Precision,
     ) -> Self {
-        let code = |kind: PartKind| Functions::Code {
-            code: code[kind as usize].clone(),
-            curves: machine.curves(kind).len(),
-            columns: machine.columns(kind).len(),
-        };
-        Self::of_functions(machine, PartKind::ALL.map(code), precision)
+        Self::of_functions(machine, code.clone().map(Functions::Code), precision)
     }
 
     fn of_functions(
@@ -95,49 +85,24 @@ impl<R: Real> Evaluator<R> {
         parts: [Functions<R>; 3],
         precision: Precision,
     ) -> Self {
-        let (mut curves, mut columns, mut order) = (1, 0, 2);
-        let loads = machine.loads.iter().map(|load| {
-            let counter = match load.effect.is_conservative() {
-                true => &mut curves,
-                false => &mut columns,
-            };
-            let place = *counter;
-            *counter += 1;
-            let motor = load.effect.motor();
-            let current = motor.is_some_and(|motor| motor.inductance > 0.0);
-            let motor = motor.map_or([R::of(0.0); 4], |m| {
-                let [ratio, torque] = [m.gear_ratio, m.torque_constant].map(R::of);
-                let reflected = ratio * ratio * R::of(m.rotor_inertia);
-                [
-                    ratio * torque,
-                    R::of(m.resistance),
-                    R::of(m.inductance),
-                    reflected,
-                ]
-            });
-            order += usize::from(current);
-            Load {
-                effect: load.effect,
-                place,
-                value: R::of(scene_value(&load.effect)),
-                motor,
-                current: current.then_some(order - 1),
-            }
-        });
-        let loads = loads.collect();
+        let (loads, order) = Load::all(&machine.loads, 1);
         let wrapping = Wrapping::new(machine.domain, precision);
+        let kind = PartKind::Motion;
         Self {
             range: Range::new(machine.domain, precision),
             wrapping: wrapping.map(|w| [R::of(w.coarse), R::of(w.fine)]),
             parts,
             reactions: machine.reactions.len(),
-            points: machine.points.len(),
-            loads,
+            motion_values: [2 * machine.curves(kind).len(), machine.columns(kind).len()],
+            loads: loads
+                .into_iter()
+                .zip((0..).map(|k| machine.place(k)))
+                .collect(),
             order,
         }
     }
 
-    fn at(&self, part: PartKind, q: R) -> Result<Found<'_, R>, Status> {
+    fn at(&self, part: PartKind, q: R) -> Result<Vec<R>, Status> {
         let q = self.range.wrap(q)?;
         Ok(self.parts[part as usize].at(q))
     }
@@ -147,27 +112,23 @@ impl<R: Real> Evaluator<R> {
     /// # Errors
     /// [`Status`] outside the domain.
     pub fn motion_terms(&self, q: R) -> Result<MotionTerms<R>, Status> {
-        let found = self.at(PartKind::Motion, q)?;
-        let [m, half_dm] = found.curve(0);
+        let values = self.at(PartKind::Motion, q)?;
+        let [curves, columns] = self.motion_values;
         let zeros = vec![R::of(0.0); self.loads.len()];
-        let (w, dw, v) = (zeros.clone(), zeros.clone(), zeros);
         let mut terms = MotionTerms {
-            m,
-            half_dm,
-            w,
-            dw,
-            v,
+            m: values[0],
+            half_dm: values[1],
+            w: zeros.clone(),
+            dw: zeros.clone(),
+            v: zeros,
         };
-        for (k, load) in self.loads.iter().enumerate() {
+        for (k, (load, place)) in self.loads.iter().enumerate() {
             if load.effect.is_conservative() {
-                let [value, half_slope] = found.curve(load.place);
-                terms.v[k] = value;
-                terms.w[k] = R::of(-2.0) * half_slope;
+                terms.v[k] = values[2 * place];
+                terms.w[k] = R::of(-2.0) * values[2 * place + 1];
             } else {
-                terms.w[k] = found.column(load.place);
-            }
-            if has_rotor(&load.effect) {
-                terms.dw[k] = found.slope(load.place);
+                terms.w[k] = values[curves + place];
+                terms.dw[k] = values[curves + columns + place];
             }
         }
         Ok(terms)
@@ -178,14 +139,10 @@ impl<R: Real> Evaluator<R> {
     /// # Errors
     /// [`Status`] outside the domain.
     pub fn reaction_terms(&self, q: R) -> Result<ReactionTerms<R>, Status> {
-        let found = self.at(PartKind::Reactions, q)?;
-        let n = self.reactions;
-        let column = |k: usize| found.column(k);
-        Ok(ReactionTerms {
-            a: (0..n).map(column).collect(),
-            b: (n..2 * n).map(column).collect(),
-            c: (2 * n..2 * n + n * self.loads.len()).map(column).collect(),
-        })
+        let mut a = self.at(PartKind::Reactions, q)?;
+        let mut b = a.split_off(self.reactions);
+        let c = b.split_off(self.reactions);
+        Ok(ReactionTerms { a, b, c })
     }
 
     /// x and y of every point at `q` (rad or m), m.
@@ -193,36 +150,18 @@ impl<R: Real> Evaluator<R> {
     /// # Errors
     /// [`Status`] outside the domain.
     pub fn positions(&self, q: R) -> Result<Vec<R>, Status> {
-        let found = self.at(PartKind::Positions, q)?;
-        Ok((0..2 * self.points).map(|k| found.column(k)).collect())
+        self.at(PartKind::Positions, q)
     }
 
     /// F of each load, m and ½m′ with rotors, at a state.
     fn forces(&self, terms: &MotionTerms<R>, y: &[R]) -> (Vec<R>, [R; 2]) {
-        let q_dot = y[1];
         let mut inertia = [terms.m, terms.half_dm];
         let mut forces = Vec::with_capacity(self.loads.len());
-        for (k, load) in self.loads.iter().enumerate() {
-            let (w, value) = (terms.w[k], load.value);
-            forces.push(match &load.effect {
-                LoadEffect::Conservative { .. }
-                | LoadEffect::Constant { .. }
-                | LoadEffect::Input { .. } => value,
-                LoadEffect::Damper { .. } | LoadEffect::VariableDamper { .. } => {
-                    R::of(0.0) - value * w * q_dot
-                }
-                LoadEffect::Motor(_) => {
-                    let [constant, resistance, ..] = load.motor;
-                    match load.current {
-                        Some(place) => constant * y[place],
-                        None => constant * (value - constant * w * q_dot) / resistance,
-                    }
-                }
-            });
-            if has_rotor(&load.effect) {
-                let reflected = load.motor[3];
-                inertia[0] = inertia[0] + reflected * w * w;
-                inertia[1] = inertia[1] + reflected * w * terms.dw[k];
+        for ((load, _), (w, dw)) in self.loads.iter().zip(terms.w.iter().zip(&terms.dw)) {
+            forces.push(load.force(y, |factor| factor * *w * y[1]));
+            if let Some(reflected) = load.rotor() {
+                inertia[0] = inertia[0] + reflected * *w * *w;
+                inertia[1] = inertia[1] + reflected * *w * *dw;
             }
         }
         (forces, inertia)
@@ -239,17 +178,16 @@ impl<R: Real> Evaluator<R> {
         for (f, w) in forces.iter().zip(&terms.w) {
             force = force + *f * *w;
         }
-        if m.partial_cmp(&R::of(0.0)) != Some(std::cmp::Ordering::Greater) {
+        let has_inertia = m.to_f64() > 0.0;
+        if !has_inertia {
             return Err(Status::NoInertia);
         }
         let mut rates = vec![R::of(0.0); self.order];
         rates[0] = y[1];
         rates[1] = force / m;
-        for (k, load) in self.loads.iter().enumerate() {
-            if let Some(place) = load.current {
-                let [constant, resistance, inductance, _] = load.motor;
-                let net = load.value - resistance * y[place] - constant * terms.w[k] * y[1];
-                rates[place] = net / inductance;
+        for ((load, _), w) in self.loads.iter().zip(&terms.w) {
+            if let Some((place, rate)) = load.current_rate(y, |factor| factor * *w * y[1]) {
+                rates[place] = rate;
             }
         }
         match rates.iter().all(|rate| rate.to_f64().is_finite()) {
@@ -266,10 +204,10 @@ impl<R: Real> Evaluator<R> {
         let terms = self.motion_terms(y[0])?;
         let speed2 = y[1] * y[1];
         let (mut forces, _) = self.forces(&terms, y);
-        for (k, load) in self.loads.iter().enumerate() {
-            if has_rotor(&load.effect) {
+        for (k, (load, _)) in self.loads.iter().enumerate() {
+            if let Some(reflected) = load.rotor() {
                 let s_ddot = terms.w[k] * q_ddot + terms.dw[k] * speed2;
-                forces[k] = forces[k] - load.motor[3] * s_ddot;
+                forces[k] = forces[k] - reflected * s_ddot;
             }
         }
         let of = self.reaction_terms(y[0])?;
@@ -289,13 +227,8 @@ impl<R: Real> Evaluator<R> {
     pub fn energies(&self, y: &[R]) -> Result<[R; 2], Status> {
         let terms = self.motion_terms(y[0])?;
         let (_, [m, _]) = self.forces(&terms, y);
-        let mut potential = R::of(0.0);
-        for (load, v) in self.loads.iter().zip(&terms.v) {
-            if load.effect.is_conservative() {
-                potential = potential + load.value * *v;
-            }
-        }
-        Ok([R::of(0.5) * m * y[1] * y[1], potential])
+        let loads = self.loads.iter().map(|(load, _)| load).zip(&terms.v);
+        Ok([R::of(0.5) * m * y[1] * y[1], Load::potential(loads)])
     }
 
     /// The force on the coordinate that gives an acceleration against all loads, N m or N.
@@ -326,20 +259,10 @@ impl<R: Real> Evaluator<R> {
     /// # Errors
     /// [`Status`] where a stage has no rates; the state is then as it was.
     pub fn step(&self, h: R, state: &mut State<R>) -> Result<(), Status> {
-        let half = R::of(0.5) * h;
-        let moved = |by: R, rates: &[R]| -> Vec<R> {
-            let both = state.y.iter().zip(rates);
-            both.map(|(y, rate)| *y + by * *rate).collect()
-        };
-        let one = self.rates(&state.y)?;
-        let two = self.rates(&moved(half, &one))?;
-        let three = self.rates(&moved(half, &two))?;
-        let four = self.rates(&moved(h, &three))?;
-        let sixth = h / R::of(6.0);
+        let changes = runge_kutta(&state.y, h, |y| self.rates(y))?;
         let mut next = state.clone();
-        for i in 0..self.order {
-            let sum = one[i] + R::of(2.0) * (two[i] + three[i]) + four[i];
-            let change = sixth * sum - state.carry[i];
+        for (i, change) in changes.into_iter().enumerate() {
+            let change = change - state.carry[i];
             next.y[i] = state.y[i] + change;
             next.carry[i] = (next.y[i] - state.y[i]) - change;
         }
@@ -356,13 +279,13 @@ impl<R: Real> Evaluator<R> {
         let Some([coarse, fine]) = self.wrapping else {
             return;
         };
-        let (zero, period) = (R::of(0.0), coarse + fine);
+        let period = coarse + fine;
         let (q, mut carry) = (state.y[0], state.carry[0]);
-        let next = if q >= period {
+        let next = if q.to_f64() >= period.to_f64() {
             state.periods += 1;
             carry = carry + fine;
             q - coarse
-        } else if q < zero {
+        } else if q.to_f64() < 0.0 {
             state.periods -= 1;
             let next = q + coarse;
             carry = (carry - fine) + ((next - coarse) - q);
@@ -374,22 +297,5 @@ impl<R: Real> Evaluator<R> {
         let settled = next - carry;
         state.carry[0] = (settled - next) + carry;
         state.y[0] = settled;
-    }
-}
-
-/// Whether a load has a rotor whose inertia counts.
-pub(crate) fn has_rotor(effect: &LoadEffect) -> bool {
-    effect
-        .motor()
-        .is_some_and(|motor| motor.rotor_inertia != 0.0)
-}
-
-/// The value of a load's parameter or input in the scene.
-pub(crate) fn scene_value(effect: &LoadEffect) -> f64 {
-    match effect {
-        LoadEffect::Conservative { magnitude } | LoadEffect::Constant { magnitude } => *magnitude,
-        LoadEffect::Damper { damping } => *damping,
-        LoadEffect::VariableDamper { initial } | LoadEffect::Input { initial } => *initial,
-        LoadEffect::Motor(motor) => motor.initial_voltage,
     }
 }

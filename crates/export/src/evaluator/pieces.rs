@@ -6,77 +6,22 @@ use crate::part::{CURVE, Column, HEAD, Part, Precision, TERMS, Wrapping};
 use crate::real::Real;
 use crate::straight_line::StraightLine;
 
-/// Where the functions of a part come from.
+/// Where the functions of a part come from. Their values are value and half slope of each curve, the columns, then the slopes
+/// of the columns of motion: of one that moves no rotor, zero.
 #[derive(Debug, Clone)]
 pub(crate) enum Functions<R> {
     /// From cells.
     Cells(Pieces<R>),
-    /// From operations. Their outputs are value and half slope of each curve, the columns, then the slopes of the columns
-    /// of motion.
-    Code {
-        /// The operations.
-        code: StraightLine,
-        /// How many curves.
-        curves: usize,
-        /// How many columns.
-        columns: usize,
-    },
-}
-
-/// The functions of a part at a coordinate.
-pub(crate) enum Found<'a, R> {
-    Cells(&'a Pieces<R>, Place<R>),
-    Values {
-        values: Vec<R>,
-        curves: usize,
-        columns: usize,
-    },
+    /// From operations.
+    Code(StraightLine),
 }
 
 impl<R: Real> Functions<R> {
-    /// At a coordinate within the domain.
-    pub(crate) fn at(&self, q: R) -> Found<'_, R> {
+    /// The values at a coordinate within the domain.
+    pub(crate) fn at(&self, q: R) -> Vec<R> {
         match self {
-            Self::Cells(pieces) => Found::Cells(pieces, pieces.place(q)),
-            Self::Code {
-                code,
-                curves,
-                columns,
-            } => Found::Values {
-                values: code.evaluate(&[q]),
-                curves: *curves,
-                columns: *columns,
-            },
-        }
-    }
-}
-
-impl<R: Real> Found<'_, R> {
-    /// A curve and half its slope.
-    pub(crate) fn curve(&self, k: usize) -> [R; 2] {
-        match self {
-            Self::Cells(pieces, at) => pieces.curve(k, *at),
-            Self::Values { values, .. } => [values[2 * k], values[2 * k + 1]],
-        }
-    }
-
-    /// A column.
-    pub(crate) fn column(&self, k: usize) -> R {
-        match self {
-            Self::Cells(pieces, at) => pieces.column(k, *at),
-            Self::Values { values, curves, .. } => values[2 * curves + k],
-        }
-    }
-
-    /// The derivative of a column of motion by the coordinate.
-    pub(crate) fn slope(&self, k: usize) -> R {
-        match self {
-            Self::Cells(pieces, at) => pieces.slope(k, *at),
-            Self::Values {
-                values,
-                curves,
-                columns,
-            } => values[2 * curves + columns + k],
+            Self::Cells(pieces) => pieces.at(q),
+            Self::Code(code) => code.evaluate(&[q]),
         }
     }
 }
@@ -90,7 +35,9 @@ pub(crate) struct Pieces<R> {
     from: R,
     bins_per_unit: R,
     curves: usize,
-    columns: Vec<(Column, R)>,
+    columns: Vec<Column>,
+    /// Of the columns of motion: whether the slope is needed.
+    slopes: Vec<bool>,
 }
 
 /// A place in a cell: where its numbers begin, and the powers of the position in it.
@@ -103,12 +50,7 @@ pub(crate) struct Place<R> {
 }
 
 impl<R: Real> Pieces<R> {
-    pub(crate) fn new(part: &Part, domain: Domain) -> Self {
-        let constant = |column: &Column| match column {
-            Column::Constant(value) => R::of(*value),
-            Column::Tabulated(_) => R::of(0.0),
-        };
-        let columns = part.columns.iter();
+    pub(crate) fn new(part: &Part, domain: Domain, slopes: Vec<bool>) -> Self {
         Self {
             cells: part.cells.iter().map(|&n| R::of(n)).collect(),
             index: part.index.clone(),
@@ -116,8 +58,23 @@ impl<R: Real> Pieces<R> {
             from: R::of(domain.from),
             bins_per_unit: R::of(part.bins_per_unit),
             curves: part.curves.len(),
-            columns: columns.map(|(_, c)| (*c, constant(c))).collect(),
+            columns: part.columns.iter().map(|(_, column)| *column).collect(),
+            slopes,
         }
+    }
+
+    fn at(&self, q: R) -> Vec<R> {
+        let at = self.place(q);
+        let curves = (0..self.curves).flat_map(|k| self.curve(k, at));
+        let columns = self.columns.iter().map(|column| self.column(column, at));
+        let slopes = self.columns.iter().zip(&self.slopes);
+        let slopes = slopes.map(|(column, &wanted)| match column {
+            Column::Tabulated(j) if wanted => {
+                slope(self.terms(*j, at), at) * self.cells[at.begin + 1]
+            }
+            _ => R::of(0.0),
+        });
+        curves.chain(columns).chain(slopes).collect()
     }
 
     /// Finds the cell of a coordinate within the domain.
@@ -152,19 +109,10 @@ impl<R: Real> Pieces<R> {
         [value, polynomial(&of[1..], at)]
     }
 
-    /// A column.
-    fn column(&self, k: usize, at: Place<R>) -> R {
-        match self.columns[k] {
-            (Column::Constant(_), value) => value,
-            (Column::Tabulated(j), _) => polynomial(self.terms(j, at), at),
-        }
-    }
-
-    /// The derivative of a column by the coordinate.
-    fn slope(&self, k: usize, at: Place<R>) -> R {
-        match self.columns[k] {
-            (Column::Constant(_), _) => R::of(0.0),
-            (Column::Tabulated(j), _) => slope(self.terms(j, at), at) * self.cells[at.begin + 1],
+    fn column(&self, column: &Column, at: Place<R>) -> R {
+        match *column {
+            Column::Constant(value) => R::of(value),
+            Column::Tabulated(j) => polynomial(self.terms(j, at), at),
         }
     }
 
@@ -221,16 +169,19 @@ impl<R: Real> Range<R> {
             false => Status::NotFinite,
         };
         let Some([per_period, coarse, fine, limit]) = self.wrapping else {
-            let inside = q >= self.from && q <= self.to;
+            let inside = (self.from.to_f64()..=self.to.to_f64()).contains(&q.to_f64());
             return if inside { Ok(q) } else { Err(outside()) };
         };
-        let zero = R::of(0.0);
-        if !(q >= zero - limit && q <= limit) {
+        let limits = (R::of(0.0) - limit).to_f64()..=limit.to_f64();
+        if !limits.contains(&q.to_f64()) {
             return Err(outside());
         }
         // Truncated towards zero.
         let periods = R::of(f64::from((q * per_period).to_f64() as i32));
         let rest = (q - periods * coarse) - periods * fine;
-        Ok(if rest < zero { rest + self.to } else { rest })
+        Ok(match rest.to_f64() < 0.0 {
+            true => rest + self.to,
+            false => rest,
+        })
     }
 }

@@ -104,28 +104,28 @@ fn units(variables: &[Variable], text: &mut String) {
     *text += "  </UnitDefinitions>\n";
 }
 
-/// Causality, variability and the rest that both versions write alike.
-fn properties(variable: &Variable) -> String {
-    let start = format!("start=\"{:e}\"", variable.start);
-    match variable.role {
-        Role::Time => "causality=\"independent\" variability=\"continuous\"".to_owned(),
-        Role::State(_) => {
-            format!("causality=\"output\" variability=\"continuous\" initial=\"exact\" {start}")
-        }
-        Role::Rate(_) | Role::Indicator => {
-            "causality=\"local\" variability=\"continuous\" initial=\"calculated\"".to_owned()
-        }
-        Role::Output => {
-            "causality=\"output\" variability=\"continuous\" initial=\"calculated\"".to_owned()
-        }
-        Role::Parameter => {
-            format!("causality=\"parameter\" variability=\"tunable\" initial=\"exact\" {start}")
-        }
-        Role::Input => format!("causality=\"input\" variability=\"continuous\" {start}"),
-        Role::Periods => {
-            "causality=\"output\" variability=\"discrete\" initial=\"calculated\"".to_owned()
-        }
+/// Causality, variability and the rest that both versions write alike, and the value at the start of what has one.
+fn properties(variable: &Variable) -> (String, String) {
+    let (causality, variability, initial) = match variable.role {
+        Role::Time => ("independent", "continuous", ""),
+        Role::State(_) => ("output", "continuous", "exact"),
+        Role::Rate(_) | Role::Indicator => ("local", "continuous", "calculated"),
+        Role::Output => ("output", "continuous", "calculated"),
+        Role::Parameter => ("parameter", "tunable", "exact"),
+        Role::Input => ("input", "continuous", ""),
+        Role::Periods => ("output", "discrete", "calculated"),
+    };
+    let mut all = format!("causality=\"{causality}\" variability=\"{variability}\"");
+    if !initial.is_empty() {
+        _ = write!(all, " initial=\"{initial}\"");
     }
+    let start = match variable.role {
+        Role::State(_) | Role::Parameter | Role::Input => {
+            format!(" start=\"{:e}\"", variable.start)
+        }
+        _ => String::new(),
+    };
+    (all, start)
 }
 
 /// The state whose derivative a variable is: its place in the list.
@@ -157,12 +157,12 @@ fn three(variables: &[Variable], text: &mut String) {
             "" => String::new(),
             unit => format!(" unit=\"{}\"", attribute(unit)),
         };
+        let (properties, start) = properties(variable);
         _ = writeln!(
             text,
-            "    <{kind} name=\"{}\" valueReference=\"{k}\" description=\"{}\" {}{unit}{derivative}/>",
+            "    <{kind} name=\"{}\" valueReference=\"{k}\" description=\"{}\" {properties}{start}{unit}{derivative}/>",
             attribute(&variable.name),
-            attribute(&variable.meaning),
-            properties(variable)
+            attribute(&variable.meaning)
         );
     }
     *text += "  </ModelVariables>\n  <ModelStructure>\n";
@@ -184,11 +184,7 @@ fn two(variables: &[Variable], text: &mut String) {
     *text += "  <ModelVariables>\n";
     for (k, variable) in variables.iter().enumerate() {
         // In 2.0 the start belongs to the type, and indices count from one.
-        let properties = properties(variable);
-        let (outer, start) = match properties.split_once(" start=") {
-            Some((outer, start)) => (outer.to_owned(), format!(" start={start}")),
-            None => (properties, String::new()),
-        };
+        let (outer, start) = properties(variable);
         let derivative = state_of(variables, variable.role);
         let derivative =
             derivative.map_or_else(String::new, |s| format!(" derivative=\"{}\"", s + 1));

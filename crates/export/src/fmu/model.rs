@@ -2,7 +2,7 @@
 
 use super::variables::{Role, Variable};
 use crate::export::Export;
-use crate::writer::Writer;
+use crate::writer::{Access, Members};
 use std::fmt::Write as _;
 
 /// What does not depend on the machine.
@@ -59,8 +59,8 @@ static int model_advance(model *m, double time, double step)
 
 /// The header `model.h`.
 pub(super) fn model(export: &Export, variables: &[Variable]) -> String {
-    let writer = Writer::new(export);
-    let states = 2 + writer.currents().len();
+    let members = Members::new(export);
+    let states = members.order();
     let machine = &export.machine;
     let periodic = machine.domain.revolutions > 0;
     let indicators = if periodic { 2 } else { 0 };
@@ -85,13 +85,13 @@ pub(super) fn model(export: &Export, variables: &[Variable]) -> String {
     }
     text += "    default: return 0;\n    }\n}\n\n";
     text += "/* A state that is set begins its own sums. */\nstatic int model_set(model *m, unsigned reference, double value)\n{\n    double *slot = model_slot(m, reference);\n    int k;\n    if (slot == 0) {\n        return 0;\n    }\n    *slot = value;\n    if (slot == &m->state.q) {\n        m->state.periods = 0;\n    }\n    for (k = 0; reference <= 2 * MODEL_STATES && k < MODEL_STATES; k++) {\n        m->state.carry[k] = 0;\n    }\n    return 1;\n}\n\n";
-    states_functions(&writer, &mut text);
-    rates(&writer, &mut text);
+    states_functions(&members, &mut text);
+    rates(&members, &mut text);
     indicator_functions(export, &mut text);
-    get(&writer, variables, &mut text);
+    get(&members, periodic, variables, &mut text);
     text += GENERAL;
-    text.replace("@p@", &writer.names.prefix)
-        .replace("@U@", &writer.names.capitals)
+    text.replace("@p@", &members.names.prefix)
+        .replace("@U@", &members.names.capitals)
 }
 
 /// What ties a description to its library: the scene, the exporter and what was asked for.
@@ -108,33 +108,33 @@ pub(super) fn token(export: &Export) -> String {
     )
 }
 
-fn states_functions(writer: &Writer<'_>, text: &mut String) {
+fn states_functions(members: &Members<'_>, text: &mut String) {
     *text += "static void model_states(const model *m, double *x)\n{\n    x[0] = @p@_whole_coordinate(&m->state);\n    x[1] = m->state.q_dot;\n";
-    for (load, place) in writer.currents() {
-        _ = writeln!(
-            text,
-            "    x[{place}] = m->state.current_{};",
-            writer.names.loads[load]
-        );
+    for (_, member, place) in members.currents() {
+        _ = writeln!(text, "    x[{place}] = m->state.{member};");
     }
     *text += "}\n\nstatic void model_set_states(model *m, const double *x)\n{\n    int k;\n    m->state.q = x[0];\n    m->state.q_dot = x[1];\n";
-    for (load, place) in writer.currents() {
-        _ = writeln!(
-            text,
-            "    m->state.current_{} = x[{place}];",
-            writer.names.loads[load]
-        );
+    for (_, member, place) in members.currents() {
+        _ = writeln!(text, "    m->state.{member} = x[{place}];");
     }
     *text += "    m->state.periods = 0;\n    for (k = 0; k < MODEL_STATES; k++) {\n        m->state.carry[k] = 0;\n    }\n}\n\n";
 }
 
-fn rates(writer: &Writer<'_>, text: &mut String) {
+fn rates(members: &Members<'_>, text: &mut String) {
+    /// How the model reaches members.
+    const ACCESS: Access = Access {
+        parameters: "p->",
+        inputs: "m->inputs.",
+        state: "m->state.",
+        zero: "0",
+    };
     *text += "static int model_rates(const model *m, double *rates)\n{\n    rates[0] = m->state.q_dot;\n";
-    for (load, place) in writer.currents() {
-        let name = &writer.names.loads[load];
+    for (load, _, place) in members.currents() {
+        let velocity = format!("terms.w[{load}] * m->state.q_dot");
+        let rate = ACCESS.current_rate(&members.names.loads[load], &velocity);
         _ = writeln!(
             text,
-            "    {{\n        @p@_motion_terms terms;\n        const @p@_parameters *p = &m->parameters;\n        if (@p@_motion_terms_at(m->state.q, &terms) != @U@_OK) {{\n            return 0;\n        }}\n        rates[{place}] = (m->inputs.voltage_{name} - p->resistance_{name} * m->state.current_{name} - (p->gear_ratio_{name} * p->torque_constant_{name}) * terms.w[{load}] * m->state.q_dot) / p->inductance_{name};\n    }}"
+            "    {{\n        @p@_motion_terms terms;\n        const @p@_parameters *p = &m->parameters;\n        if (@p@_motion_terms_at(m->state.q, &terms) != @U@_OK) {{\n            return 0;\n        }}\n        rates[{place}] = {rate};\n    }}"
         );
     }
     *text += "    return @p@_acceleration(&m->parameters, &m->inputs, &m->state, &rates[1]) == @U@_OK;\n}\n\n";
@@ -153,14 +153,16 @@ fn indicator_functions(export: &Export, text: &mut String) {
 }
 
 /// The value of any variable.
-fn get(writer: &Writer<'_>, variables: &[Variable], text: &mut String) {
+fn get(members: &Members<'_>, periodic: bool, variables: &[Variable], text: &mut String) {
     *text += "static int model_get(model *m, unsigned reference, double *value)\n{\n    const double *slot = model_slot(m, reference);\n";
-    let machine = &writer.export.machine;
-    *text += "    double rates[MODEL_STATES], energies[2], indicators[2];\n    int ok = 1;\n";
-    if writer.has_reactions() {
+    *text += match periodic {
+        true => "    double rates[MODEL_STATES], energies[2], indicators[2];\n    int ok = 1;\n",
+        false => "    double rates[MODEL_STATES], energies[2];\n    int ok = 1;\n",
+    };
+    if members.has_reactions() {
         *text += "    double reactions[@U@_REACTION_COUNT];\n";
     }
-    if writer.has_points() {
+    if members.has_points() {
         *text += "    double xy[2 * @U@_POINT_COUNT];\n";
     }
     *text += "    switch (reference) {\n";
@@ -187,10 +189,4 @@ fn get(writer: &Writer<'_>, variables: &[Variable], text: &mut String) {
         _ = writeln!(text, "    case {k}: {evaluation}");
     }
     *text += "    default: break;\n    }\n    if (slot == 0) {\n        return 0;\n    }\n    *value = *slot;\n    return ok;\n}\n";
-    if machine.domain.revolutions == 0 {
-        *text = text.replace(
-            "    double rates[MODEL_STATES], energies[2], indicators[2];",
-            "    double rates[MODEL_STATES], energies[2];",
-        );
-    }
 }

@@ -1,7 +1,7 @@
 //! The variables of an FMU: names, units and where each is found in the C.
 
 use crate::export::Export;
-use crate::writer::Writer;
+use crate::writer::Members;
 
 /// What a variable is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,128 +41,118 @@ pub(super) struct Variable {
 struct List(Vec<Variable>);
 
 impl List {
-    fn add(&mut self, name: &str, role: Role, unit: &str, meaning: &str, code: String) {
+    fn add(
+        &mut self,
+        name: &str,
+        role: Role,
+        unit: &str,
+        meaning: &str,
+        code: &str,
+    ) -> &mut Variable {
         // Names of a scene may be those of FMI or of other parts.
         let numbered = (2_usize..).map(|k| format!("{name}_{k}"));
         let mut candidates = std::iter::once(name.to_owned()).chain(numbered);
         let free = candidates.find(|one| self.0.iter().all(|other| other.name != *one));
+        let place = self.0.len();
         self.0.push(Variable {
             name: free.unwrap_or_default(),
             role,
             unit: unit.to_owned(),
             start: 0.0,
             meaning: meaning.to_owned(),
-            code,
+            code: code.to_owned(),
         });
+        &mut self.0[place]
     }
 
-    /// The value at the start of the last one.
-    fn starts_at(&mut self, start: f64) {
-        if let Some(last) = self.0.last_mut() {
-            last.start = start;
+    /// A state by its place, name, member of the state and start, with its derivative behind it: unit and meaning of both.
+    fn add_state(
+        &mut self,
+        k: usize,
+        (name, member, start): (&str, &str, f64),
+        [own, rate]: [(&str, &str); 2],
+    ) {
+        let code = format!("m->state.{member}");
+        self.add(name, Role::State(k), own.0, own.1, &code).start = start;
+        let (name, code) = (format!("der({name})"), format!("rates[{k}]"));
+        self.add(&name, Role::Rate(k), rate.0, rate.1, &code);
+    }
+
+    /// Members of the parameters or of the inputs.
+    fn add_members(&mut self, of: &str, role: Role, members: Vec<(String, f64, String)>) {
+        for (name, value, meaning) in members {
+            let (unit, meaning) = meaning.split_once(": ").unwrap_or(("1", &meaning));
+            let (path, unit) = (format!("{of}.{name}"), fmi_unit(unit));
+            let code = format!("m->{path}");
+            self.add(&path, role, &unit, meaning, &code).start = value;
         }
     }
 }
 
 /// All variables of an export.
 pub(super) fn variables(export: &Export) -> Vec<Variable> {
-    let writer = Writer::new(export);
+    let members = Members::new(export);
     let mut list = List::default();
-    list.add("time", Role::Time, "s", "time", "m->time".to_owned());
-    states(&writer, &mut list);
-    outputs(&writer, &mut list);
-    constants(&writer, &mut list);
+    list.add("time", Role::Time, "s", "time", "m->time");
+    states(export, &members, &mut list);
+    outputs(&members, &mut list);
+    list.add_members("parameters", Role::Parameter, members.parameters());
+    let (name, code) = ("parameters.max_step", "m->max_step");
+    let meaning = "largest step of the co-simulation's integrator";
+    list.add(name, Role::Parameter, "s", meaning, code).start = 1e-3;
+    list.add_members("inputs", Role::Input, members.inputs());
     if export.machine.domain.revolutions > 0 {
-        let unit = if export.machine.is_angle { "rad" } else { "m" };
+        let unit = export.machine.unit();
         for (k, end) in ["upper", "lower"].iter().enumerate() {
             let (name, code) = (format!("next_period.{end}"), format!("indicators[{k}]"));
             let meaning = "distance from the end of the period";
-            list.add(&name, Role::Indicator, unit, meaning, code);
+            list.add(&name, Role::Indicator, unit, meaning, &code);
         }
         let meaning = "whole periods of the coordinate";
-        list.add("periods", Role::Periods, "", meaning, String::new());
+        list.add("periods", Role::Periods, "", meaning, "");
     }
     list.0
 }
 
 /// States, each with its derivative behind it.
-fn states(writer: &Writer<'_>, list: &mut List) {
-    let machine = &writer.export.machine;
-    let unit = if machine.is_angle { "rad" } else { "m" };
+fn states(export: &Export, members: &Members<'_>, list: &mut List) {
+    let machine = &export.machine;
+    let unit = machine.unit();
     let (rate, second) = (format!("{unit}/s"), format!("{unit}/s2"));
     let [start, speed] = machine.initial;
-    let q = machine.coordinate.as_str();
-    let code = |text: &str| text.to_owned();
-    list.add(q, Role::State(0), unit, "coordinate", code("m->state.q"));
-    list.starts_at(start);
-    let name = format!("der({q})");
-    list.add(&name, Role::Rate(0), &rate, "its rate", code("rates[0]"));
-    let name = format!("{q}.velocity");
-    list.add(
-        &name,
-        Role::State(1),
-        &rate,
-        "speed",
-        code("m->state.q_dot"),
+    let (q, velocity) = (
+        &machine.coordinate,
+        format!("{}.velocity", machine.coordinate),
     );
-    list.starts_at(speed);
-    let name = format!("der({name})");
-    list.add(
-        &name,
-        Role::Rate(1),
-        &second,
-        "acceleration",
-        code("rates[1]"),
-    );
-    for (load, place) in writer.currents() {
+    let meanings = [(unit, "coordinate"), (&rate, "its rate")];
+    list.add_state(0, (q, "q", start), meanings);
+    let meanings = [(rate.as_str(), "speed"), (&second, "acceleration")];
+    list.add_state(1, (&velocity, "q_dot", speed), meanings);
+    for (load, member, place) in members.currents() {
         let name = format!("{}.current", machine.loads[load].name);
-        let member = format!("m->state.current_{}", writer.names.loads[load]);
-        list.add(&name, Role::State(place), "A", "current", member);
-        let (name, rate) = (format!("der({name})"), format!("rates[{place}]"));
-        list.add(&name, Role::Rate(place), "A/s", "its rate", rate);
+        let meanings = [("A", "current"), ("A/s", "its rate")];
+        list.add_state(place, (&name, &member, 0.0), meanings);
     }
 }
 
 /// What follows from states, parameters and inputs.
-fn outputs(writer: &Writer<'_>, list: &mut List) {
-    let machine = &writer.export.machine;
+fn outputs(members: &Members<'_>, list: &mut List) {
     for (k, kind) in ["kinetic", "potential"].iter().enumerate() {
         let (name, meaning) = (format!("energy.{kind}"), format!("{kind} energy"));
-        list.add(&name, Role::Output, "J", &meaning, format!("energies[{k}]"));
+        let code = format!("energies[{k}]");
+        list.add(&name, Role::Output, "J", &meaning, &code);
     }
-    for (k, (name, unit)) in machine.reactions.iter().enumerate() {
+    for (k, (name, unit)) in members.reactions.iter().enumerate() {
         let unit = if *unit == "N" { "N" } else { "N.m" };
         let meaning = "action of the joint's first body on its second";
-        list.add(name, Role::Output, unit, meaning, format!("reactions[{k}]"));
+        let code = format!("reactions[{k}]");
+        list.add(name, Role::Output, unit, meaning, &code);
     }
-    for (k, point) in machine.points.iter().enumerate() {
+    for (k, point) in members.points.iter().enumerate() {
         for (axis, letter) in ["x", "y"].iter().enumerate() {
             let (name, code) = (format!("{point}.{letter}"), format!("xy[{}]", 2 * k + axis));
-            list.add(&name, Role::Output, "m", "position", code);
+            list.add(&name, Role::Output, "m", "position", &code);
         }
-    }
-}
-
-/// Parameters and inputs.
-fn constants(writer: &Writer<'_>, list: &mut List) {
-    for (name, value, meaning) in writer.parameters() {
-        let (unit, meaning) = meaning.split_once(": ").unwrap_or(("1", &meaning));
-        let (path, code) = (
-            format!("parameters.{name}"),
-            format!("m->parameters.{name}"),
-        );
-        list.add(&path, Role::Parameter, &fmi_unit(unit), meaning, code);
-        list.starts_at(value);
-    }
-    let meaning = "largest step of the co-simulation's integrator";
-    let code = "m->max_step".to_owned();
-    list.add("parameters.max_step", Role::Parameter, "s", meaning, code);
-    list.starts_at(1e-3);
-    for (_, name, value, meaning) in writer.inputs() {
-        let (unit, meaning) = meaning.split_once(": ").unwrap_or(("1", &meaning));
-        let (path, code) = (format!("inputs.{name}"), format!("m->inputs.{name}"));
-        list.add(&path, Role::Input, &fmi_unit(unit), meaning, code);
-        list.starts_at(value);
     }
 }
 

@@ -1,7 +1,6 @@
 //! The functions of MATLAB: evaluation at many coordinates, and the rates of a state.
 
 use crate::describe::describe;
-use crate::evaluator::{has_rotor, scene_value};
 use crate::export::Export;
 use crate::identifiers::comment;
 use crate::machine::{LoadEffect, PartKind};
@@ -35,24 +34,21 @@ pub(super) fn evaluation(export: &Export, name: &str) -> String {
         loads = machine.loads.len()
     );
     let curves = export.parts[PartKind::Motion as usize].curves.len();
-    let (mut next_curve, mut next_column) = (1, 1);
     for (k, load) in machine.loads.iter().enumerate() {
-        let load_number = k + 1;
-        if load.effect.is_conservative() {
-            _ = writeln!(
+        let (number, place) = (k + 1, machine.place(k));
+        _ = match load.effect.is_conservative() {
+            true => writeln!(
                 text,
-                "[out.v(:,{load_number}), half] = curve(cells, {}, x, width);\nout.w(:,{load_number}) = -2 * half;",
-                HEAD + CURVE * next_curve
-            );
-            next_curve += 1;
-        } else {
-            _ = writeln!(
+                "[out.v(:,{number}), half] = curve(cells, {}, x, width);\nout.w(:,{number}) = -2 * half;",
+                HEAD + CURVE * place
+            ),
+            false => writeln!(
                 text,
-                "out.w(:,{load_number}) = column(cells, x, {}, d.motion_places({next_column}), d.motion_constants({next_column}));",
-                HEAD + CURVE * curves
-            );
-            next_column += 1;
-        }
+                "out.w(:,{number}) = column(cells, x, {}, d.motion_places({column}), d.motion_constants({column}));",
+                HEAD + CURVE * curves,
+                column = place + 1
+            ),
+        };
     }
     other_parts(export, &mut text);
     text += "end\n\n";
@@ -145,7 +141,7 @@ pub(super) fn rates(export: &Export, name: &str) -> String {
         machine.loads.len()
     );
     for (k, load) in machine.loads.iter().enumerate() {
-        let (number, value) = (k + 1, scene_value(&load.effect));
+        let (number, value) = (k + 1, load.effect.scene_value());
         _ = match &load.effect {
             LoadEffect::Conservative { .. }
             | LoadEffect::Constant { .. }
@@ -165,7 +161,7 @@ pub(super) fn rates(export: &Export, name: &str) -> String {
     }
     text += "end\n";
     for (k, load) in machine.loads.iter().enumerate() {
-        if let Some(motor) = load.effect.motor().filter(|_| has_rotor(&load.effect)) {
+        if let Some(motor) = load.effect.motor().filter(|_| load.effect.has_rotor()) {
             let reflected = motor.gear_ratio * motor.gear_ratio * motor.rotor_inertia;
             // The derivative of w by central differences.
             _ = writeln!(

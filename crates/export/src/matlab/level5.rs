@@ -1,19 +1,5 @@
 //! MAT-files of level 5, uncompressed: a header of 128 bytes, then one element for each matrix, all padded to eight bytes.
 
-/// A matrix of the file.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum Matrix {
-    /// Rows of so many columns, by row.
-    Numbers {
-        /// Columns.
-        columns: usize,
-        /// By row.
-        values: Vec<f64>,
-    },
-    /// A row of characters.
-    Text(String),
-}
-
 /// The file as it grows.
 #[derive(Debug)]
 pub(super) struct MatFile(Vec<u8>);
@@ -47,33 +33,37 @@ impl MatFile {
         Self(header)
     }
 
-    pub(super) fn add(&mut self, name: &str, matrix: &Matrix) {
-        let (class, rows, columns) = match matrix {
-            Matrix::Numbers { columns, values } => {
-                let rows = values.len().checked_div(*columns).unwrap_or(0);
-                (DOUBLE_CLASS, rows, if rows == 0 { 0 } else { *columns })
-            }
-            Matrix::Text(text) => (CHARACTER_CLASS, 1, text.encode_utf16().count()),
-        };
-        let data = match matrix {
-            // Columns follow each other.
-            Matrix::Numbers { values, .. } => {
-                let places = (0..columns).flat_map(|c| (0..rows).map(move |r| r * columns + c));
-                let bytes: Vec<u8> = places.flat_map(|k| values[k].to_le_bytes()).collect();
-                element(DOUBLE, &bytes)
-            }
-            Matrix::Text(text) => {
-                let bytes: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
-                element(UINT16, &bytes)
-            }
-        };
-        let flags: Vec<u8> = [class, 0].iter().flat_map(|n| n.to_le_bytes()).collect();
-        let size: Vec<u8> = [rows as u32, columns as u32]
-            .iter()
-            .flat_map(|n| n.to_le_bytes())
-            .collect();
-        let mut inside = element(UINT32, &flags);
-        inside.extend(element(INT32, &size));
+    /// Numbers in rows of so many columns.
+    pub(super) fn add_rows(&mut self, name: &str, columns: usize, values: &[f64]) {
+        let rows = values.len().checked_div(columns).unwrap_or(0);
+        let columns = if rows == 0 { 0 } else { columns };
+        // Columns follow each other.
+        let places = (0..columns).flat_map(|c| (0..rows).map(move |r| r * columns + c));
+        let bytes: Vec<u8> = places.flat_map(|k| values[k].to_le_bytes()).collect();
+        self.add(
+            name,
+            DOUBLE_CLASS,
+            [rows, columns],
+            &element(DOUBLE, &bytes),
+        );
+    }
+
+    /// One row of numbers.
+    pub(super) fn add_row(&mut self, name: &str, values: &[f64]) {
+        self.add_rows(name, values.len(), values);
+    }
+
+    /// A row of characters.
+    pub(super) fn add_text(&mut self, name: &str, text: &str) {
+        let bytes: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let size = [1, text.encode_utf16().count()];
+        self.add(name, CHARACTER_CLASS, size, &element(UINT16, &bytes));
+    }
+
+    fn add(&mut self, name: &str, class: u32, size: [usize; 2], data: &[u8]) {
+        let numbers = |two: [u32; 2]| two.map(u32::to_le_bytes).concat();
+        let mut inside = element(UINT32, &numbers([class, 0]));
+        inside.extend(element(INT32, &numbers(size.map(|n| n as u32))));
         inside.extend(element(INT8, name.as_bytes()));
         inside.extend(data);
         self.0.extend(element(MATRIX, &inside));
@@ -93,8 +83,7 @@ mod tests {
     #[test]
     fn elements_have_their_sizes() {
         let mut file = MatFile::new("a test");
-        let values = vec![1.0, 2.0];
-        file.add("x", &Matrix::Numbers { columns: 1, values });
+        file.add_rows("x", 1, &[1.0, 2.0]);
         let bytes = file.finish();
         assert_eq!(bytes.len(), 128 + 8 + 16 + 16 + 16 + 24);
         assert_eq!(bytes[128..136], [14, 0, 0, 0, 72, 0, 0, 0]);

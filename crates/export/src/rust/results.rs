@@ -1,9 +1,16 @@
 //! Forces, accelerations, reactions, energies, inverse dynamics and the step.
 
 use super::RustWriter;
-use crate::evaluator::has_rotor;
-use crate::machine::LoadEffect;
+use crate::writer::{Access, reflected};
 use std::fmt::Write as _;
+
+/// How Rust reaches members.
+const ACCESS: Access = Access {
+    parameters: "p.",
+    inputs: "inputs.",
+    state: "s.",
+    zero: "0.0",
+};
 
 impl RustWriter<'_> {
     pub(super) fn results(&self, text: &mut String) {
@@ -23,7 +30,7 @@ impl RustWriter<'_> {
             _ = writeln!(text, "        {name}: {},", self.number(value));
         }
         *text += "    };\n    let inputs = Inputs {\n";
-        for (_, name, value, _) in self.inputs() {
+        for (name, value, _) in self.inputs() {
             _ = writeln!(text, "        {name}: {},", self.number(value));
         }
         let [q, q_dot] = self.export.machine.initial.map(|n| self.number(n));
@@ -41,7 +48,7 @@ impl RustWriter<'_> {
         _ = write!(
             text,
             "        carry: [0.0; {}],\n        periods: 0,\n    }};\n    (parameters, inputs, state)\n}}\n\n/// q with all revolutions.\npub fn whole_coordinate(state: &State) -> Real {{\n    {whole}\n}}\n\n",
-            2 + self.currents().len()
+            self.order()
         );
     }
 
@@ -49,31 +56,11 @@ impl RustWriter<'_> {
     fn forces(&self, text: &mut String) {
         *text += "/// F of every load, and m and half_dm with what is added.\n#[allow(unused_variables, unused_mut)]\nfn forces(p: &Parameters, inputs: &Inputs, t: &MotionTerms, s: &State) -> ([Real; LOAD_COUNT], Real, Real) {\n    let (mut m, mut half_dm) = (t.m + p.added_inertia, t.half_dm);\n";
         let mut forces = Vec::new();
-        for (k, load) in self.export.machine.loads.iter().enumerate() {
+        for (k, load) in self.loads.iter().enumerate() {
             let name = &self.names.loads[k];
-            forces.push(match &load.effect {
-                LoadEffect::Conservative { .. } | LoadEffect::Constant { .. } => {
-                    format!("p.magnitude_{name}")
-                }
-                LoadEffect::Input { .. } => format!("inputs.load_{name}"),
-                LoadEffect::Damper { .. } => {
-                    format!("0.0 - p.damping_{name} * t.w[{k}] * s.q_dot")
-                }
-                LoadEffect::VariableDamper { .. } => {
-                    format!("0.0 - inputs.damping_{name} * t.w[{k}] * s.q_dot")
-                }
-                LoadEffect::Motor(motor) => {
-                    let constant = format!("(p.gear_ratio_{name} * p.torque_constant_{name})");
-                    match motor.inductance > 0.0 {
-                        true => format!("{constant} * s.current_{name}"),
-                        false => format!(
-                            "{constant} * (inputs.voltage_{name} - {constant} * t.w[{k}] * s.q_dot) / p.resistance_{name}"
-                        ),
-                    }
-                }
-            });
-            if has_rotor(&load.effect) {
-                let reflected = reflected(name);
+            forces.push(ACCESS.force(&load.effect, name, &format!("t.w[{k}] * s.q_dot")));
+            if load.effect.has_rotor() {
+                let reflected = reflected("p.", name);
                 _ = writeln!(
                     text,
                     "    m = m + {reflected} * t.w[{k}] * t.w[{k}];\n    half_dm = half_dm + {reflected} * t.w[{k}] * t.dw[{k}];"
@@ -85,9 +72,9 @@ impl RustWriter<'_> {
 
     fn reactions(&self, text: &mut String) {
         *text += "/// Every reaction of a state with its acceleration: the action of the joint's first body on its second.\n#[allow(unused_mut)]\npub fn reactions(parameters: &Parameters, inputs: &Inputs, state: &State, q_ddot: Real) -> Result<[Real; REACTION_COUNT], Fault> {\n    let q = wrap(state.q)?;\n    let (terms, of) = (motion_at(q), reactions_at(q));\n    let speed2 = state.q_dot * state.q_dot;\n    let (mut f, _, _) = forces(parameters, inputs, &terms, state);\n";
-        for (k, load) in self.export.machine.loads.iter().enumerate() {
-            if has_rotor(&load.effect) {
-                let reflected = reflected(&self.names.loads[k]).replace("p.", "parameters.");
+        for (k, load) in self.loads.iter().enumerate() {
+            if load.effect.has_rotor() {
+                let reflected = reflected("parameters.", &self.names.loads[k]);
                 _ = writeln!(
                     text,
                     "    f[{k}] = f[{k}] - {reflected} * (terms.w[{k}] * q_ddot + terms.dw[{k}] * speed2);"
@@ -99,7 +86,7 @@ impl RustWriter<'_> {
 
     fn energies(&self, text: &mut String) {
         *text += "/// Kinetic energy and potential, J.\n#[allow(unused_variables, unused_mut)]\npub fn energies(parameters: &Parameters, inputs: &Inputs, state: &State) -> Result<[Real; 2], Fault> {\n    let terms = motion_terms(state.q)?;\n    let (f, m, _) = forces(parameters, inputs, &terms, state);\n    let mut potential = 0.0;\n";
-        for k in self.export.machine.loads_where(LoadEffect::is_conservative) {
+        for k in self.conservative() {
             _ = writeln!(text, "    potential = potential + f[{k}] * terms.v[{k}];");
         }
         *text += "    let kinetic = 0.5 * m * state.q_dot * state.q_dot;\n    match is_finite(kinetic) && is_finite(potential) {\n        true => Ok([kinetic, potential]),\n        false => Err(Fault::NotFinite),\n    }\n}\n\n/// Inverse dynamics: what must act on the coordinate besides the loads for a wanted q''.\npub fn required_force(parameters: &Parameters, inputs: &Inputs, state: &State, q_ddot: Real) -> Result<Real, Fault> {\n    let terms = motion_terms(state.q)?;\n    let (f, m, half_dm) = forces(parameters, inputs, &terms, state);\n    let mut force = m * q_ddot + half_dm * state.q_dot * state.q_dot;\n    for (f, w) in f.iter().zip(&terms.w) {\n        force = force - f * w;\n    }\n    match is_finite(force) {\n        true => Ok(force),\n        false => Err(Fault::NotFinite),\n    }\n}\n\n";
@@ -107,18 +94,15 @@ impl RustWriter<'_> {
 
     /// q̇, q̈ and the rates of currents.
     fn rates(&self, text: &mut String) {
-        let currents = self.currents();
-        let order = 2 + currents.len();
         let mut rates = vec!["s.q_dot".to_owned(), "force / m".to_owned()];
-        for (load, _) in currents {
-            let name = &self.names.loads[load];
-            rates.push(format!(
-                "(inputs.voltage_{name} - p.resistance_{name} * s.current_{name} - (p.gear_ratio_{name} * p.torque_constant_{name}) * terms.w[{load}] * s.q_dot) / p.inductance_{name}"
-            ));
+        for (load, ..) in self.currents() {
+            let velocity = format!("terms.w[{load}] * s.q_dot");
+            rates.push(ACCESS.current_rate(&self.names.loads[load], &velocity));
         }
         _ = write!(
             text,
-            "fn rates(p: &Parameters, inputs: &Inputs, s: &State) -> Result<[Real; {order}], Fault> {{\n    let terms = motion_terms(s.q)?;\n    let (f, m, half_dm) = forces(p, inputs, &terms, s);\n    let mut force = 0.0 - half_dm * s.q_dot * s.q_dot;\n    for (f, w) in f.iter().zip(&terms.w) {{\n        force = force + f * w;\n    }}\n    if !(m > 0.0) {{\n        return Err(if is_finite(m) {{ Fault::NoInertia }} else {{ Fault::NotFinite }});\n    }}\n    let rates = [{}];\n    match rates.iter().all(|&rate| is_finite(rate)) {{\n        true => Ok(rates),\n        false => Err(Fault::NotFinite),\n    }}\n}}\n\n/// q'' of a state.\npub fn acceleration(parameters: &Parameters, inputs: &Inputs, state: &State) -> Result<Real, Fault> {{\n    rates(parameters, inputs, state).map(|rates| rates[1])\n}}\n\n",
+            "fn rates(p: &Parameters, inputs: &Inputs, s: &State) -> Result<[Real; {}], Fault> {{\n    let terms = motion_terms(s.q)?;\n    let (f, m, half_dm) = forces(p, inputs, &terms, s);\n    let mut force = 0.0 - half_dm * s.q_dot * s.q_dot;\n    for (f, w) in f.iter().zip(&terms.w) {{\n        force = force + f * w;\n    }}\n    if !(m > 0.0) {{\n        return Err(if is_finite(m) {{ Fault::NoInertia }} else {{ Fault::NotFinite }});\n    }}\n    let rates = [{}];\n    match rates.iter().all(|&rate| is_finite(rate)) {{\n        true => Ok(rates),\n        false => Err(Fault::NotFinite),\n    }}\n}}\n\n/// q'' of a state.\npub fn acceleration(parameters: &Parameters, inputs: &Inputs, state: &State) -> Result<Real, Fault> {{\n    rates(parameters, inputs, state).map(|rates| rates[1])\n}}\n\n",
+            rates.len(),
             rates.join(", ")
         );
     }
@@ -151,9 +135,4 @@ impl RustWriter<'_> {
         };
         *text += "    *state = s;\n    Ok(())\n}\n\n";
     }
-}
-
-/// The inertia of a rotor along the drive's coordinate.
-fn reflected(name: &str) -> String {
-    format!("(p.gear_ratio_{name} * p.gear_ratio_{name} * p.rotor_inertia_{name})")
 }

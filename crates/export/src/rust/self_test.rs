@@ -30,14 +30,10 @@ impl RustWriter<'_> {
         if self.has_points() {
             *text += "        let points = positions(*q).map_err(|_| 2u32)?;\n        let values = values.chain(&points);\n";
         }
-        let outside = match machine.domain.revolutions {
-            0 => 2.0 * machine.domain.to.abs().max(machine.domain.from.abs()) + 1.0,
-            _ => 1e30,
-        };
         _ = write!(
             text,
             "        for (k, (found, (expected, allowed))) in values.zip(expected.iter().zip(&TOLERANCE)).enumerate() {{\n            if differs(*found, *expected, *allowed) {{\n                return Err(10 + k as u32);\n            }}\n        }}\n    }}\n    if motion_terms({}) != Err(Fault::OutOfRange) {{\n        return Err(3);\n    }}\n    let (mut parameters, inputs, state) = scene();\n    parameters.added_inertia = {};\n    if acceleration(&parameters, &inputs, &state) != Err(Fault::NoInertia) {{\n        return Err(4);\n    }}\n",
-            self.number(outside),
+            self.number(machine.domain.outside()),
             self.number(-1e30)
         );
         let motion = &measured.motion;

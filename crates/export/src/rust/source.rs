@@ -1,7 +1,6 @@
 //! Types, constants and coefficients.
 
 use super::RustWriter;
-use crate::evaluator::has_rotor;
 use crate::identifiers::comment;
 use crate::machine::{LoadDescription, PartKind};
 use crate::part::{CURVE, Column, HEAD, Part, Precision, TERMS, Wrapping};
@@ -70,28 +69,19 @@ impl RustWriter<'_> {
     }
 
     fn counts(&self, text: &mut String) {
-        let machine = &self.export.machine;
-        let mut count = |what: &str, names: &[String], meanings: Vec<&str>| {
-            for (k, (name, meaning)) in names.iter().zip(meanings).enumerate() {
-                let name = name.to_ascii_uppercase();
+        for (what, list) in self.lists() {
+            for (k, [name, meaning]) in list.iter().enumerate() {
                 _ = writeln!(
                     text,
-                    "/// {}.\npub const {what}_{name}: usize = {k};",
-                    comment(meaning)
+                    "/// {meaning}.\npub const {what}_{name}: usize = {k};"
                 );
             }
+            let count = list.len();
             _ = writeln!(
                 text,
-                "/// How many.\npub const {what}_COUNT: usize = {};",
-                names.len()
+                "/// How many.\npub const {what}_COUNT: usize = {count};"
             );
-        };
-        let loads = machine.loads.iter().map(|load| load.name.as_str());
-        count("LOAD", &self.names.loads, loads.collect());
-        let reactions = machine.reactions.iter().map(|(name, _)| name.as_str());
-        count("REACTION", &self.names.reactions, reactions.collect());
-        let points = machine.points.iter().map(String::as_str);
-        count("POINT", &self.names.points, points.collect());
+        }
         text.push('\n');
     }
 
@@ -111,7 +101,7 @@ impl RustWriter<'_> {
             text,
             "}}\n\n/// What acts on it from outside; constant during a step.\n{derive}pub struct Inputs {{\n"
         );
-        for (_, name, _, meaning) in self.inputs() {
+        for (name, _, meaning) in self.inputs() {
             member(text, &name, &meaning);
         }
         _ = write!(
@@ -124,7 +114,7 @@ impl RustWriter<'_> {
         _ = write!(
             text,
             "    /// What the sums have lost by rounding.\n    pub carry: [Real; {}],\n    /// Whole periods subtracted from q.\n    pub periods: i32,\n}}\n\n",
-            2 + self.currents().len()
+            self.order()
         );
         _ = write!(
             text,
@@ -184,7 +174,7 @@ impl RustWriter<'_> {
         if part.index.is_empty() {
             return;
         }
-        let (upper, lower) = names(kind);
+        let (upper, lower) = (TYPE_NAMES[kind as usize], NAMES[kind as usize]);
         let (curves, columns) = (part.curves.len(), part.tabulated());
         let index = if part.index_bytes() == 1 { "u8" } else { "u16" };
         _ = writeln!(
@@ -230,40 +220,25 @@ impl RustWriter<'_> {
 
     fn motion_terms(&self, text: &mut String) {
         *text += "fn motion_at(q: Real) -> MotionTerms {\n    let (cell, at) = place_in_motion(q);\n    let value = |k: usize| cell.values[k] + cell.head[2] * integral(&cell.curves[k], at);\n    let half_slope = |k: usize| polynomial(&cell.curves[k], at);\n    MotionTerms {\n        m: value(0),\n        half_dm: half_slope(0),\n";
-        let (mut next_curve, mut next_column) = (1, 0);
-        let mut arrays = [String::new(), String::new(), String::new()];
-        let mut one = |load: &LoadDescription| -> [String; 3] {
-            let zero = || "0.0".to_owned();
+        let columns = self.column_values(PartKind::Motion);
+        let one = |(k, load): (usize, &LoadDescription)| -> [String; 3] {
+            let (place, zero) = (self.export.machine.place(k), "0.0".to_owned());
             if load.effect.is_conservative() {
-                let k = next_curve;
-                next_curve += 1;
-                return [
-                    format!("-2.0 * half_slope({k})"),
-                    zero(),
-                    format!("value({k})"),
-                ];
+                let w = format!("-2.0 * half_slope({place})");
+                return [w, zero, format!("value({place})")];
             }
-            let column = self.part(PartKind::Motion).columns.get(next_column);
-            next_column += 1;
-            match column {
-                Some((_, Column::Tabulated(j))) => {
-                    let dw = match has_rotor(&load.effect) {
-                        true => format!("cell.head[1] * slope(&cell.columns[{j}], at)"),
-                        false => zero(),
-                    };
-                    [format!("polynomial(&cell.columns[{j}], at)"), dw, zero()]
+            let dw = match self.part(PartKind::Motion).columns[place].1 {
+                Column::Tabulated(j) if load.effect.has_rotor() => {
+                    format!("cell.head[1] * slope(&cell.columns[{j}], at)")
                 }
-                Some((_, Column::Constant(value))) => [self.number(*value), zero(), zero()],
-                None => [zero(), zero(), zero()],
-            }
+                _ => zero.clone(),
+            };
+            [columns[place].clone(), dw, zero]
         };
-        for load in &self.export.machine.loads {
-            for (array, value) in arrays.iter_mut().zip(one(load)) {
-                *array += &format!("{value}, ");
-            }
-        }
-        for (name, array) in ["w", "dw", "v"].iter().zip(&arrays) {
-            _ = writeln!(text, "        {name}: [{}],", array.trim_end_matches(", "));
+        let terms: Vec<[String; 3]> = self.loads.iter().enumerate().map(one).collect();
+        for (array, name) in ["w", "dw", "v"].iter().enumerate() {
+            let values: Vec<&str> = terms.iter().map(|of| of[array].as_str()).collect();
+            _ = writeln!(text, "        {name}: [{}],", values.join(", "));
         }
         *text += "    }\n}\n\n/// The terms of motion at q.\npub fn motion_terms(q: Real) -> Result<MotionTerms, Fault> {\n    wrap(q).map(motion_at)\n}\n\n";
     }
@@ -297,7 +272,10 @@ impl RustWriter<'_> {
     fn place(&self, kind: PartKind) -> String {
         match self.part(kind).index.is_empty() {
             true => "    let _ = q;\n".to_owned(),
-            false => format!("    let (cell, at) = place_in_{}(q);\n", names(kind).1),
+            false => format!(
+                "    let (cell, at) = place_in_{}(q);\n",
+                NAMES[kind as usize]
+            ),
         }
     }
 
@@ -310,20 +288,11 @@ impl RustWriter<'_> {
         columns.map(value).collect()
     }
 
-    /// The members of a state that change at rates.
-    pub(super) fn state_members(&self) -> Vec<String> {
-        let currents = self.currents().into_iter();
-        let currents = currents.map(|(load, _)| format!("current_{}", self.names.loads[load]));
-        let first = ["q", "q_dot"].map(str::to_owned).into_iter();
-        first.chain(currents).collect()
+    fn part(&self, kind: PartKind) -> &Part {
+        &self.export.parts[kind as usize]
     }
 }
 
-/// The name of a part: of its type, and of its function.
-fn names(kind: PartKind) -> (&'static str, &'static str) {
-    match kind {
-        PartKind::Motion => ("Motion", "motion"),
-        PartKind::Reactions => ("Reaction", "reaction"),
-        PartKind::Positions => ("Position", "position"),
-    }
-}
+/// The names of the parts, of their functions and of their types.
+const NAMES: [&str; 3] = ["motion", "reaction", "position"];
+const TYPE_NAMES: [&str; 3] = ["Motion", "Reaction", "Position"];

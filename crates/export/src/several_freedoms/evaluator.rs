@@ -1,39 +1,31 @@
 //! The exported code of several degrees of freedom in Rust, in one kind of number.
 
 use super::description::SeveralFreedomsDescription;
-use crate::evaluator::{Status, has_rotor, scene_value};
-use crate::machine::{LoadDescription, LoadEffect};
+use crate::evaluator::{Load, Status, runge_kutta};
 use crate::real::Real;
 use crate::straight_line::StraightLine;
 
-/// The exported code, with the parameters and inputs of the scene.
+/// The exported code in one kind of number, with the parameters and inputs of the scene.
 #[derive(Debug, Clone)]
-pub struct SeveralFreedomsEvaluator<'a> {
-    machine: &'a SeveralFreedomsDescription,
+pub struct SeveralFreedomsEvaluator<'a, R> {
     code: &'a [StraightLine; 3],
+    freedoms: usize,
+    reactions: usize,
     pairs: Vec<[usize; 2]>,
-    /// By load the place of its current in the state, if it has one.
-    currents: Vec<Option<usize>>,
+    loads: Vec<Load<R>>,
     order: usize,
 }
 
-impl<'a> SeveralFreedomsEvaluator<'a> {
+impl<'a, R: Real> SeveralFreedomsEvaluator<'a, R> {
     /// Of a machine and the operations of its functions.
-    pub fn new(machine: &'a SeveralFreedomsDescription, code: &'a [StraightLine; 3]) -> Self {
-        let mut order = 2 * machine.freedoms();
-        let currents = machine.loads.iter().map(|load| {
-            let inductance = load.effect.motor().map_or(0.0, |motor| motor.inductance);
-            (inductance > 0.0).then(|| {
-                order += 1;
-                order - 1
-            })
-        });
-        let currents = currents.collect();
+    pub fn new(machine: &SeveralFreedomsDescription, code: &'a [StraightLine; 3]) -> Self {
+        let (loads, order) = Load::all(&machine.loads, machine.freedoms());
         Self {
-            pairs: machine.pairs(),
-            machine,
             code,
-            currents,
+            freedoms: machine.freedoms(),
+            reactions: machine.reactions.len(),
+            pairs: machine.pairs(),
+            loads,
             order,
         }
     }
@@ -45,12 +37,12 @@ impl<'a> SeveralFreedomsEvaluator<'a> {
 
     /// The number of coordinates.
     pub fn freedoms(&self) -> usize {
-        self.machine.freedoms()
+        self.freedoms
     }
 
     /// The outputs of the motion's code at a state.
-    fn motion<R: Real>(&self, y: &[R]) -> Result<Vec<R>, Status> {
-        let terms = self.code[0].evaluate(&y[..self.machine.freedoms()]);
+    fn motion(&self, y: &[R]) -> Result<Vec<R>, Status> {
+        let terms = self.code[0].evaluate(&y[..self.freedoms]);
         match terms.iter().all(|term| term.to_f64().is_finite()) {
             true => Ok(terms),
             false => Err(Status::OutOfRange),
@@ -58,8 +50,8 @@ impl<'a> SeveralFreedomsEvaluator<'a> {
     }
 
     /// By coordinate Σ h q̇ᵢ q̇ⱼ.
-    fn velocity_terms<R: Real>(&self, terms: &[R], y: &[R]) -> Vec<R> {
-        let (n, pairs) = (self.machine.freedoms(), self.pairs.len());
+    fn velocity_terms(&self, terms: &[R], y: &[R]) -> Vec<R> {
+        let (n, pairs) = (self.freedoms, self.pairs.len());
         let sum = |i: usize| {
             let each = self.pairs.iter().enumerate();
             each.fold(R::of(0.0), |sum, (p, [a, b])| {
@@ -70,60 +62,39 @@ impl<'a> SeveralFreedomsEvaluator<'a> {
     }
 
     /// The velocity of a load's line, or what its w is multiplied by.
-    fn along<R: Real>(&self, terms: &[R], load: usize, of: &[R]) -> R {
-        let n = self.machine.freedoms();
-        let w = &terms[self.pairs.len() * (n + 1) + load * n..][..n];
-        w.iter()
-            .zip(of)
-            .fold(R::of(0.0), |sum, (w, x)| sum + *w * *x)
+    fn along(&self, terms: &[R], load: usize, of: &[R]) -> R {
+        let w = self.w(terms, load).iter().zip(of);
+        w.fold(R::of(0.0), |sum, (w, x)| sum + *w * *x)
+    }
+
+    /// w of a load.
+    fn w<'t>(&self, terms: &'t [R], load: usize) -> &'t [R] {
+        let n = self.freedoms;
+        &terms[self.pairs.len() * (n + 1) + load * n..][..n]
     }
 
     /// F of each load at a state, without that of rotors.
-    fn forces<R: Real>(&self, terms: &[R], y: &[R]) -> Vec<R> {
-        let n = self.machine.freedoms();
-        let loads = self.machine.loads.iter().enumerate();
-        let force = |(k, load): (usize, &LoadDescription)| {
-            let value = R::of(scene_value(&load.effect));
+    fn forces(&self, terms: &[R], y: &[R]) -> Vec<R> {
+        let n = self.freedoms;
+        let force = |(k, load): (usize, &Load<R>)| {
             let velocity = self.along(terms, k, &y[n..2 * n]);
-            match &load.effect {
-                LoadEffect::Conservative { .. }
-                | LoadEffect::Constant { .. }
-                | LoadEffect::Input { .. } => value,
-                LoadEffect::Damper { .. } | LoadEffect::VariableDamper { .. } => {
-                    R::of(0.0) - value * velocity
-                }
-                LoadEffect::Motor(motor) => {
-                    let constant = R::of(motor.gear_ratio) * R::of(motor.torque_constant);
-                    match self.currents[k] {
-                        Some(place) => constant * y[place],
-                        None => constant * (value - constant * velocity) / R::of(motor.resistance),
-                    }
-                }
-            }
+            load.force(y, |factor| factor * velocity)
         };
-        loads.map(force).collect()
-    }
-
-    /// N² J of a motor with a rotor.
-    fn reflected<R: Real>(&self, load: usize) -> Option<R> {
-        let effect = &self.machine.loads[load].effect;
-        let motor = effect.motor().filter(|_| has_rotor(effect))?;
-        let ratio = R::of(motor.gear_ratio);
-        Some(ratio * ratio * R::of(motor.rotor_inertia))
+        self.loads.iter().enumerate().map(force).collect()
     }
 
     /// The mass matrix with rotors, row by row.
-    fn mass_matrix<R: Real>(&self, terms: &[R]) -> Vec<R> {
-        let (n, first) = (self.machine.freedoms(), self.pairs.len());
+    fn mass_matrix(&self, terms: &[R]) -> Vec<R> {
+        let n = self.freedoms;
         let mut m = vec![R::of(0.0); n * n];
         for (p, [i, j]) in self.pairs.iter().enumerate() {
             [m[i * n + j], m[j * n + i]] = [terms[p]; 2];
         }
-        for load in 0..self.machine.loads.len() {
-            let Some(reflected) = self.reflected::<R>(load) else {
+        for (k, load) in self.loads.iter().enumerate() {
+            let Some(reflected) = load.rotor() else {
                 continue;
             };
-            let w = &terms[first * (n + 1) + load * n..][..n];
+            let w = self.w(terms, k);
             for i in 0..n {
                 for j in 0..n {
                     m[i * n + j] = m[i * n + j] + reflected * w[i] * w[j];
@@ -137,18 +108,17 @@ impl<'a> SeveralFreedomsEvaluator<'a> {
     ///
     /// # Errors
     /// [`Status`] where the mechanism cannot be assembled.
-    pub fn required_forces<R: Real>(&self, y: &[R], q_ddot: &[R]) -> Result<Vec<R>, Status> {
-        let n = self.machine.freedoms();
+    pub fn required_forces(&self, y: &[R], q_ddot: &[R]) -> Result<Vec<R>, Status> {
+        let n = self.freedoms;
         let terms = self.motion(y)?;
         let (m, forces) = (self.mass_matrix(&terms), self.forces(&terms, y));
         let mut found = self.velocity_terms(&terms, y);
-        let w = &terms[self.pairs.len() * (n + 1)..];
         for i in 0..n {
             for j in 0..n {
                 found[i] = found[i] + m[i * n + j] * q_ddot[j];
             }
             for (k, force) in forces.iter().enumerate() {
-                found[i] = found[i] - *force * w[k * n + i];
+                found[i] = found[i] - *force * self.w(&terms, k)[i];
             }
         }
         Ok(found)
@@ -158,23 +128,20 @@ impl<'a> SeveralFreedomsEvaluator<'a> {
     ///
     /// # Errors
     /// [`Status`] where the mechanism cannot be assembled, or its mass matrix is not positive definite.
-    pub fn rates<R: Real>(&self, y: &[R]) -> Result<Vec<R>, Status> {
-        let n = self.machine.freedoms();
+    pub fn rates(&self, y: &[R]) -> Result<Vec<R>, Status> {
+        let n = self.freedoms;
         let rest = self.required_forces(y, &vec![R::of(0.0); n])?;
         let terms = self.motion(y)?;
         let right = rest.iter().map(|force| R::of(0.0) - *force).collect();
         let q_ddot = solve(self.mass_matrix(&terms), right)?;
         let mut rates = y[n..2 * n].to_vec();
         rates.extend(q_ddot);
-        for (k, load) in self.machine.loads.iter().enumerate() {
-            if let (Some(_), Some(motor)) = (self.currents[k], load.effect.motor()) {
-                let [resistance, inductance] = [motor.resistance, motor.inductance].map(R::of);
-                let constant = R::of(motor.gear_ratio) * R::of(motor.torque_constant);
-                let velocity = self.along(&terms, k, &y[n..2 * n]);
-                let current = y[rates.len()];
-                let voltage = R::of(scene_value(&load.effect));
-                rates.push((voltage - resistance * current - constant * velocity) / inductance);
-            }
+        for (k, load) in self.loads.iter().enumerate() {
+            let velocity = self.along(&terms, k, &y[n..2 * n]);
+            rates.extend(
+                load.current_rate(y, |factor| factor * velocity)
+                    .map(|(_, rate)| rate),
+            );
         }
         Ok(rates)
     }
@@ -183,28 +150,19 @@ impl<'a> SeveralFreedomsEvaluator<'a> {
     ///
     /// # Errors
     /// [`Status`] where the mechanism cannot be assembled.
-    pub fn reactions<R: Real>(&self, y: &[R], q_ddot: &[R]) -> Result<Vec<R>, Status> {
-        let (n, r, p) = (
-            self.machine.freedoms(),
-            self.machine.reactions.len(),
-            self.pairs.len(),
-        );
+    pub fn reactions(&self, y: &[R], q_ddot: &[R]) -> Result<Vec<R>, Status> {
+        let (n, r) = (self.freedoms, self.reactions);
         let terms = self.motion(y)?;
         let mut forces = self.forces(&terms, y);
         for (k, force) in forces.iter_mut().enumerate() {
-            if let Some(reflected) = self.reflected::<R>(k) {
+            if let Some(reflected) = self.loads[k].rotor() {
                 *force = *force - reflected * self.along(&terms, k, q_ddot);
             }
         }
         let of = self.code[1].evaluate(&y[..n]);
         let products = self.pairs.iter().map(|[i, j]| y[n + i] * y[n + j]);
-        let factors: Vec<R> = q_ddot
-            .iter()
-            .copied()
-            .chain(products)
-            .chain(forces)
-            .collect();
-        debug_assert_eq!(factors.len(), n + p + self.machine.loads.len());
+        let accelerations = q_ddot.iter().copied();
+        let factors: Vec<R> = accelerations.chain(products).chain(forces).collect();
         let reaction = |k: usize| {
             let each = factors.iter().enumerate();
             each.fold(R::of(0.0), |sum, (f, factor)| sum + of[f * r + k] * *factor)
@@ -216,8 +174,8 @@ impl<'a> SeveralFreedomsEvaluator<'a> {
     ///
     /// # Errors
     /// [`Status`] where the mechanism cannot be assembled.
-    pub fn energies<R: Real>(&self, y: &[R]) -> Result<[R; 2], Status> {
-        let n = self.machine.freedoms();
+    pub fn energies(&self, y: &[R]) -> Result<[R; 2], Status> {
+        let n = self.freedoms;
         let terms = self.motion(y)?;
         let m = self.mass_matrix(&terms);
         let mut twice = R::of(0.0);
@@ -226,13 +184,8 @@ impl<'a> SeveralFreedomsEvaluator<'a> {
                 twice = twice + m[i * n + j] * y[n + i] * y[n + j];
             }
         }
-        let first = self.pairs.len() * (n + 1) + self.machine.loads.len() * n;
-        let mut potential = R::of(0.0);
-        for (load, v) in self.machine.loads.iter().zip(&terms[first..]) {
-            if load.effect.is_conservative() {
-                potential = potential + R::of(scene_value(&load.effect)) * *v;
-            }
-        }
+        let potentials = &terms[self.pairs.len() * (n + 1) + self.loads.len() * n..];
+        let potential = Load::potential(self.loads.iter().zip(potentials));
         Ok([R::of(0.5) * twice, potential])
     }
 
@@ -240,19 +193,10 @@ impl<'a> SeveralFreedomsEvaluator<'a> {
     ///
     /// # Errors
     /// [`Status`] where a stage has no rates; the state is then as it was.
-    pub fn step<R: Real>(&self, h: R, y: &mut [R]) -> Result<(), Status> {
-        let half = R::of(0.5) * h;
-        let moved = |by: R, rates: &[R]| -> Vec<R> {
-            let both = y.iter().zip(rates);
-            both.map(|(y, rate)| *y + by * *rate).collect()
-        };
-        let one = self.rates(y)?;
-        let two = self.rates(&moved(half, &one))?;
-        let three = self.rates(&moved(half, &two))?;
-        let four = self.rates(&moved(h, &three))?;
-        let sixth = h / R::of(6.0);
-        for (i, y) in y.iter_mut().enumerate() {
-            *y = *y + sixth * (one[i] + R::of(2.0) * (two[i] + three[i]) + four[i]);
+    pub fn step(&self, h: R, y: &mut [R]) -> Result<(), Status> {
+        let changes = runge_kutta(y, h, |y| self.rates(y))?;
+        for (y, change) in y.iter_mut().zip(changes) {
+            *y = *y + change;
         }
         Ok(())
     }
@@ -268,7 +212,8 @@ fn solve<R: Real>(mut m: Vec<R>, mut b: Vec<R>) -> Result<Vec<R>, Status> {
             }
         }
         let pivot = m[j * n + j];
-        if pivot.partial_cmp(&R::of(0.0)) != Some(std::cmp::Ordering::Greater) {
+        let is_definite = pivot.to_f64() > 0.0;
+        if !is_definite {
             return Err(Status::NoInertia);
         }
         for i in j + 1..n {

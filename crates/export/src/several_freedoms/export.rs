@@ -2,7 +2,6 @@
 
 use super::description::SeveralFreedomsDescription;
 use super::measure::{SampledState, SeveralFreedomsErrors, measure};
-use crate::evaluator::has_rotor;
 use crate::part::Precision;
 use crate::straight_line::{Operand, StraightLine};
 
@@ -58,7 +57,7 @@ impl SeveralFreedomsExport {
         (0..machine.loads.len()).find(|&k| {
             let of_load = &motion.outputs[first + k * n..][..n];
             let varies = |o: &Operand| !matches!(o, Operand::Constant(_));
-            has_rotor(&machine.loads[k].effect) && of_load.iter().any(varies)
+            machine.loads[k].effect.has_rotor() && of_load.iter().any(varies)
         })
     }
 }

@@ -138,7 +138,8 @@ fn states<R: Real>(
     positions: &[Vec<f64>],
 ) -> Vec<SampledState> {
     let initial = machine.coordinates.iter().map(|c| c.initial[0]).collect();
-    let evaluator = SeveralFreedomsEvaluator::new(machine, code);
+    let exact = SeveralFreedomsEvaluator::<f64>::new(machine, code);
+    let evaluator = SeveralFreedomsEvaluator::<R>::new(machine, code);
     let others = positions.iter().take(STATES - 1).cloned();
     let all = std::iter::once(initial).chain(others).enumerate();
     all.map(|(k, q)| {
@@ -152,18 +153,19 @@ fn states<R: Real>(
         y.resize(evaluator.order(), 0.05);
         let stored: Vec<R> = y.iter().map(|&x| R::of(x)).collect();
         let y = stored.iter().map(|x| x.to_f64()).collect();
-        sampled(&evaluator, y, &stored)
+        sampled(&exact, y, &evaluator, &stored)
     })
     .collect()
 }
 
 fn sampled<R: Real>(
-    evaluator: &SeveralFreedomsEvaluator<'_>,
+    exact: &SeveralFreedomsEvaluator<'_, f64>,
     y: Vec<f64>,
+    evaluator: &SeveralFreedomsEvaluator<'_, R>,
     stored: &[R],
 ) -> SampledState {
-    let values = values(evaluator, &y);
-    let (exact, found) = (end(evaluator, &y), end(evaluator, stored));
+    let values = values(exact, &y);
+    let (exact, found) = (end(exact, &y), end(evaluator, stored));
     // Another compiler's functions differ in the last digit, and what it multiplies is not small everywhere.
     let least = 4096.0 * rounding::<R>();
     let mut tolerances = [least; 5];
@@ -191,7 +193,7 @@ fn rounding<R: Real>() -> f64 {
 }
 
 /// Accelerations, reactions, energies and the forces that keep the velocities.
-fn values<R: Real>(evaluator: &SeveralFreedomsEvaluator<'_>, y: &[R]) -> Option<[Vec<R>; 4]> {
+fn values<R: Real>(evaluator: &SeveralFreedomsEvaluator<'_, R>, y: &[R]) -> Option<[Vec<R>; 4]> {
     let rates = evaluator.rates(y).ok()?;
     let n = evaluator.freedoms();
     let q_ddot = &rates[n..2 * n];
@@ -203,7 +205,7 @@ fn values<R: Real>(evaluator: &SeveralFreedomsEvaluator<'_>, y: &[R]) -> Option<
     ])
 }
 
-fn end<R: Real>(evaluator: &SeveralFreedomsEvaluator<'_>, y: &[R]) -> Option<Vec<R>> {
+fn end<R: Real>(evaluator: &SeveralFreedomsEvaluator<'_, R>, y: &[R]) -> Option<Vec<R>> {
     let mut y = y.to_vec();
     for _ in 0..MOTION.0 {
         evaluator.step(R::of(MOTION.1), &mut y).ok()?;

@@ -33,6 +33,18 @@ impl From<SceneError> for StudyError {
     }
 }
 
+impl From<StudyError> for SceneError {
+    fn from(error: StudyError) -> Self {
+        match error {
+            StudyError::Scene(scene) => *scene,
+            StudyError::Sweep(sweep) => Self::without_labels(sweep.to_string(), sweep.help()),
+            // Further kinds are those of written files, where another crate of the program asks for them.
+            #[allow(unreachable_patterns, reason = "without files there are none")]
+            other => Self::without_labels(other.to_string(), None),
+        }
+    }
+}
+
 /// Why a sweep fails.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SweepError {

@@ -1,67 +1,49 @@
 //! The source: a template for any machine, and what is its own: the operations, the loads and the self-test.
 
-use super::Writer;
-use crate::evaluator::has_rotor;
-use crate::machine::LoadEffect;
+use crate::c::{ACCESS, CWriter};
 use crate::part::Precision;
+use crate::several_freedoms::export::SeveralFreedomsExport;
 use crate::several_freedoms::measure::{MOTION, SampledState};
-use crate::straight_line::StraightLine;
+use crate::writer::reflected;
 use std::fmt::Write as _;
 
 const SOURCE: &str = include_str!("../template.c");
 const REACTION_TERMS: &str = include_str!("../reactions.c");
 const SELF_TEST: &str = include_str!("../self_test.c");
+const LOADS_FINITE: &str =
+    " && all_finite(terms->w, @U@_LOAD_COUNT * N) && all_finite(terms->v, @U@_LOAD_COUNT)";
+const LOADS_CLEAR: &str =
+    "        clear(terms->w, @U@_LOAD_COUNT * N);\n        clear(terms->v, @U@_LOAD_COUNT);\n";
+const MOVE_CURRENT: &str = "    to->@c@ = from->@c@ + h * rates[@k@];\n";
+const ADD_CURRENT: &str = "    add(&s.@c@, &s.carry[@k@], k1[@k@]);\n";
 
-impl Writer<'_> {
+impl CWriter<'_, SeveralFreedomsExport> {
     pub(super) fn source(&self) -> String {
-        let machine = &self.export.machine;
-        let order = 2 * machine.freedoms() + self.currents().len();
-        let with = |there: bool, text: &str| {
-            if there {
-                text.to_owned()
-            } else {
-                String::new()
-            }
+        // What is there only with loads.
+        let with_loads = |text: &str| match self.has_loads() {
+            true => text.to_owned(),
+            false => String::new(),
         };
-        let loads = self.has_loads();
         let own = [
-            ("order", order.to_string()),
+            ("order", self.order().to_string()),
             ("zero", self.number(0.0)),
             ("half", self.number(0.5)),
             ("two", self.number(2.0)),
             ("six", self.number(6.0)),
             ("motion", self.motion()),
-            (
-                "loads_finite",
-                with(
-                    loads,
-                    " && all_finite(terms->w, @U@_LOAD_COUNT * N) && all_finite(terms->v, @U@_LOAD_COUNT)",
-                ),
-            ),
-            (
-                "loads_clear",
-                with(
-                    loads,
-                    "        clear(terms->w, @U@_LOAD_COUNT * N);\n        clear(terms->v, @U@_LOAD_COUNT);\n",
-                ),
-            ),
+            ("loads_finite", with_loads(LOADS_FINITE)),
+            ("loads_clear", with_loads(LOADS_CLEAR)),
             ("reactions_at", self.reaction_terms()),
             ("positions_at", self.positions()),
             ("scene", self.scene()),
-            ("f_member", with(loads, "\n    @p@_real f[@U@_LOAD_COUNT];")),
+            ("f_member", with_loads("\n    @p@_real f[@U@_LOAD_COUNT];")),
             ("forces", self.forces()),
             ("resistance", self.resistance()),
             ("current_rates", self.current_rates()),
             ("reactions", self.reactions()),
             ("potentials", self.potentials()),
-            (
-                "move_currents",
-                self.each_current("    to->@c@ = from->@c@ + h * rates[@k@];\n"),
-            ),
-            (
-                "add_currents",
-                self.each_current("    add(&s.@c@, &s.carry[@k@], k1[@k@]);\n"),
-            ),
+            ("move_currents", self.each_current(MOVE_CURRENT)),
+            ("add_currents", self.each_current(ADD_CURRENT)),
         ];
         let mut text = SOURCE.to_owned();
         for (name, own) in own {
@@ -72,22 +54,12 @@ impl Writer<'_> {
 
     /// A line for each current: `@c@` is its member, `@k@` its place.
     fn each_current(&self, line: &str) -> String {
-        let lines = self.currents().into_iter().map(|(load, place)| {
-            let member = format!("current_{}", self.names.loads[load]);
-            line.replace("@c@", &member)
-                .replace("@k@", &place.to_string())
+        let lines = self.currents().into_iter();
+        let lines = lines.map(|(_, member, place)| {
+            let line = line.replace("@c@", &member);
+            line.replace("@k@", &place.to_string())
         });
         lines.collect()
-    }
-
-    /// The operations of a code, and what its outputs are assigned to.
-    fn assignments(&self, code: &StraightLine, targets: &[String]) -> String {
-        let mut text = String::new();
-        self.statements.operations(code, &mut text);
-        for (target, &output) in targets.iter().zip(&code.outputs) {
-            _ = writeln!(text, "    {target} = {};", self.statements.operand(output));
-        }
-        text
     }
 
     fn motion(&self) -> String {
@@ -100,8 +72,7 @@ impl Writer<'_> {
         let h = (0..pairs.len() * n).map(|k| format!("terms->h[{k}]"));
         let w = (0..machine.loads.len() * n).map(|k| format!("terms->w[{k}]"));
         let v = (0..machine.loads.len()).map(|k| format!("terms->v[{k}]"));
-        let targets: Vec<String> = upper.chain(h).chain(w).chain(v).collect();
-        self.assignments(&self.export.code[0], &targets)
+        self.assignments(&self.export.code[0], upper.chain(h).chain(w).chain(v))
     }
 
     fn reaction_terms(&self) -> String {
@@ -113,12 +84,9 @@ impl Writer<'_> {
         let array = |name: &'static str, count: usize| {
             (0..count * r).map(move |k| format!("terms->{name}[{k}]"))
         };
-        let a = array("a", machine.freedoms());
-        let targets = a
-            .chain(array("b", machine.pairs().len()))
-            .chain(array("c", machine.loads.len()));
-        let targets: Vec<String> = targets.collect();
-        let terms = self.assignments(&self.export.code[1], &targets);
+        let (a, b) = (array("a", self.freedoms), array("b", machine.pairs().len()));
+        let targets = a.chain(b).chain(array("c", machine.loads.len()));
+        let terms = self.assignments(&self.export.code[1], targets);
         let [finite, clear] = match self.has_loads() {
             true => [
                 " && all_finite(terms->c, @U@_LOAD_COUNT * @U@_REACTION_COUNT)",
@@ -137,8 +105,8 @@ impl Writer<'_> {
         if count == 0 {
             return String::new();
         }
-        let targets: Vec<String> = (0..count).map(|k| format!("xy[{k}]")).collect();
-        let body = self.assignments(&self.export.code[2], &targets);
+        let targets = (0..count).map(|k| format!("xy[{k}]"));
+        let body = self.assignments(&self.export.code[2], targets);
         format!(
             "@p@_status @p@_positions(const @p@_real q[@U@_COORDINATE_COUNT], @p@_real xy[2 * @U@_POINT_COUNT])\n{{\n{body}    if (!all_finite(xy, 2 * @U@_POINT_COUNT)) {{\n        clear(xy, 2 * @U@_POINT_COUNT);\n        return all_finite(q, N) ? @U@_OUT_OF_RANGE : @U@_NOT_FINITE;\n    }}\n    return @U@_OK;\n}}\n\n"
         )
@@ -149,16 +117,7 @@ impl Writer<'_> {
         let mut text = String::from(
             "void @p@_scene(@p@_parameters *parameters, @p@_inputs *inputs, @p@_state *state)\n{\n    clear(parameters->added_inertia, N);\n",
         );
-        for (name, value, _) in self.parameters() {
-            _ = writeln!(text, "    parameters->{name} = {};", self.number(value));
-        }
-        let inputs = self.inputs();
-        for (_, name, value, _) in &inputs {
-            _ = writeln!(text, "    inputs->{name} = {};", self.number(*value));
-        }
-        if inputs.is_empty() {
-            text += "    inputs->none = ZERO;\n";
-        }
+        self.assign_constants(&mut text);
         for (k, coordinate) in machine.coordinates.iter().enumerate() {
             let [q, q_dot] = coordinate.initial.map(|x| self.number(x));
             _ = writeln!(
@@ -178,59 +137,22 @@ impl Writer<'_> {
     }
 
     fn forces(&self) -> String {
-        let machine = &self.export.machine;
         let mut text = String::new();
-        let (mut uses_inputs, mut uses_state) = (false, false);
-        let n = machine.freedoms();
-        for (k, load) in machine.loads.iter().enumerate() {
+        for (k, load) in self.loads.iter().enumerate() {
             let name = &self.names.loads[k];
             let velocity = self.velocity(k, "t->", "s->q_dot");
-            let value = match &load.effect {
-                LoadEffect::Conservative { .. } | LoadEffect::Constant { .. } => {
-                    format!("p->magnitude_{name}")
-                }
-                LoadEffect::Input { .. } => {
-                    uses_inputs = true;
-                    format!("in->load_{name}")
-                }
-                LoadEffect::Damper { .. } => {
-                    uses_state = true;
-                    format!("ZERO - p->damping_{name} * {velocity}")
-                }
-                LoadEffect::VariableDamper { .. } => {
-                    (uses_inputs, uses_state) = (true, true);
-                    format!("ZERO - in->damping_{name} * {velocity}")
-                }
-                LoadEffect::Motor(motor) => {
-                    uses_state = true;
-                    let constant = format!("(p->gear_ratio_{name} * p->torque_constant_{name})");
-                    match motor.inductance > 0.0 {
-                        true => format!("{constant} * s->current_{name}"),
-                        false => {
-                            uses_inputs = true;
-                            format!(
-                                "{constant} * (in->voltage_{name} - {constant} * {velocity}) / p->resistance_{name}"
-                            )
-                        }
-                    }
-                }
-            };
+            let value = ACCESS.force(&load.effect, name, &velocity);
             _ = writeln!(text, "    out->f[{k}] = {value};");
-            if has_rotor(&load.effect) {
-                let first = k * n;
+            if load.effect.has_rotor() {
+                let (first, reflected) = (k * self.freedoms, reflected("p->", name));
                 _ = writeln!(
                     text,
-                    "    for (i = 0; i < N * N; i++) {{\n        out->m[i] = out->m[i] + {} * t->w[{first} + i / N] * t->w[{first} + i % N];\n    }}",
-                    reflected(name)
+                    "    for (i = 0; i < N * N; i++) {{\n        out->m[i] = out->m[i] + {reflected} * t->w[{first} + i / N] * t->w[{first} + i % N];\n    }}"
                 );
             }
         }
-        for (used, name) in [(uses_inputs, "in"), (uses_state, "s")] {
-            if !used {
-                _ = writeln!(text, "    (void){name};");
-            }
-        }
-        text
+        let unused = self.unused_arguments(&text);
+        text + &unused
     }
 
     fn resistance(&self) -> String {
@@ -241,12 +163,10 @@ impl Writer<'_> {
     }
 
     fn current_rates(&self) -> String {
-        let lines = self.currents().into_iter().map(|(load, place)| {
-            let name = &self.names.loads[load];
+        let lines = self.currents().into_iter().map(|(load, _, place)| {
             let velocity = self.velocity(load, "terms.", "s->q_dot");
-            format!(
-                "    rates[{place}] = (in->voltage_{name} - p->resistance_{name} * s->current_{name} - (p->gear_ratio_{name} * p->torque_constant_{name}) * {velocity}) / p->inductance_{name};\n"
-            )
+            let rate = ACCESS.current_rate(&self.names.loads[load], &velocity);
+            format!("    rates[{place}] = {rate};\n")
         });
         lines.collect()
     }
@@ -255,12 +175,11 @@ impl Writer<'_> {
         if !self.has_reactions() {
             return String::new();
         }
-        let machine = &self.export.machine;
         let mut rotors = String::new();
-        for (k, load) in machine.loads.iter().enumerate() {
-            if has_rotor(&load.effect) {
+        for (k, load) in self.loads.iter().enumerate() {
+            if load.effect.has_rotor() {
                 let acceleration = self.velocity(k, "terms.", "q_ddot");
-                let reflected = reflected(&self.names.loads[k]).replace("p->", "parameters->");
+                let reflected = reflected("parameters->", &self.names.loads[k]);
                 _ = writeln!(
                     rotors,
                     "    f.f[{k}] = f.f[{k}] - {reflected} * {acceleration};"
@@ -274,16 +193,8 @@ impl Writer<'_> {
             false => "",
         };
         format!(
-            "@p@_status @p@_reactions(const @p@_parameters *parameters, const @p@_inputs *inputs, const @p@_state *state, const @p@_real q_ddot[@U@_COORDINATE_COUNT], @p@_real reactions[@U@_REACTION_COUNT])\n{{\n    @p@_motion_terms terms;\n    @p@_reaction_terms of;\n    forces f;\n    int i, j, k;\n    @p@_status status = @p@_motion_terms_at(state->q, &terms);\n    if (status == @U@_OK) {{\n        status = @p@_reaction_terms_at(state->q, &of);\n    }}\n    if (status != @U@_OK) {{\n        clear(reactions, @U@_REACTION_COUNT);\n        return status;\n    }}\n    forces_of(parameters, inputs, &terms, state, &f);\n{rotors}    for (k = 0; k < @U@_REACTION_COUNT; k++) {{\n        @p@_real sum = ZERO;\n        int pair = 0;\n        for (i = 0; i < N; i++) {{\n            sum = sum + of.a[i * @U@_REACTION_COUNT + k] * q_ddot[i];\n            for (j = i; j < N; j++) {{\n                sum = sum + of.b[pair * @U@_REACTION_COUNT + k] * (state->q_dot[i] * state->q_dot[j]);\n                pair++;\n            }}\n        }}\n{loads}        reactions[k] = sum;\n    }}\n    if (!all_finite(reactions, @U@_REACTION_COUNT)) {{\n        clear(reactions, @U@_REACTION_COUNT);\n        return @U@_NOT_FINITE;\n    }}\n    return @U@_OK;\n}}\n\n"
+            "@p@_status @p@_reactions(@arguments@, const @p@_real q_ddot[@U@_COORDINATE_COUNT], @p@_real reactions[@U@_REACTION_COUNT])\n{{\n    @p@_motion_terms terms;\n    @p@_reaction_terms of;\n    forces f;\n    int i, j, k;\n    @p@_status status = @p@_motion_terms_at(state->q, &terms);\n    if (status == @U@_OK) {{\n        status = @p@_reaction_terms_at(state->q, &of);\n    }}\n    if (status != @U@_OK) {{\n        clear(reactions, @U@_REACTION_COUNT);\n        return status;\n    }}\n    forces_of(parameters, inputs, &terms, state, &f);\n{rotors}    for (k = 0; k < @U@_REACTION_COUNT; k++) {{\n        @p@_real sum = ZERO;\n        int pair = 0;\n        for (i = 0; i < N; i++) {{\n            sum = sum + of.a[i * @U@_REACTION_COUNT + k] * q_ddot[i];\n            for (j = i; j < N; j++) {{\n                sum = sum + of.b[pair * @U@_REACTION_COUNT + k] * (state->q_dot[i] * state->q_dot[j]);\n                pair++;\n            }}\n        }}\n{loads}        reactions[k] = sum;\n    }}\n    if (!all_finite(reactions, @U@_REACTION_COUNT)) {{\n        clear(reactions, @U@_REACTION_COUNT);\n        return @U@_NOT_FINITE;\n    }}\n    return @U@_OK;\n}}\n\n"
         )
-    }
-
-    fn potentials(&self) -> String {
-        let loads = self.export.machine.loads.iter().enumerate();
-        let conservative = loads.filter(|(_, load)| load.effect.is_conservative());
-        let lines = conservative
-            .map(|(k, _)| format!("    energies[1] = energies[1] + f.f[{k}] * terms.v[{k}];\n"));
-        lines.collect()
     }
 
     fn self_test(&self) -> String {
@@ -301,9 +212,9 @@ impl Writer<'_> {
                     "    state.q[{k}] = {q};\n    state.q_dot[{k}] = {q_dot};"
                 );
             }
-            for (load, place) in self.currents() {
-                let (name, current) = (&self.names.loads[load], self.number(state.y[place]));
-                _ = writeln!(checks, "    state.current_{name} = {current};");
+            for (_, member, place) in self.currents() {
+                let current = self.number(state.y[place]);
+                _ = writeln!(checks, "    state.{member} = {current};");
             }
             self.check_values(&mut checks, state, code);
             if let Some(end) = &state.end {
@@ -367,9 +278,4 @@ impl Writer<'_> {
             "    {{\n        static const @p@_real expected[{count}] = {{{list}}};\n        if ({call} != @U@_OK || differs(found, expected, {count}, {tolerance})) {{\n            return {code};\n        }}\n    }}"
         );
     }
-}
-
-/// N² J of a motor.
-fn reflected(name: &str) -> String {
-    format!("(p->gear_ratio_{name} * p->gear_ratio_{name} * p->rotor_inertia_{name})")
 }

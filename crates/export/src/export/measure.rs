@@ -1,11 +1,11 @@
 //! What an export states about itself: errors, operations and the error of its step, measured before it is written.
 
+use super::Export;
 use crate::evaluator::{Evaluator, MotionTerms, ReactionTerms};
-use crate::fit::FittedPart;
+use crate::fit::sample_values;
 use crate::machine::{FunctionSampler, LoadEffect, MachineDescription, PartKind};
-use crate::part::{Part, Precision};
+use crate::part::Precision;
 use crate::real::{Counted, Real};
-use crate::straight_line::StraightLine;
 
 /// Positions at which the errors are measured, steps of the golden section over the domain.
 const POSITIONS: usize = 4096;
@@ -62,7 +62,7 @@ pub struct SelfTestRow {
 }
 
 /// A motion of the self-test: the state after some steps from a state.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct SelfTestMotion {
     /// The step, s.
     pub step: f64,
@@ -75,7 +75,7 @@ pub struct SelfTestMotion {
 }
 
 /// Everything that is measured.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Measured {
     /// The largest errors.
     pub errors: Errors,
@@ -92,59 +92,36 @@ pub struct Measured {
     pub motion: SelfTestMotion,
 }
 
-/// The scales and errors by function, in the order of a row of the self-test.
-struct ValueErrors {
-    scales: Vec<f64>,
-    errors: Vec<f64>,
-}
-
-/// What is measured: cells, or operations.
-pub(crate) enum Measurable<'a> {
-    Cells(&'a [Part; 3]),
-    Code(&'a [StraightLine; 3]),
-}
-
-impl Measurable<'_> {
-    fn evaluator<R: Real>(
-        &self,
-        machine: &MachineDescription,
-        precision: Precision,
-    ) -> Evaluator<R> {
-        match self {
-            Self::Cells(parts) => Evaluator::new(machine, parts, precision),
-            Self::Code(code) => Evaluator::exact(machine, code, precision),
-        }
-    }
-}
-
-/// Measures parts in the order of [`PartKind::ALL`] against the exact functions.
+/// Measures the functions of an export against the exact ones, by the scale of each value of a row.
 ///
 /// # Errors
 /// Those of the sampler.
 pub(crate) fn measure<S: FunctionSampler>(
-    machine: &MachineDescription,
-    measurable: &Measurable<'_>,
-    scales: Vec<f64>,
-    (precision, sampler): (Precision, &mut S),
+    export: &Export,
+    scales: &[f64],
+    sampler: &mut S,
 ) -> Result<Measured, S::Error> {
-    let double = measurable.evaluator::<f64>(machine, precision);
-    let float = measurable.evaluator::<f32>(machine, precision);
-    let mut all = ValueErrors {
-        scales,
-        errors: Vec::new(),
-    };
-    all.errors = vec![0.0; all.scales.len()];
+    let (machine, precision) = (&export.machine, export.request.precision);
+    let double = export.evaluator::<f64>();
+    let float = export.evaluator::<f32>();
+    let mut errors = vec![0.0_f64; scales.len()];
     let mut rows = Vec::new();
     for i in 0..POSITIONS {
         let part = (0.5 + i as f64 * GOLDEN).fract();
         let q = precision.round(machine.domain.from + part * machine.domain.length());
         let q = q.clamp(machine.domain.from, machine.domain.to);
-        let values = exact_values(machine, q, sampler)?;
+        let mut one = |kind| sample_values(machine, kind, q, sampler);
+        let exact = [
+            one(PartKind::Motion)?,
+            one(PartKind::Reactions)?,
+            one(PartKind::Positions)?,
+        ];
+        let values = row(machine, exact.each_ref().map(|values| &values[..]), -2.0);
         let found = match precision {
             Precision::Double => values_of(machine, &double, q),
             Precision::Float => values_of(machine, &float, q as f32),
         };
-        for (error, (found, value)) in all.errors.iter_mut().zip(found.iter().zip(&values)) {
+        for (error, (found, value)) in errors.iter_mut().zip(found.iter().zip(&values)) {
             let difference = (found - value).abs();
             *error = error.max(if difference.is_nan() {
                 f64::INFINITY
@@ -156,17 +133,17 @@ pub(crate) fn measure<S: FunctionSampler>(
             rows.push(SelfTestRow { q, values });
         }
     }
-    let relative = all.errors.iter().zip(&all.scales);
+    let relative = errors.iter().zip(scales);
     let relative: Vec<f64> = relative.map(|(error, scale)| error / scale).collect();
     let rounding = match precision {
         Precision::Double => 1e-14,
         Precision::Float => 1e-6,
     };
-    let tolerances = all.errors.iter().zip(&all.scales);
-    let (step_error, motion) = measure_steps(machine, measurable, precision);
+    let tolerances = errors.iter().zip(scales);
+    let (step_error, motion) = measure_steps(export);
     Ok(Measured {
         errors: by_kind(machine, &relative),
-        operations: operations(machine, measurable, precision),
+        operations: operations(export),
         step_error,
         rows,
         // At other positions, and by another compiler, an error may be somewhat larger.
@@ -177,52 +154,23 @@ pub(crate) fn measure<S: FunctionSampler>(
     })
 }
 
-/// The scale of each value of a row.
-pub(crate) fn scales(machine: &MachineDescription, fitted: &[FittedPart; 3]) -> Vec<f64> {
-    let [motion, reactions, positions] = fitted;
-    let (mut curve, mut column) = (0, 0);
-    let load_scales = machine.loads.iter().map(|load| {
-        let next = |k: &mut usize| {
-            *k += 1;
-            *k
-        };
+/// A row of the self-test from the [values](sample_values) of all parts, or from their scales: the w of a conservative load is `by` times half the
+/// slope of its potential.
+pub(crate) fn row(
+    machine: &MachineDescription,
+    [motion, reactions, positions]: [&[f64]; 3],
+    by: f64,
+) -> Vec<f64> {
+    let columns = 2 * machine.curves(PartKind::Motion).len();
+    let w = machine.loads.iter().enumerate().map(|(k, load)| {
+        let place = machine.place(k);
         match load.effect.is_conservative() {
-            true => 2.0 * motion.curve_scales[next(&mut curve)][1],
-            false => motion.column_scales[next(&mut column) - 1],
+            true => by * motion[2 * place + 1],
+            false => motion[columns + place],
         }
     });
-    let inertia = motion.curve_scales[0];
-    let rest = reactions.column_scales.iter();
-    let rest = rest.chain(&positions.column_scales).copied();
-    inertia.into_iter().chain(load_scales).chain(rest).collect()
-}
-
-/// The exact values of a row.
-fn exact_values<S: FunctionSampler>(
-    machine: &MachineDescription,
-    q: f64,
-    sampler: &mut S,
-) -> Result<Vec<f64>, S::Error> {
-    let mut values = Vec::new();
-    for kind in PartKind::ALL {
-        let mut curves = vec![[0.0; 2]; machine.curves(kind).len()];
-        let mut columns = vec![0.0; machine.columns(kind).len()];
-        sampler.sample(kind, q, &mut curves, &mut columns)?;
-        if kind == PartKind::Motion {
-            values.extend(curves[0]);
-            let (mut curves, mut columns) = (curves[1..].iter(), columns.iter());
-            values.extend(machine.loads.iter().map(|load| {
-                let w = match load.effect.is_conservative() {
-                    true => curves.next().map(|[_, half_slope]| -2.0 * half_slope),
-                    false => columns.next().copied(),
-                };
-                w.unwrap_or(f64::NAN)
-            }));
-        } else {
-            values.extend(columns);
-        }
-    }
-    Ok(values)
+    let rest = reactions.iter().chain(positions).copied();
+    motion[..2].iter().copied().chain(w).chain(rest).collect()
 }
 
 /// The exported values of a row.
@@ -265,14 +213,10 @@ fn by_kind(machine: &MachineDescription, relative: &[f64]) -> Errors {
 }
 
 /// Counts of operations: the same at every coordinate but for the subtraction of periods.
-fn operations(
-    machine: &MachineDescription,
-    measurable: &Measurable<'_>,
-    precision: Precision,
-) -> [u64; 3] {
-    let counting = measurable.evaluator::<Counted>(machine, precision);
+fn operations(export: &Export) -> [u64; 3] {
+    let counting = export.evaluator::<Counted>();
     // Below a periodic domain the period is added.
-    let domain = machine.domain;
+    let domain = export.machine.domain;
     let below = match domain.revolutions {
         0 => domain.from,
         _ => -0.25 * domain.length(),
@@ -286,22 +230,18 @@ fn operations(
 }
 
 /// The error of the step from the initial state, and the motion of the self-test.
-fn measure_steps(
-    machine: &MachineDescription,
-    measurable: &Measurable<'_>,
-    precision: Precision,
-) -> (Option<[f64; 2]>, SelfTestMotion) {
+fn measure_steps(export: &Export) -> (Option<[f64; 2]>, SelfTestMotion) {
+    let machine = &export.machine;
     let [q, q_dot] = machine.initial;
     // Some scenes have no initial state, or rest: a motion of one unit a second shows the step's error.
     let moves = machine.loads.iter().any(|l| match l.effect {
         LoadEffect::Conservative { .. } | LoadEffect::Constant { .. } => true,
         LoadEffect::Damper { .. } | LoadEffect::VariableDamper { .. } => false,
-        LoadEffect::Input { initial } => initial != 0.0,
-        LoadEffect::Motor(motor) => motor.initial_voltage != 0.0,
+        LoadEffect::Input { .. } | LoadEffect::Motor(_) => l.effect.scene_value() != 0.0,
     });
     let from = [q, if q_dot == 0.0 && !moves { 1.0 } else { q_dot }];
     // In double precision: the rounding of floats is stated with the functions.
-    let exact = measurable.evaluator::<f64>(machine, precision);
+    let exact = export.evaluator::<f64>();
     let run = |steps: usize, refinement: usize| {
         let mut state = exact.state(from);
         for _ in 0..steps * refinement {
@@ -316,17 +256,16 @@ fn measure_steps(
     let step_error = run(STATED_STEPS, 1).zip(run(STATED_STEPS, REFINEMENT));
     let step_error = step_error.map(|(one, many)| [0, 1].map(|k| (one[k] - many[k]).abs()));
     let steps = 100;
-    let rounding = match precision {
+    let rounding = match export.request.precision {
         Precision::Double => 1e-12,
         Precision::Float => 2e-5,
     };
-    let end = run(steps, 1)
-        .zip(run(steps, REFINEMENT))
-        .map(|(one, many)| {
-            let tolerance =
-                |k: usize| 2.0 * (one[k] - many[k]).abs() + rounding * many[k].abs().max(1.0);
-            [many, [tolerance(0), tolerance(1)]]
-        });
+    let end = run(steps, 1).zip(run(steps, REFINEMENT));
+    let end = end.map(|(one, many)| {
+        let tolerance =
+            |k: usize| 2.0 * (one[k] - many[k]).abs() + rounding * many[k].abs().max(1.0);
+        [many, [0, 1].map(tolerance)]
+    });
     let motion = SelfTestMotion {
         step: STATED_STEP,
         steps,
