@@ -14,7 +14,7 @@ use crate::reduce::compute::{
 use crate::trajectory::compute::{SweepLimits, one_revolution, shown_range};
 use dwell_geometry::space::{ActuatorKind, Placement, Plan};
 use dwell_geometry::{PositionError, Range};
-use dwell_kinetostatics::space::{LoadKind, Model, Reaction};
+use dwell_kinetostatics::space::{Component, LoadKind, Model, Reaction};
 use dwell_kinetostatics::{
     Coefficients, ExactModel, KinetostaticsError, MachineModel as _, Magnitude, ReducedModel as _,
     TableDomain, TableError, TabulatedModel, reduction_rounding_errors,

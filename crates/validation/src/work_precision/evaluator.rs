@@ -4,8 +4,8 @@ use super::combination::Evaluation;
 use super::studied_scene::StudiedScene;
 use super::subject::Subject;
 use dwell_dynamics::{
-    DynamicsError, Machine, MachineOde, MachineWorkspace, MovingModel, OdeState, OdeSystem, Orbit,
-    ReducedOde, ReducedOutputs, ReducedState, TabulatedMachine,
+    DynamicsError, EvaluatedIn, Machine, MachineOde, MachineWorkspace, MovingModel, OdeState,
+    OdeSystem, Orbit, ReducedOde, ReducedOutputs, ReducedState, TabulatedMachine,
 };
 use dwell_geometry::{PositionError, Range};
 use dwell_kinetostatics::{Coefficients, ExactModel, Inertia, ReducedModel, ReducibleModel};
@@ -268,7 +268,9 @@ impl<S: StudiedScene> Evaluator for MachineEvaluator<'_, S> {
 }
 
 /// The reactions of a machine, evaluated in a precision.
-fn reactions_in<T: Scalar, M: MovingModel>(machine: &Machine<M>) -> ReactionFn<'_> {
+fn reactions_in<T: Scalar, M: MovingModel + EvaluatedIn<T>>(
+    machine: &Machine<M>,
+) -> ReactionFn<'_> {
     let mut workspace = machine.workspace::<T>();
     Box::new(move |point, out| {
         let y: Vec<T> = point.y.iter().map(|&v| T::from_f64(v)).collect();

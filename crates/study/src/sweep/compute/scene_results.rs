@@ -8,7 +8,7 @@ use crate::sweep::compute::motions::{
 use crate::sweep::compute::point::{ResultKind, Results};
 use crate::sweep::compute::{RequestedQuantities, SweptScene};
 use dwell_dynamics::{DynamicsError, Orbit, ReducedState};
-use dwell_kinetostatics::MachineModel as _;
+use dwell_kinetostatics::ReducibleModel as _;
 
 /// Every quantity that the sections of a scene allow.
 ///
