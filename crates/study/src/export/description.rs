@@ -302,15 +302,16 @@ pub(super) fn left_out(scene: &Scene, model: &Model) -> Vec<String> {
     let known = model.reactions();
     let requested = scene.requests.reactions.iter();
     let missing = requested.filter(|r| !known.contains(r));
-    let missing = missing.map(|&r| scene.mechanism.reaction_name(r)).collect();
+    let missing = missing.map(|&r| scene.mechanism.reaction_name(r));
     missing_parts(missing, scene.motion.as_ref())
 }
 
 /// The same of reactions, and of the events of a motion.
 pub(crate) fn missing_parts<C, R>(
-    reactions: Vec<String>,
+    reactions: impl Iterator<Item = String>,
     motion: Option<&FreeMotionSpec<C, R>>,
 ) -> Vec<String> {
+    let reactions: Vec<String> = reactions.collect();
     let mut all = Vec::new();
     if !reactions.is_empty() {
         all.push(format!(

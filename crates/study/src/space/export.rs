@@ -116,9 +116,7 @@ fn describe(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> MachineDescrip
         &mut left_out,
     );
     let open = prepared.indeterminate.iter();
-    let open = open
-        .map(|&reaction| scene.reaction_name(reaction))
-        .collect();
+    let open = open.map(|&reaction| scene.reaction_name(reaction));
     left_out.extend(missing_parts(open, scene.motion.as_ref()));
     // A position that cannot be reached is reported when it is sampled.
     let found = prepared.coefficients(&parts_of(domain)).unwrap_or_default();

@@ -55,7 +55,7 @@ impl SpaceMotionProblem<'_> {
         let mut workspace = self.machine.workspace();
         let samples = match &run.motion.parts[..] {
             [(_, solution)] if !self.machine.has_contacts() => {
-                self.samples_from_start((run, solution), wanted.collect(), &mut workspace)?
+                self.samples_from_start((run, solution), wanted, &mut workspace)?
             }
             _ => self.samples_within_steps(run, wanted)?,
         };
@@ -68,17 +68,17 @@ impl SpaceMotionProblem<'_> {
     fn samples_from_start(
         &self,
         (run, solution): (&Run, &Solution),
-        wanted: Vec<f64>,
+        wanted: impl Iterator<Item = f64>,
         workspace: &mut MachineWorkspace<f64, Model>,
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let end = run.motion.end();
-        let mut states = Vec::with_capacity(wanted.len());
+        let mut states = Vec::new();
         let mut state = self.initial_state();
         let options = Options {
             sample_interval: None,
             ..run.options
         };
-        for &t in &wanted {
+        for t in wanted {
             if let Some((orbit, _)) = &run.orbit {
                 states.push(OdeState::from(orbit.state_at(t)));
                 continue;
