@@ -83,10 +83,9 @@ fn solve_motion(
     let motion_segments = free.solve(duration, &options)?;
     let run = collect_steps(scene, &free, &motion_segments);
     let mut run = run.map_err(|e| free.explain(&e))?;
-    let occurrences = motion_segments.occurrences();
-    run.events = occurrences
-        .map(|(_, o)| (o.event, o.state.clone()))
-        .collect();
+    let events = motion_segments.occurrences();
+    let events = events.map(|(_, o)| (o.event, o.state.clone()));
+    run.events = events.collect();
     let failure = motion_segments.failure.as_ref();
     run.stop_reason = failure.map(|e| free.explain(e).to_string());
     Ok(Some(run))

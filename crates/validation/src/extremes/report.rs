@@ -134,10 +134,8 @@ fn digits_chart(result: &SeriesResult) -> Chart {
         // A line each where they differ, else one for all.
         let digits = |c: &ResultCell| Some(c.requirement.min_digits.min(MAX_DIGITS));
         let required = points(result, k, digits);
-        match required_lines
-            .iter_mut()
-            .find(|(line, _)| *line == required)
-        {
+        let mut known = required_lines.iter_mut();
+        match known.find(|(line, _)| *line == required) {
             Some((_, paint)) => *paint = Paint::Grey,
             None => required_lines.push((required, paint)),
         }
@@ -153,13 +151,9 @@ fn digits_chart(result: &SeriesResult) -> Chart {
         let marked = Series::line("typed error", typed_errors).stroke(Stroke::Points);
         series.push(marked.color(Paint::Ink));
     }
+    let x = parameter_axis(result);
     let y = Axis::new("digits kept", "").with_range(0.0, MAX_DIGITS);
-    chart(
-        &parameter_series.description,
-        parameter_axis(result),
-        y,
-        series,
-    )
+    chart(&parameter_series.description, x, y, series)
 }
 
 fn ratio_chart(result: &SeriesResult) -> Chart {
