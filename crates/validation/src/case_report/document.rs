@@ -38,12 +38,8 @@ pub(super) fn document(
         blocks.push(Block::Text(calibration_sentence(calibration)));
     }
     blocks.extend(dwell.map(|d| Block::Text(dwell_sentence(scene, d))));
-    blocks.extend(
-        family
-            .map(|f| family_page::blocks(scene, f))
-            .into_iter()
-            .flatten(),
-    );
+    let of_family = family.map(|f| family_page::blocks(scene, f));
+    blocks.extend(of_family.unwrap_or_default());
     blocks.extend(dimensions::blocks(scene));
     blocks.push(Block::Heading("Findings".to_owned()));
     blocks.push(Block::Findings(analysis.findings.clone()));

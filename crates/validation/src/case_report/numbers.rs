@@ -101,12 +101,8 @@ pub(super) fn numbers(
 pub(super) fn tables(reduced: &ReducedAnalysis<'_>) -> Vec<(&'static str, Table)> {
     let prepared = &reduced.prepared;
     let mut tables = vec![("reduced", reduced.curves.table(prepared))];
-    tables.extend(
-        reduced
-            .history
-            .iter()
-            .map(|h| ("motion", h.table(prepared))),
-    );
+    let history = reduced.history.as_ref();
+    tables.extend(history.map(|h| ("motion", h.table(prepared))));
     if let Some(motion) = &reduced.motion {
         let table = |method| tolerance_runs_table(motion, method);
         tables.push(("work-precision-bdf", table(Method::Bdf)));

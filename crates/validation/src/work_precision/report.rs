@@ -6,7 +6,7 @@ use super::combination::{
 };
 use super::command_times::CommandTime;
 use super::exported_code::ExportedCode;
-use crate::report_parts::{TextColumn, table as table_rows, table_of};
+use crate::report_parts::{self, TextColumn, table_of};
 use dwell_dynamics::Method;
 use dwell_findings::Record;
 use dwell_report::{Block, Column, Document, Table, TableExport as _};
@@ -140,7 +140,7 @@ fn front_table(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeas
         "worst reaction",
     ];
     let front = found.pareto_front(quantity, measure).into_iter();
-    table_rows(&header, front.map(|k| cells(found, &found.points[k])))
+    report_parts::table(&header, front.map(|k| cells(found, &found.points[k])))
 }
 
 /// The cheapest combination with its cost.
@@ -169,7 +169,7 @@ pub(super) fn document(scene: &SceneFile, found: &WorkPrecision, file: &str) -> 
             caption: String::new(),
         },
         Block::Heading("The cheapest for an accuracy".to_owned()),
-        table_rows(
+        report_parts::table(
             &[
                 "error of",
                 "at most",

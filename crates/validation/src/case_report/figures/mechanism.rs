@@ -80,11 +80,8 @@ fn faded_positions(
 ) -> Vec<Shape> {
     let mut shapes = Vec::new();
     let mut lines = paths(prepared.scene, poses);
-    lines.extend(
-        dwell
-            .into_iter()
-            .flat_map(|dwell| dwell_paths(prepared.scene, poses, dwell)),
-    );
+    let in_dwell = dwell.map(|dwell| dwell_paths(prepared.scene, poses, dwell));
+    lines.extend(in_dwell.unwrap_or_default());
     let drawing = MechanismDrawing::new(prepared.scene, &poses.body_poses).with_paths(lines);
     let start = prepared.model.model().plan().assembly_coordinates()[0];
     let last = poses.q.len() - 1;
