@@ -144,14 +144,25 @@ impl Motor {
 impl LoadEffect {
     /// Whether it has a potential.
     pub fn is_conservative(&self) -> bool {
-        matches!(self, Self::Conservative { .. })
+        match self {
+            Self::Conservative { .. } => true,
+            Self::Constant { .. }
+            | Self::Damper { .. }
+            | Self::VariableDamper { .. }
+            | Self::Input { .. }
+            | Self::Motor(_) => false,
+        }
     }
 
     /// The motor, if it is one.
     pub fn motor(&self) -> Option<&Motor> {
         match self {
             Self::Motor(motor) => Some(motor),
-            _ => None,
+            Self::Conservative { .. }
+            | Self::Constant { .. }
+            | Self::Damper { .. }
+            | Self::VariableDamper { .. }
+            | Self::Input { .. } => None,
         }
     }
 

@@ -292,7 +292,15 @@ impl DrawnParts<'_> {
             let (look, joined) = match load.kind {
                 LoadKind::Spring { bodies, points, .. } => (LinkLook::Spring, (bodies, points)),
                 LoadKind::Damper { bodies, points } => (LinkLook::Damper, (bodies, points)),
-                _ => continue,
+                LoadKind::Gravity { .. }
+                | LoadKind::Force { .. }
+                | LoadKind::Torque { .. }
+                | LoadKind::TorsionSpring { .. }
+                | LoadKind::RotationalDamper { .. }
+                | LoadKind::PointToPointForce { .. }
+                | LoadKind::SlideForce(_)
+                | LoadKind::SlideDamper(_)
+                | LoadKind::SeparatingForce(_) => continue,
             };
             self.link(look, joined, [None; 2], load.name.clone());
         }

@@ -170,7 +170,11 @@ pub(crate) fn axis_of(kind: JointKind) -> Option<Vec2> {
         JointKind::Slot { axis }
         | JointKind::Rack { axis, .. }
         | JointKind::Rolling { axis, .. } => Some(axis),
-        _ => None,
+        JointKind::Revolute
+        | JointKind::Weld { .. }
+        | JointKind::Gear { .. }
+        | JointKind::Distance { .. }
+        | JointKind::Coupling(_) => None,
     }
 }
 

@@ -73,12 +73,19 @@ pub(crate) fn is_cylinder(scene: &Scene, joint: usize) -> bool {
 fn slide_axis(scene: &Scene, body: usize) -> Option<Vec2> {
     let joints = scene.mechanism.joints.iter().enumerate();
     let mut joints = joints.filter(|(j, _)| !is_cylinder(scene, *j));
-    joints.find_map(|(_, joint)| {
-        let JointKind::Prismatic { axes } = joint.kind else {
-            return None;
-        };
-        let end = joint.bodies.iter().position(|b| *b == BodyId(body))?;
-        Some(axes[end])
+    joints.find_map(|(_, joint)| match joint.kind {
+        JointKind::Prismatic { axes } => {
+            let end = joint.bodies.iter().position(|b| *b == BodyId(body))?;
+            Some(axes[end])
+        }
+        JointKind::Revolute
+        | JointKind::Slot { .. }
+        | JointKind::Weld { .. }
+        | JointKind::Gear { .. }
+        | JointKind::Rack { .. }
+        | JointKind::Rolling { .. }
+        | JointKind::Distance { .. }
+        | JointKind::Coupling(_) => None,
     })
 }
 

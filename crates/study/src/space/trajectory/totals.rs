@@ -111,7 +111,16 @@ impl Totals {
         let loads = scene.loads.iter().zip(&self.magnitudes);
         loads.fold(Vec3::ZERO, |sum, (load, &magnitude)| match load.kind {
             LoadKind::Gravity(direction) => sum + direction.scaled(magnitude),
-            _ => sum,
+            LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::Spring { .. }
+            | LoadKind::Damper { .. }
+            | LoadKind::JointTorque(_)
+            | LoadKind::TorsionSpring { .. }
+            | LoadKind::RotationalDamper(_)
+            | LoadKind::SlideForce(_)
+            | LoadKind::SlideDamper(_) => sum,
         })
     }
 }

@@ -10,7 +10,15 @@ pub(super) fn link_of(load: &LoadKind) -> Option<(LinkLook, [(BodyId, Vec3); 2])
     let (look, bodies, points) = match *load {
         LoadKind::Spring { bodies, points, .. } => (LinkLook::Spring, bodies, points),
         LoadKind::Damper { bodies, points } => (LinkLook::Damper, bodies, points),
-        _ => return None,
+        LoadKind::Gravity(_)
+        | LoadKind::Force { .. }
+        | LoadKind::Torque { .. }
+        | LoadKind::PointToPointForce { .. }
+        | LoadKind::JointTorque(_)
+        | LoadKind::TorsionSpring { .. }
+        | LoadKind::RotationalDamper(_)
+        | LoadKind::SlideForce(_)
+        | LoadKind::SlideDamper(_) => return None,
     };
     Some((look, [0, 1].map(|k| (bodies[k], points[k]))))
 }

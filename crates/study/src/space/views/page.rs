@@ -186,10 +186,16 @@ impl SpaceParts<'_> {
 
     /// The rod on which a joint slides: of the body with the guide, or of the moving body through a sleeve of the ground.
     fn guide(&mut self, j: usize, joint: &Joint) {
-        let slides = matches!(
-            joint.kind,
-            JointKind::Prismatic | JointKind::Cylindrical | JointKind::Helical { .. }
-        );
+        let slides = match joint.kind {
+            JointKind::Prismatic | JointKind::Cylindrical | JointKind::Helical { .. } => true,
+            JointKind::Weld
+            | JointKind::Revolute
+            | JointKind::Universal
+            | JointKind::Spherical
+            | JointKind::Planar
+            | JointKind::Distance { .. }
+            | JointKind::Gear { .. } => false,
+        };
         let [low, high] = self.drawing.travels[j];
         if !slides || low > high {
             return;
@@ -227,7 +233,13 @@ impl SpaceParts<'_> {
             JointKind::Cylindrical | JointKind::Helical { .. } => {
                 1 - self.drawing.guide_side(joint)
             }
-            _ => 1,
+            JointKind::Revolute
+            | JointKind::Spherical
+            | JointKind::Universal
+            | JointKind::Planar
+            | JointKind::Weld
+            | JointKind::Gear { .. }
+            | JointKind::Distance { .. } => 1,
         };
         let mark = self.mark(j, joint, (look, k), joint.name.clone());
         self.parts.push(Part::Mark(mark));
@@ -243,7 +255,15 @@ impl SpaceParts<'_> {
             // Of a rod each end has its own ball.
             on_ground: match joint.kind {
                 JointKind::Distance { .. } => self.drawing.is_ground(joint.bodies[k]),
-                _ => self.is_grounded(joint),
+                JointKind::Weld
+                | JointKind::Revolute
+                | JointKind::Prismatic
+                | JointKind::Cylindrical
+                | JointKind::Helical { .. }
+                | JointKind::Universal
+                | JointKind::Spherical
+                | JointKind::Planar
+                | JointKind::Gear { .. } => self.is_grounded(joint),
             },
             label,
             title: format!("{} (joint of {one} and {two})", joint.name),
