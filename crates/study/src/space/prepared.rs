@@ -11,7 +11,7 @@ use crate::ranges::equally_spaced;
 use crate::reduce::compute::{
     InertiaAt, ReducedLoad, ReducedScene, TabulatedScene, UnitLoadCurves,
 };
-use crate::trajectory::compute::{SweepLimits, one_revolution, shown_range};
+use crate::trajectory::compute::{SweepLimits, one_revolution, range_to_draw};
 use dwell_geometry::space::{ActuatorKind, Placement, Plan};
 use dwell_geometry::{PositionError, Range};
 use dwell_kinetostatics::space::{Component, LoadKind, Model, Reaction};
@@ -347,7 +347,7 @@ pub(super) fn range_limits(scene: &SpaceScene, plan: &Plan) -> SweepLimits {
     let (start, is_angle) = (scene.assembly.q[0], is_angle(scene));
     let half_stroke = DEFAULT_STROKE * plan.size();
     match range_between_change_points(plan, start) {
-        Range::Limited(from, to) | Range::Stroke(from, to) => shown_range([from, to], [true; 2]),
+        Range::Limited(from, to) | Range::Stroke(from, to) => range_to_draw([from, to], [true; 2]),
         Range::Full => one_revolution(0.0),
         Range::Revolutions(count) => ([0.0, TAU * f64::from(count)], [false; 2], "the period"),
         Range::Unresolved(from, to) => {
@@ -357,7 +357,7 @@ pub(super) fn range_limits(scene: &SpaceScene, plan: &Plan) -> SweepLimits {
             let [nearest, farthest] = [from.max(start - half), to.min(start + half)];
             let low = if found[0] { from } else { nearest };
             let high = if found[1] { to } else { farthest };
-            shown_range([low, high], found)
+            range_to_draw([low, high], found)
         }
         Range::Unbounded if is_angle => one_revolution(start),
         Range::Unbounded => {

@@ -26,7 +26,7 @@ const BRANCH_STEP: f64 = 0.1;
 /// [`DenseError`] where a pose on the way has no closed one beside it.
 pub(super) fn continued(case: &SpaceCase<'_>, q: &[f64]) -> Result<Vec<Placement>> {
     let mut at = case.start.1.to_vec();
-    for (_, coordinates) in case.way_to(q, BRANCH_STEP) {
+    for (_, coordinates) in case.positions_towards(q, BRANCH_STEP) {
         let wanted = (&coordinates[..], Some(&at[..]));
         let pose = DensePose::nearest(case.mechanism, &at, wanted, case.size)?;
         at = pose.placements.into_owned();

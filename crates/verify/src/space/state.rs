@@ -85,7 +85,11 @@ impl SpaceCase<'_> {
 
     /// The coordinates on a straight line from those at the assembly to others, in steps no longer than `longest`, rad or parts of the
     /// size; with the part of the way.
-    pub(super) fn way_to(&self, q: &[f64], longest: f64) -> impl Iterator<Item = (f64, Vec<f64>)> {
+    pub(super) fn positions_towards(
+        &self,
+        q: &[f64],
+        longest: f64,
+    ) -> impl Iterator<Item = (f64, Vec<f64>)> {
         let both = move || self.start.0.iter().zip(q);
         let distances = both().enumerate();
         let distances = distances.map(|(k, (from, to))| (to - from).abs() / self.unit(k));
@@ -355,7 +359,7 @@ impl SpaceChecker<'_> {
             return Ok(errors);
         }
         let mut before = self.case.start.1.to_vec();
-        for (part, q) in self.case.way_to(&state.q, MESH_STEP) {
+        for (part, q) in self.case.positions_towards(&state.q, MESH_STEP) {
             // The last is the state itself, which may have been claimed otherwise.
             let after = match part < 1.0 {
                 true => self.subject.placements(&q)?,

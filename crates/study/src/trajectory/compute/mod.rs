@@ -58,7 +58,7 @@ pub(crate) use selection::{
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::{
     BALANCE, FreeTrajectory, KINETIC, POTENTIAL, Spacing, SweepLimits, TrajectorySample,
-    default_limits, one_revolution, shown_range,
+    default_limits, one_revolution, range_to_draw,
 };
 pub(crate) use unit_references::UnitReferences;
 pub(crate) use unit_scales::{UnitScales, force_scales};

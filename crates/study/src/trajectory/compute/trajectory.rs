@@ -402,7 +402,7 @@ pub(crate) fn one_revolution(start: f64) -> SweepLimits {
 }
 
 /// The range between two ends, without a margin at those that are limit positions.
-pub(crate) fn shown_range([low, high]: [f64; 2], is_limit: [bool; 2]) -> SweepLimits {
+pub(crate) fn range_to_draw([low, high]: [f64; 2], is_limit: [bool; 2]) -> SweepLimits {
     let margin = LIMIT_MARGIN * (high - low);
     let [below, above] = is_limit.map(|is_limit| if is_limit { margin } else { 0.0 });
     ([low + below, high - above], is_limit, "the range")
@@ -418,14 +418,14 @@ pub(crate) fn default_limits(scene: &Scene, plan: &Plan) -> SweepLimits {
             let end = start + TAU * f64::from(revolutions);
             ([start, end], [false; 2], "the period")
         }
-        Range::Limited(from, to) => shown_range([from, to], [true; 2]),
+        Range::Limited(from, to) => range_to_draw([from, to], [true; 2]),
         Range::Stroke(from, to) => {
             // A limit that was not found is only where the search stopped.
             let found = plan.range_limits().map(|end| end.is_some());
             let half_stroke = if plan.is_angle(0) { TAU } else { half_stroke };
             let low = if found[0] { from } else { start - half_stroke };
             let high = if found[1] { to } else { start + half_stroke };
-            shown_range([low, high], found)
+            range_to_draw([low, high], found)
         }
         Range::Unbounded | Range::Unresolved(..) if plan.is_angle(0) => one_revolution(start),
         Range::Unbounded | Range::Unresolved(..) => (
