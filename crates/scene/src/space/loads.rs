@@ -41,7 +41,7 @@ impl LoadReader<'_> {
         let (kind, entry) = kind_among(fields, "load", &kinds("loads-in-space"))?;
         if kind == "gravity" {
             fields.place(kind, SceneLocation::Magnitude(k));
-            let gravity = numbers(entry.value, &fields.name_of(entry))?;
+            let gravity = numbers(entry.value, fields.name_of(entry))?;
             // Without gravity there is no direction, and no weight either.
             let along = gravity.unit().unwrap_or(Vec3::ZERO);
             let magnitude = Magnitude::Constant(gravity.norm());

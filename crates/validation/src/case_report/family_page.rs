@@ -12,12 +12,15 @@ const LARGEST_AT: &str = "where it is largest";
 /// What varies by less than this factor over the family is called decided by the source.
 const DECIDED: f64 = 1.1;
 
+/// A number of a member.
+type Of = fn(&Member) -> f64;
+
 /// A quantity that the source shows or could show.
 struct Observable<'a> {
     name: String,
     unit: &'a str,
     /// Its value in a member.
-    of: fn(&Member) -> f64,
+    of: Of,
     /// An angle, whose ratio to another says nothing.
     is_position: bool,
 }
@@ -77,7 +80,7 @@ fn observables(scene: &Scene) -> Vec<Observable<'_>> {
     let of_fitted = format!("fitted `{fitted}`");
     let largest = format!("largest magnitude of {reaction}");
     let changes = format!("changes of sign of {reaction}");
-    let named: [(&str, &str, fn(&Member) -> f64); 13] = [
+    let named: [(&str, &str, Of); 13] = [
         ("period", "s", |m| last(m).t),
         ("mean velocity", "rad/s", |m| TAU / last(m).t),
         ("largest velocity", "rad/s", |m| fastest(m).q_dot),
@@ -139,7 +142,7 @@ fn signed_degrees(q: f64) -> f64 {
 
 /// The smallest value over the family with the reconstruction, those that a tenth and nine tenths do not exceed, and the
 /// largest.
-fn spread(family: &Family, of: fn(&Member) -> f64) -> [f64; 4] {
+fn spread(family: &Family, of: Of) -> [f64; 4] {
     let members = family.members.iter().chain([&family.reconstruction]);
     let mut values: Vec<f64> = members.map(of).collect();
     values.sort_by(f64::total_cmp);

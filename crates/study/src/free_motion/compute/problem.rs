@@ -215,6 +215,10 @@ impl<'a> FreeMotionProblem<'a> {
 impl MotionProblem for FreeMotionProblem<'_> {
     type Scene = Scene;
 
+    #[allow(
+        clippy::misnamed_getters,
+        reason = "what moves is the scene with the loads of its drives"
+    )]
     fn scene(&self) -> &Scene {
         self.loaded_scene
     }
