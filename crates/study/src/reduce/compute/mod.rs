@@ -7,9 +7,11 @@ mod reduced_scene;
 mod table;
 mod unit_load_curves;
 
+#[cfg(feature = "output")]
+pub(crate) use curves::coefficient_table;
 pub(crate) use curves::flat;
 pub use curves::{ReducedCurves, Reduction, RoundingErrors, compute_reduction};
-pub(crate) use curves::{coefficient_table, coefficient_units, inertia_units};
+pub(crate) use curves::{coefficient_units, inertia_units};
 pub(crate) use peak::{Peak, fast_turns, peak_between_rows};
 pub use reduced_scene::{InertiaAt, ReducedScene, TabulatedScene};
 pub use table::{TableRequest, Tabulation, tabulate};
