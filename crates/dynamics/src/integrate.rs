@@ -104,13 +104,14 @@ fn integrate_held(
 ) -> Result<Termination> {
     let (end, span) = (whole.end, whole.span());
     let mut contacts = ContactMonitor::new(system, span);
-    if system.switch_kinds().is_empty() && contacts.is_none() {
+    if system.switch_kinds().is_empty() && contacts.is_none() && !system.may_hide() {
         return integrate_smooth(system, whole, pieces, observer);
     }
     if let Some(contacts) = &mut contacts {
         contacts.settle(system, &mut whole.start)?;
     }
     let mut monitor = SwitchMonitor::new(system, &whole.start, span)?;
+    let longest = whole.options.max_step;
     let shared = SharedSystem::new(system);
     let mut parts = Parts::new(whole);
     // The last step that an event has not cut short.
@@ -121,6 +122,8 @@ fn integrate_held(
         let [mut integrated, mut watched_system] =
             [(); 2].map(|()| SlidingSystem::new(&shared, sliding.cloned()));
         parts.next.first_step = step.get();
+        let fine = monitor.max_step().into_iter().chain(longest);
+        parts.next.options.max_step = fine.reduce(f64::min);
         let mut watched = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
             let mut taken = Step { before, now, dense };
             step.set(Some(taken.duration()));
@@ -165,7 +168,8 @@ fn integrate_held(
             (Err(error), None) => return Err(error),
         }
         let t = parts.next.start.t;
-        let rounding = 8.0 * f64::EPSILON * t.abs();
+        // No method begins anew so near to the end.
+        let rounding = 256.0 * f64::EPSILON * t.abs();
         if end.is_some_and(|end| t >= end - rounding) {
             break;
         }

@@ -7,7 +7,7 @@ use crate::interruption;
 use crate::machine::{Machine, MachineState, MachineWorkspace, MovingModel};
 use crate::ode::{DualWorkspace, OdeState, OdeSystem};
 use crate::sliding::Sliding;
-use crate::state_switches::{HeldSource, signal_value};
+use crate::state_switches::{HeldSource, Hidden, signal_value};
 use dwell_kinetostatics::Model;
 use dwell_laws::{Features, SwitchKind};
 use dwell_numerics::Dual;
@@ -21,6 +21,8 @@ pub struct MachineOde<'m, M: MovingModel = Model> {
     dual_workspace: DualWorkspace<MachineWorkspace<Dual, M>>,
     error_weights: Vec<f64>,
     held: Vec<HeldSource>,
+    /// The variables of the loads that switch, where they were looked at last.
+    seen: Vec<f64>,
     contact_events: Vec<ContactEvent>,
 }
 
@@ -58,6 +60,7 @@ impl<'m, M: MovingModel> MachineOde<'m, M> {
             dual_workspace: DualWorkspace::new(machine.workspace(), machine.state_count()),
             error_weights: vec![1.0; machine.state_count()],
             held: Vec::new(),
+            seen: Vec::new(),
             contact_events: Vec::new(),
         }
     }
@@ -134,6 +137,23 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
         self.machine.state_switches.source_index(switch)
     }
 
+    fn may_hide(&self) -> bool {
+        self.machine.state_switches.may_hide()
+    }
+
+    fn read_signals(&self, out: &mut Vec<f64>) {
+        out.clone_from(&self.seen);
+    }
+
+    fn hidden_in(&self, samples: &[Vec<f64>; 5], pieces: &[Option<f64>]) -> Option<Hidden> {
+        let switches = &self.machine.state_switches;
+        switches.hidden_in(&self.held, samples, pieces)
+    }
+
+    fn switch_depends(&self, switch: usize, on: usize) -> bool {
+        self.machine.state_switches.depends(switch, on)
+    }
+
     fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         let machine = self.machine;
         let state = machine.evaluate(t, y, &mut self.workspace)?;
@@ -143,7 +163,7 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
             machine.source_state(load, &state, y)
         };
         let switches = &machine.state_switches;
-        switches.values(&self.held, source_state, out);
+        switches.values((&self.held, &mut self.seen), source_state, out);
         Ok(())
     }
 

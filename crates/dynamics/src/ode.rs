@@ -4,6 +4,7 @@ use crate::contact::ContactStep;
 use crate::error::{DynamicsError, Result};
 use crate::options::Statistics;
 use crate::sliding::Sliding;
+use crate::state_switches::Hidden;
 use dwell_laws::{Features, SwitchKind};
 use dwell_numerics::{Dual, Scalar};
 use std::sync::Arc;
@@ -78,6 +79,24 @@ pub trait OdeSystem {
     /// The index of the load (those of the drives last) to which one of these functions belongs.
     fn switch_source(&self, _switch: usize) -> usize {
         0
+    }
+
+    /// Whether loads may vary, or their conditions change, between the points of a step at which they are seen.
+    fn may_hide(&self) -> bool {
+        false
+    }
+
+    /// The variables of the loads where [`OdeSystem::switch_values`] were evaluated last.
+    fn read_signals(&self, _out: &mut Vec<f64>) {}
+
+    /// What loads do first between five equally spaced points of a step, with these variables, on these pieces.
+    fn hidden_in(&self, _samples: &[Vec<f64>; 5], _pieces: &[Option<f64>]) -> Option<Hidden> {
+        None
+    }
+
+    /// Whether the value of one of these functions depends on the piece of another one, which comes before it.
+    fn switch_depends(&self, _switch: usize, _on: usize) -> bool {
+        false
     }
 
     /// The values of these functions, on the pieces that are held.

@@ -13,6 +13,13 @@ pub struct Sliding {
     pub(crate) decay: f64,
 }
 
+impl Sliding {
+    /// Whether the side of the motion decides the piece of a switch.
+    pub(crate) fn decides(&self, switch: usize) -> bool {
+        self.sides[0][switch] != self.sides[1][switch]
+    }
+}
+
 /// The value and the rate of a switching function on both sides of its switch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SideRates {

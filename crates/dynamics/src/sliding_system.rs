@@ -11,6 +11,7 @@ use crate::contact::ContactStep;
 use crate::error::{DynamicsError, Result};
 use crate::ode::{OdeState, OdeSystem};
 use crate::sliding::{SideRates, Sliding};
+use crate::state_switches::Hidden;
 use dwell_laws::SwitchKind;
 use std::cell::{Cell, RefCell, RefMut};
 
@@ -174,6 +175,22 @@ impl OdeSystem for SlidingSystem<'_, '_> {
 
     fn switch_source(&self, switch: usize) -> usize {
         self.shared.inner().switch_source(switch)
+    }
+
+    fn may_hide(&self) -> bool {
+        self.shared.inner().may_hide()
+    }
+
+    fn read_signals(&self, out: &mut Vec<f64>) {
+        self.shared.inner().read_signals(out);
+    }
+
+    fn hidden_in(&self, samples: &[Vec<f64>; 5], pieces: &[Option<f64>]) -> Option<Hidden> {
+        self.shared.inner().hidden_in(samples, pieces)
+    }
+
+    fn switch_depends(&self, switch: usize, on: usize) -> bool {
+        self.shared.inner().switch_depends(switch, on)
     }
 
     fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {

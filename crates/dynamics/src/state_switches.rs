@@ -5,7 +5,7 @@
 
 use crate::drive::{CompiledDrive, HeldDrive};
 use dwell_kinetostatics::{MachineModel, Magnitude, Model, Signal};
-use dwell_laws::{HeldPieces, SwitchKind, Switches};
+use dwell_laws::{Course, HeldPieces, Pulse, SwitchKind, Switches};
 
 /// The switches of all loads and drives of a machine.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -22,6 +22,17 @@ struct SwitchSource {
     magnitude: Switches,
     /// Number of switching functions of its drive.
     drive_count: usize,
+    /// Number of its variables.
+    signals: usize,
+}
+
+/// What happens between the points of a step, at parts of its duration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Hidden {
+    /// A switch is passed: at least up to there and not long before.
+    Passage { switch: usize, at: f64 },
+    /// A load varies.
+    Pulse(Pulse),
 }
 
 /// The pieces on which a load or drive is held.
@@ -52,9 +63,10 @@ impl StateSwitches {
     ) -> Self {
         let mut all = Self::default();
         for (index, magnitude, drive) in sources {
+            let signals = magnitude.signals().len();
             let magnitude = magnitude.switches();
             let drive_kinds = drive.map_or_else(Vec::new, CompiledDrive::switch_kinds);
-            if magnitude.kinds().is_empty() && drive_kinds.is_empty() {
+            if magnitude.kinds().is_empty() && drive_kinds.is_empty() && !magnitude.may_hide() {
                 continue;
             }
             all.kinds.extend_from_slice(magnitude.kinds());
@@ -64,6 +76,7 @@ impl StateSwitches {
                 index,
                 magnitude,
                 drive_count,
+                signals,
             });
         }
         all
@@ -76,19 +89,79 @@ impl StateSwitches {
 
     /// The indices of the loads that switch.
     pub(crate) fn loads(&self) -> Vec<usize> {
-        self.sources.iter().map(|source| source.index).collect()
+        let switches =
+            |source: &&SwitchSource| !source.magnitude.kinds().is_empty() || source.drive_count > 0;
+        let all = self.sources.iter().filter(switches);
+        all.map(|source| source.index).collect()
     }
 
     /// The load's index of a function.
-    pub(crate) fn source_index(&self, mut function: usize) -> usize {
-        for source in &self.sources {
+    pub(crate) fn source_index(&self, function: usize) -> usize {
+        self.place(function).map_or(0, |(source, _)| source.index)
+    }
+
+    /// Whether a function's value depends on the piece of another one.
+    pub(crate) fn depends(&self, function: usize, on: usize) -> bool {
+        let (Some((source, k)), Some((other, j))) = (self.place(function), self.place(on)) else {
+            return false;
+        };
+        let own = source.magnitude.kinds().len();
+        // Those of a drive depend on its input.
+        source.index == other.index && j < own && (k >= own || source.magnitude.depends(k, j))
+    }
+
+    /// The load or drive of a function, and which of its functions it is.
+    fn place(&self, mut function: usize) -> Option<(&SwitchSource, usize)> {
+        self.sources.iter().find_map(|source| {
             let count = source.magnitude.kinds().len() + source.drive_count;
-            if function < count {
-                return source.index;
+            let is_here = function < count;
+            let place = is_here.then_some((source, function));
+            function = function.saturating_sub(count);
+            place
+        })
+    }
+
+    /// Whether a load may vary, or a condition change, between points at which they are seen.
+    pub(crate) fn may_hide(&self) -> bool {
+        self.sources
+            .iter()
+            .any(|source| source.magnitude.may_hide())
+    }
+
+    /// What loads do first between five equally spaced points, where their variables are `samples` ([`StateSwitches::values`]),
+    /// on these pieces.
+    pub(crate) fn hidden_in(
+        &self,
+        held: &[HeldSource],
+        samples: &[Vec<f64>; 5],
+        pieces: &[Option<f64>],
+    ) -> Option<Hidden> {
+        let all = Course::through(&samples.each_ref().map(Vec::as_slice));
+        let (mut first, mut function, mut variable) = (None, 0, 0);
+        let mut add = |at: f64, hidden: Hidden| {
+            if first.is_none_or(|(earlier, _)| at < earlier) {
+                first = Some((at, hidden));
             }
-            function -= count;
+        };
+        let free = HeldSource::default();
+        for (k, source) in self.sources.iter().enumerate() {
+            let (own, signals) = (source.magnitude.kinds().len(), source.signals);
+            let held = &held.get(k).unwrap_or(&free).magnitude;
+            if source.magnitude.may_hide() {
+                let course = all.of(variable..variable + signals);
+                let own = &pieces[function..function + own];
+                if let Some((k, at)) = source.magnitude.hidden_passage(&course, held, own) {
+                    let switch = function + k;
+                    add(at, Hidden::Passage { switch, at });
+                }
+                if let Some(pulse) = source.magnitude.hidden_pulse(&course, held) {
+                    add(pulse.at - pulse.width, Hidden::Pulse(pulse));
+                }
+            }
+            function += own + source.drive_count;
+            variable += signals;
         }
-        0
+        first.map(|(_, hidden)| hidden)
     }
 
     /// Holds one piece for each function, or none: `set` gets the load's index and its pieces.
@@ -110,18 +183,20 @@ impl StateSwitches {
     }
 
     /// The value of each function on the pieces that are held; `state_of` gives a load or drive by its index, with the
-    /// values of its signals.
+    /// values of its signals, which are all kept in `seen`.
     pub(crate) fn values<'a, M: MachineModel + 'a>(
         &self,
-        held: &[HeldSource],
+        (held, seen): (&[HeldSource], &mut Vec<f64>),
         mut state_of: impl FnMut(usize, &mut Vec<f64>) -> SourceState<'a, M>,
         mut out: &mut [f64],
     ) {
         let free = HeldSource::default();
         let mut signals = Vec::new();
+        seen.clear();
         for (k, source) in self.sources.iter().enumerate() {
             signals.clear();
             let state = state_of(source.index, &mut signals);
+            seen.extend_from_slice(&signals);
             let held = held.get(k).unwrap_or(&free);
             let (own, rest) = out.split_at_mut(source.magnitude.kinds().len());
             let (of_drive, rest) = rest.split_at_mut(source.drive_count);

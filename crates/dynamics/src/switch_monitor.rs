@@ -11,8 +11,11 @@ use crate::ode::{OdeState, OdeSystem, Step};
 use crate::sliding::Sliding;
 use crate::sliding_system::SlidingSystem;
 use dwell_laws::SwitchKind;
+use windows::Between;
 
+mod decisions;
 mod slide;
+mod windows;
 
 /// Step along the rates that shows on which side of a switch they lead, as a part of the step before: the next switch
 /// may be near.
@@ -34,11 +37,14 @@ pub(crate) struct SwitchMonitor {
     sliding: Option<Sliding>,
     /// The length of the motion, s.
     span: f64,
+    between: Option<Between>,
 }
 
 #[derive(Debug, Clone)]
 struct MonitoredSwitch {
     kind: SwitchKind,
+    /// The switches whose pieces its value depends on: its operands', which come before it.
+    inner: Vec<usize>,
     /// The piece that is held; none where it is not.
     piece: Option<f64>,
     /// Whether the piece has held since the integration began: at its start a switch may be within a rounding.
@@ -76,6 +82,11 @@ impl MonitoredSwitch {
         let [low, high] = self.kind.bounds(self.piece.unwrap_or_default());
         value - low > high - value
     }
+
+    /// Whether its value depends on the piece of one of these switches.
+    fn depends_on(&self, changed: &[bool]) -> bool {
+        self.inner.iter().any(|&j| changed[j])
+    }
 }
 
 impl SwitchMonitor {
@@ -84,8 +95,11 @@ impl SwitchMonitor {
     /// # Errors
     /// Where the start cannot be evaluated.
     pub(crate) fn new(system: &mut dyn OdeSystem, start: &OdeState, span: f64) -> Result<Self> {
-        let switches = system.switch_kinds().iter().map(|kind| MonitoredSwitch {
+        let kinds = system.switch_kinds().iter().enumerate();
+        let inner = |k: usize| (0..k).filter(|&j| system.switch_depends(k, j)).collect();
+        let switches = kinds.map(|(k, kind)| MonitoredSwitch {
             kind: kind.clone(),
+            inner: inner(k),
             piece: None,
             is_inside: false,
             switched: None,
@@ -101,6 +115,7 @@ impl SwitchMonitor {
             step: FIRST_STEP * span,
             sliding: None,
             span,
+            between: Between::of(system),
         };
         monitor.decide(system, start)?;
         Ok(monitor)
@@ -109,29 +124,6 @@ impl SwitchMonitor {
     /// Along which switch the motion slides.
     pub(crate) fn sliding(&self) -> Option<&Sliding> {
         self.sliding.as_ref()
-    }
-
-    /// Holds the pieces in which a state is.
-    fn decide(&mut self, system: &mut dyn OdeSystem, at: &OdeState) -> Result<()> {
-        self.sliding = None;
-        for switch in &mut self.switches {
-            (switch.piece, switch.is_inside) = (None, false);
-        }
-        self.hold(system);
-        system.switch_values(at.t, &at.y, &mut self.values)?;
-        for (switch, &value) in self.switches.iter_mut().zip(&self.values) {
-            switch.piece = switch.kind.piece_at(value);
-        }
-        let undecided = |k: &usize| self.switches[*k].piece.is_none() && !self.values[*k].is_nan();
-        let undecided: Vec<usize> = (0..self.switches.len()).filter(undecided).collect();
-        if self.slide_from_rest(&undecided, system, at)? {
-            return Ok(());
-        }
-        for k in undecided {
-            self.decide_by_rates(k, system, at)?;
-        }
-        self.hold(system);
-        Ok(())
     }
 
     /// After the speeds or the modes have jumped between two states of one time: the switches begin anew where one of
@@ -171,27 +163,6 @@ impl SwitchMonitor {
         self.switches.iter().map(|s| s.piece).collect()
     }
 
-    /// Holds the side of zero on which its own rates lead further into it; none where neither or both do.
-    fn decide_by_rates(
-        &mut self,
-        k: usize,
-        system: &mut dyn OdeSystem,
-        at: &OdeState,
-    ) -> Result<()> {
-        let mut leads_away = [false; 2];
-        for (leads_away, side) in leads_away.iter_mut().zip([-1.0, 1.0]) {
-            self.switches[k].piece = Some(side);
-            self.hold(system);
-            *leads_away = self.margin_growth(k, system, at)? > 0.0;
-        }
-        self.switches[k].piece = match leads_away {
-            [true, false] => Some(-1.0),
-            [false, true] => Some(1.0),
-            _ => None,
-        };
-        Ok(())
-    }
-
     /// Growth of a switch's margin in a small step along the rates.
     fn margin_growth(
         &mut self,
@@ -224,6 +195,7 @@ impl SwitchMonitor {
         step: &mut Step<'_>,
     ) -> Result<Option<Crossing>> {
         let crossing = self.first_crossing(system, step)?;
+        let crossing = self.earlier_between(crossing, system, step)?;
         let until = crossing.as_ref().map_or(step.now, |c| &c.state);
         if let Some(leaving) = self.leaving(system, &mut step.until(until))? {
             return Ok(Some(leaving));
@@ -231,11 +203,7 @@ impl SwitchMonitor {
         if crossing.is_some() || !self.holds_again(system, step.now)? {
             return Ok(crossing);
         }
-        Ok(Some(Crossing {
-            state: step.now.clone(),
-            passed: Vec::new(),
-            left: None,
-        }))
+        Ok(Some(Crossing::begin_anew(step.now.clone())))
     }
 
     /// Where the first switch is passed in a step, if one is.
@@ -244,20 +212,22 @@ impl SwitchMonitor {
         system: &mut dyn OdeSystem,
         step: &mut Step<'_>,
     ) -> Result<Option<Crossing>> {
-        if self.switches.is_empty() {
+        if self.switches.is_empty() && self.between.is_none() {
             return Ok(None);
         }
         self.step = step.duration();
         let start = step.before;
         system.switch_values(start.t, &start.y, &mut self.values)?;
+        self.sample(0, system);
         for (switch, &value) in self.switches.iter_mut().zip(&self.values) {
             let margin = switch.margin(value).unwrap_or(f64::NAN);
             switch.margins = [(start.t, margin), (f64::NAN, f64::NAN)];
             switch.is_inside |= margin > 0.0;
         }
-        for t in step.root_subintervals() {
-            let point = step.state_at(t)?;
-            system.switch_values(t, &point.y, &mut self.values)?;
+        for (point, t) in step.root_subintervals().enumerate() {
+            let state = step.state_at(t)?;
+            system.switch_values(t, &state.y, &mut self.values)?;
+            self.sample(point + 1, system);
             let each = 0..self.switches.len();
             let times = each.map(|k| self.crossing_time(k, t, system, step));
             if let Some((at, passed)) = first_of(times)? {
@@ -331,6 +301,14 @@ impl SwitchMonitor {
         if self.sliding.is_some() {
             return self.pass_while_sliding(crossing, system);
         }
+        let mut changed = self.marked(crossing.passed.iter().map(|(k, _)| *k));
+        let passed = changed.clone();
+        self.settle(&mut changed, system, &crossing.state)?;
+        // What depends on another one that is passed has been decided with it.
+        let independent = |switch: &MonitoredSwitch| !switch.depends_on(&passed);
+        crossing
+            .passed
+            .retain(|(k, _)| independent(&self.switches[*k]));
         if self.slide_from_crossing(before, crossing, system)? {
             return Ok(());
         }
@@ -363,7 +341,7 @@ impl SwitchMonitor {
         system.switch_values(now.t, &now.y, &mut self.values)?;
         let mut changed = false;
         for (k, (switch, &value)) in self.switches.iter_mut().zip(&self.values).enumerate() {
-            let slides = |sliding: &Sliding| sliding.switches.contains(&k);
+            let slides = |sliding: &Sliding| sliding.decides(k);
             if switch.piece.is_some() || self.sliding.as_ref().is_some_and(slides) {
                 continue;
             }

@@ -21,8 +21,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod enclosure;
-mod interval;
+pub(crate) mod enclosure;
+pub(crate) mod interval;
 mod scan;
 pub(crate) mod switching;
 #[cfg(test)]

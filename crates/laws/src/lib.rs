@@ -31,6 +31,7 @@ pub mod profile;
 pub mod sinusoid;
 pub mod spline;
 pub mod switches;
+mod windows;
 
 pub use error::LawError;
 pub use expression::{Expression, ExpressionError, HeldPieces};
@@ -41,3 +42,4 @@ pub use profile::{Profile, Rise, Shape};
 pub use sinusoid::Sinusoid;
 pub use spline::{Interpolation, Spline};
 pub use switches::{SwitchKind, Switches};
+pub use windows::{Course, Pulse};

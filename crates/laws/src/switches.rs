@@ -26,11 +26,19 @@
 use crate::expression::{Expression, HeldPieces, Jet, Op, Sides, run_held_parts};
 use crate::features::switching::{Operands, Switch, switches_of};
 use crate::law::Law;
+use crate::windows::{Course, NarrowTerm, Pulse, Traced, first_outside, may_hide};
+
+/// A function is beyond a bound if it is by more than this part of its values.
+const ROUNDING: f64 = 1e-12;
 
 /// The functions of a magnitude whose values separate its pieces.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Switches {
     kinds: Vec<SwitchKind>,
+    /// By function: whether it may be beyond a bound between points at which it is not.
+    may_hide: Vec<bool>,
+    /// The terms that may be narrow pulses.
+    terms: Vec<NarrowTerm>,
     source: Source,
 }
 
@@ -59,7 +67,8 @@ enum Source {
 
 impl SwitchKind {
     /// The piece at a value of the function: the sign, or the number of the interval. None where it is undecided: at
-    /// zero, or where the value is no number.
+    /// zero, or where the value is no number. (A function that rests on zero is held on a third piece, 0, which is what the
+    /// operation yields there: `sign` 0, `step` 1, `if` what its comparison says.)
     pub fn piece_at(&self, value: f64) -> Option<f64> {
         match self {
             _ if value.is_nan() => None,
@@ -72,6 +81,7 @@ impl SwitchKind {
     /// The values between which a piece holds.
     pub fn bounds(&self, piece: f64) -> [f64; 2] {
         match self {
+            Self::Zero if piece == 0.0 => [0.0; 2],
             Self::Zero if piece > 0.0 => [0.0, f64::INFINITY],
             Self::Zero => [f64::NEG_INFINITY, 0.0],
             Self::Integers => [piece, piece + 1.0],
@@ -86,9 +96,10 @@ impl SwitchKind {
 
     /// The piece beyond the upper or the lower bound of one.
     pub fn next(&self, piece: f64, upward: bool) -> f64 {
+        let step = if upward { 1.0 } else { -1.0 };
         match self {
-            Self::Zero => -piece,
-            Self::Integers | Self::Knots(_) => piece + if upward { 1.0 } else { -1.0 },
+            Self::Zero => step,
+            Self::Integers | Self::Knots(_) => piece + step,
         }
     }
 }
@@ -110,12 +121,18 @@ impl Switches {
                 }
             }
         }
+        let hides = |(switch, _): &(Switch, _)| {
+            let is_one = |last: usize| may_hide(&ops, &tree, last);
+            is_one(switch.left) || switch.right.is_some_and(is_one)
+        };
         let kind = |(switch, _): &(Switch, _)| match switch.at_integers {
             true => SwitchKind::Integers,
             false => SwitchKind::Zero,
         };
         Self {
             kinds: switches.iter().map(kind).collect(),
+            may_hide: switches.iter().map(hides).collect(),
+            terms: NarrowTerm::all(&ops, &tree),
             source: Source::Expression { ops, switches },
         }
     }
@@ -130,13 +147,82 @@ impl Switches {
         };
         Self {
             kinds: vec![SwitchKind::Knots(knots)],
-            source: Source::Law,
+            may_hide: vec![false],
+            ..Self::default()
         }
     }
 
     /// At which values each function switches.
     pub fn kinds(&self) -> &[SwitchKind] {
         &self.kinds
+    }
+
+    /// Whether a function has another one's operation among its operands, so that its value depends on that one's piece.
+    pub fn depends(&self, function: usize, on: usize) -> bool {
+        match &self.source {
+            Source::Law => false,
+            Source::Expression { switches, .. } => {
+                let (switch, [left, right]) = &switches[function];
+                let op = switches[on].0.op;
+                let in_right = |last: usize| (*right..=last).contains(&op);
+                (*left..=switch.left).contains(&op) || switch.right.is_some_and(in_right)
+            }
+        }
+    }
+
+    /// Whether something may happen between points at which its value and its functions are seen.
+    pub fn may_hide(&self) -> bool {
+        !self.terms.is_empty() || self.may_hide.contains(&true)
+    }
+
+    /// Over a course of the variables, on the pieces that are held: the first function that is beyond a bound of its piece
+    /// and where, in parts of the time.
+    pub fn hidden_passage(
+        &self,
+        course: &Course,
+        held: &HeldPieces,
+        pieces: &[Option<f64>],
+    ) -> Option<(usize, f64)> {
+        let Source::Expression { ops, switches } = &self.source else {
+            return None;
+        };
+        let each = (0..pieces.len()).filter(|&k| self.may_hide[k]);
+        let passages = each.filter_map(|k| {
+            let piece = pieces[k]?;
+            let [low, high] = self.kinds[k].bounds(piece);
+            let (switch, [left, right]) = &switches[k];
+            let minuend = Traced::part(ops, [*left, switch.left], held, course);
+            let subtrahend = switch
+                .right
+                .map(|last| Traced::part(ops, [*right, last], held, course));
+            let value =
+                |at: f64| minuend.value(at) - subtrahend.as_ref().map_or(0.0, |s| s.value(at));
+            let enclose = |over: [f64; 2]| match &subtrahend {
+                Some(subtrahend) => minuend.enclose(over).minus(subtrahend.enclose(over)),
+                None => minuend.enclose(over),
+            };
+            let ends = [0.0, 0.5, 1.0].map(value);
+            let rounding = ROUNDING
+                * ends
+                    .into_iter()
+                    .fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
+            let bounds = [low - rounding, high + rounding];
+            let at = (low < high).then(|| first_outside(bounds, value, enclose))?;
+            at.map(|at| (k, at))
+        });
+        passages.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The first narrow pulse over a course of the variables, on the pieces that are held, that its ends do not show.
+    pub fn hidden_pulse(&self, course: &Course, held: &HeldPieces) -> Option<Pulse> {
+        let Source::Expression { ops, .. } = &self.source else {
+            return None;
+        };
+        let all = self
+            .terms
+            .iter()
+            .filter_map(|term| term.hidden(ops, held, course));
+        all.min_by(|a, b| a.at.total_cmp(&b.at))
     }
 
     /// The value of each function at these variables, on the pieces that are held.

@@ -92,6 +92,14 @@ impl SwitchMonitor {
             sides[1][k] = Some(same.signum());
             switches.push(k);
         }
+        let before = self.pieces();
+        for side in &mut sides {
+            self.take(side);
+            let mut changed = self.marked(switches.iter().copied());
+            self.settle(&mut changed, system, at)?;
+            *side = self.pieces();
+        }
+        self.take(&before);
         self.slide(sides, (switches, 0.0), system, &mut at.clone())
     }
 
@@ -112,9 +120,6 @@ impl SwitchMonitor {
         if !(first.both_return() && together) {
             return Ok(false);
         }
-        for &k in &switches {
-            self.switches[k].piece = None;
-        }
         let sliding = Sliding {
             sides,
             switches,
@@ -123,9 +128,18 @@ impl SwitchMonitor {
         };
         both.put_on_switch(&sliding, at);
         system.record_sliding(at, sliding.switches[0], Some(&sliding));
+        self.watch_beside(&sliding);
         self.hold(system);
         self.sliding = Some(sliding);
         Ok(true)
+    }
+
+    /// Watches the switches that are the same on both sides alone.
+    fn watch_beside(&mut self, sliding: &Sliding) {
+        self.take(&sliding.sides[0]);
+        for (k, switch) in self.switches.iter_mut().enumerate() {
+            switch.piece = switch.piece.filter(|_| !sliding.decides(k));
+        }
     }
 
     /// Where a sliding motion leaves its switch in a step.
@@ -169,10 +183,11 @@ impl SwitchMonitor {
     /// Holds the side to which the motion leaves its switch.
     pub(super) fn leave(&mut self, upward: bool, system: &mut dyn OdeSystem, at: &OdeState) {
         if let Some(sliding) = self.sliding.take() {
-            for &k in &sliding.switches {
-                let switch = &mut self.switches[k];
-                switch.piece = sliding.sides[usize::from(upward)][k];
-                (switch.switched, switch.chatter) = (None, None);
+            for (k, switch) in self.switches.iter_mut().enumerate() {
+                if sliding.decides(k) {
+                    switch.piece = sliding.sides[usize::from(upward)][k];
+                    (switch.switched, switch.chatter) = (None, None);
+                }
             }
             system.record_sliding(at, sliding.switches[0], None);
         }
@@ -192,13 +207,18 @@ impl SwitchMonitor {
             return Ok(());
         };
         let at = &crossing.state;
-        for (k, switch) in self.switches.iter().enumerate() {
-            if !sliding.switches.contains(&k) {
-                for side in &mut sliding.sides {
-                    side[k] = switch.piece;
-                }
+        let beside = self.pieces();
+        let decided: Vec<bool> = (0..beside.len()).map(|k| sliding.decides(k)).collect();
+        for side in &mut sliding.sides {
+            for (k, piece) in side.iter_mut().enumerate() {
+                *piece = if decided[k] { *piece } else { beside[k] };
             }
+            self.take(side);
+            let mut changed = self.marked(crossing.passed.iter().map(|(k, _)| *k));
+            self.settle(&mut changed, system, at)?;
+            *side = self.pieces();
         }
+        self.watch_beside(&sliding);
         let first = sliding.switches[0];
         let source_index = system.switch_source(first);
         let several = DynamicsError::SlidesOnSeveral {

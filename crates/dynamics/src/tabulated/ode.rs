@@ -6,7 +6,7 @@ use crate::error::{DynamicsError, Result, positive_inertia};
 use crate::machine_ode::with_later_works;
 use crate::ode::{DualWorkspace, OdeState, OdeSystem};
 use crate::sliding::Sliding;
-use crate::state_switches::{HeldSource, SourceState};
+use crate::state_switches::{HeldSource, Hidden, SourceState};
 use dwell_kinetostatics::KinetostaticsError;
 use dwell_laws::{Features, SwitchKind};
 use dwell_numerics::{Dual, Scalar};
@@ -23,6 +23,8 @@ pub struct TabulatedMachineOde<'t> {
     energy_scale: f64,
     /// By switching load: its held pieces.
     held: Vec<HeldSource>,
+    /// The variables of the loads that switch, where they were looked at last.
+    seen: Vec<f64>,
     contact_events: Vec<ContactEvent>,
 }
 
@@ -97,6 +99,7 @@ impl TabulatedMachine {
             dual_workspace: DualWorkspace::new(TableWorkspace::new(self), self.state_count()),
             energy_scale: with_later_works(energy_scale, largest_work),
             held: Vec::new(),
+            seen: Vec::new(),
             contact_events: Vec::new(),
         })
     }
@@ -226,6 +229,23 @@ impl OdeSystem for TabulatedMachineOde<'_> {
         self.machine.tabulated_loads[k].load
     }
 
+    fn may_hide(&self) -> bool {
+        self.machine.state_switches.may_hide()
+    }
+
+    fn read_signals(&self, out: &mut Vec<f64>) {
+        out.clone_from(&self.seen);
+    }
+
+    fn hidden_in(&self, samples: &[Vec<f64>; 5], pieces: &[Option<f64>]) -> Option<Hidden> {
+        let switches = &self.machine.state_switches;
+        switches.hidden_in(&self.held, samples, pieces)
+    }
+
+    fn switch_depends(&self, switch: usize, on: usize) -> bool {
+        self.machine.state_switches.depends(switch, on)
+    }
+
     fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         let Self {
             machine, workspace, ..
@@ -241,7 +261,8 @@ impl OdeSystem for TabulatedMachineOde<'_> {
                 drive: drive.map(|d| (d, columns[k] * y[1], d.state.map(|place| y[2 + place]))),
             }
         };
-        machine.state_switches.values(&self.held, source_state, out);
+        let kept = (&self.held[..], &mut self.seen);
+        machine.state_switches.values(kept, source_state, out);
         Ok(())
     }
 

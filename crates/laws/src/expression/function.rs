@@ -133,7 +133,7 @@ impl Comparison {
 }
 
 /// −1, 0 or 1; not a number of what is none.
-pub(super) fn sign(x: f64) -> f64 {
+pub(crate) fn sign(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x.signum() }
 }
 

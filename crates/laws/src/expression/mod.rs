@@ -30,7 +30,7 @@ mod tape;
 mod token;
 
 pub use error::{ExpressionError, nearest};
-pub(crate) use function::{Binary, Unary};
+pub(crate) use function::{Binary, Unary, sign};
 pub(crate) use jet::{Jet, TapeScalar};
 pub use tape::HeldPieces;
 use tape::Tape;

@@ -70,7 +70,7 @@ impl Tape {
     }
 }
 
-/// Which piece of a switching operation holds: the sign of its function, or the whole number below it.
+/// Which piece of a switching operation holds: the sign of its function (0 where it rests on zero), or the whole number below it.
 /// An operation has up to two functions (`clamp`). None: as its operands say.
 pub(crate) type Sides = [Option<f64>; 2];
 
@@ -158,7 +158,7 @@ fn held_piece<S: TapeScalar>(op: Op, operands: &[S], [side, second]: Sides) -> S
     match op {
         Op::Unary(Unary::Abs) => choose(operands[0], operands[0].negate()),
         Op::Unary(Unary::Sign | Unary::Floor) => S::constant(side),
-        Op::Unary(Unary::Step) => choose(S::constant(1.0), S::constant(0.0)),
+        Op::Unary(Unary::Step) => S::constant(f64::from(u8::from(side >= 0.0))),
         Op::Binary(Binary::Max) => choose(operands[0], operands[1]),
         Op::Binary(Binary::Min) => choose(operands[1], operands[0]),
         Op::Binary(Binary::Atan2) => {

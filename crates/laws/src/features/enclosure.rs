@@ -6,40 +6,51 @@ use std::f64::consts::LN_10;
 
 /// Value, first and second derivative: each an interval that contains all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Enclosure(pub(super) [Interval; 3]);
+pub(crate) struct Enclosure(pub(crate) [Interval; 3]);
 
 const ZERO: Interval = Interval { lo: 0.0, hi: 0.0 };
 const ONE: Interval = Interval { lo: 1.0, hi: 1.0 };
 
 impl Enclosure {
-    pub(super) const UNKNOWN: Self = Self([Interval::ENTIRE; 3]);
+    pub(crate) const UNKNOWN: Self = Self([Interval::ENTIRE; 3]);
 
-    pub(super) fn constant(value: f64) -> Self {
+    pub(crate) fn constant(value: f64) -> Self {
         Self([Interval::point(value), ZERO, ZERO])
     }
 
     /// The variable itself.
-    pub(super) fn variable(over: Interval) -> Self {
+    pub(crate) fn variable(over: Interval) -> Self {
         Self([over, ONE, ZERO])
     }
 
-    pub(super) fn value(self) -> Interval {
+    pub(crate) fn value(self) -> Interval {
         self.0[0]
+    }
+
+    /// One of two numbers and whatever is between them.
+    pub(crate) fn between(low: f64, high: f64) -> Self {
+        Self([Interval::checked(low, high), ZERO, ZERO])
+    }
+
+    /// The number, if it is one that does not vary.
+    pub(crate) fn number(self) -> Option<f64> {
+        let Interval { lo, hi } = self.value();
+        (lo == hi && self.is_constant()).then_some(lo)
     }
 
     fn is_constant(self) -> bool {
         self.0[1] == ZERO && self.0[2] == ZERO
     }
 
-    pub(super) fn hull(self, other: Self) -> Self {
+    pub(crate) fn hull(self, other: Self) -> Self {
         Self(std::array::from_fn(|k| self.0[k].hull(other.0[k])))
     }
 
-    pub(super) fn negate(self) -> Self {
+    pub(crate) fn negate(self) -> Self {
         Self(self.0.map(Interval::neg))
     }
 
-    pub(super) fn minus(self, other: Self) -> Self {
+    pub(crate) fn minus(self, other: Self) -> Self {
         self.plus(other.negate())
     }
 
@@ -92,7 +103,7 @@ impl Enclosure {
     }
 
     /// A function; those made of straight pieces are unknown here, because which piece holds must be decided before.
-    pub(super) fn unary(self, function: Unary) -> Self {
+    pub(crate) fn unary(self, function: Unary) -> Self {
         let x = self.value();
         let all = [f64::NEG_INFINITY, f64::INFINITY];
         let derivatives = match function {
@@ -139,7 +150,7 @@ impl Enclosure {
     }
 
     /// An operation on two values; `min` and `max` are their hull.
-    pub(super) fn binary(self, operation: Binary, other: Self) -> Self {
+    pub(crate) fn binary(self, operation: Binary, other: Self) -> Self {
         match operation {
             Binary::Add => self.plus(other),
             Binary::Subtract => self.minus(other),

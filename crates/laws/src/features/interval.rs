@@ -7,24 +7,24 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// All numbers from `lo` to `hi`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Interval {
-    pub(super) lo: f64,
-    pub(super) hi: f64,
+pub(crate) struct Interval {
+    pub(crate) lo: f64,
+    pub(crate) hi: f64,
 }
 
 impl Interval {
     /// Nothing is known.
-    pub(super) const ENTIRE: Self = Self {
+    pub(crate) const ENTIRE: Self = Self {
         lo: f64::NEG_INFINITY,
         hi: f64::INFINITY,
     };
 
-    pub(super) fn point(x: f64) -> Self {
+    pub(crate) fn point(x: f64) -> Self {
         Self::checked(x, x)
     }
 
     /// From one bound to the other; everything where one is not a number.
-    pub(super) fn checked(lo: f64, hi: f64) -> Self {
+    pub(crate) fn checked(lo: f64, hi: f64) -> Self {
         if lo <= hi {
             Self { lo, hi }
         } else {
@@ -40,42 +40,42 @@ impl Interval {
         Self::checked(lower, upper)
     }
 
-    pub(super) fn contains(self, x: f64) -> bool {
+    pub(crate) fn contains(self, x: f64) -> bool {
         self.lo <= x && x <= self.hi
     }
 
-    pub(super) fn width(self) -> f64 {
+    pub(crate) fn width(self) -> f64 {
         self.hi - self.lo
     }
 
     /// Largest absolute value.
-    pub(super) fn magnitude(self) -> f64 {
+    pub(crate) fn magnitude(self) -> f64 {
         self.lo.abs().max(self.hi.abs())
     }
 
-    pub(super) fn hull(self, other: Self) -> Self {
+    pub(crate) fn hull(self, other: Self) -> Self {
         Self {
             lo: self.lo.min(other.lo),
             hi: self.hi.max(other.hi),
         }
     }
 
-    pub(super) fn neg(self) -> Self {
+    pub(crate) fn neg(self) -> Self {
         Self {
             lo: -self.hi,
             hi: -self.lo,
         }
     }
 
-    pub(super) fn add(self, other: Self) -> Self {
+    pub(crate) fn add(self, other: Self) -> Self {
         Self::outward(self.lo + other.lo, self.hi + other.hi)
     }
 
-    pub(super) fn sub(self, other: Self) -> Self {
+    pub(crate) fn sub(self, other: Self) -> Self {
         self.add(other.neg())
     }
 
-    pub(super) fn mul(self, other: Self) -> Self {
+    pub(crate) fn mul(self, other: Self) -> Self {
         let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
         let all = [
             product(self.lo, other.lo),
@@ -88,35 +88,35 @@ impl Interval {
         Self::outward(lo, hi)
     }
 
-    pub(super) fn scale(self, factor: f64) -> Self {
+    pub(crate) fn scale(self, factor: f64) -> Self {
         self.mul(Self::point(factor))
     }
 
-    pub(super) fn recip(self) -> Self {
+    pub(crate) fn recip(self) -> Self {
         if self.contains(0.0) {
             return Self::ENTIRE;
         }
         Self::outward(1.0 / self.hi, 1.0 / self.lo)
     }
 
-    pub(super) fn div(self, other: Self) -> Self {
+    pub(crate) fn div(self, other: Self) -> Self {
         self.mul(other.recip())
     }
 
     /// A function that grows throughout.
-    pub(super) fn growing(self, f: impl Fn(f64) -> f64) -> Self {
+    pub(crate) fn growing(self, f: impl Fn(f64) -> f64) -> Self {
         Self::outward(f(self.lo), f(self.hi))
     }
 
     /// The same where it is defined from `from` to `to` only.
-    pub(super) fn growing_within(self, [from, to]: [f64; 2], f: impl Fn(f64) -> f64) -> Self {
+    pub(crate) fn growing_within(self, [from, to]: [f64; 2], f: impl Fn(f64) -> f64) -> Self {
         if self.lo < from || self.hi > to {
             return Self::ENTIRE;
         }
         self.growing(f)
     }
 
-    pub(super) fn square(self) -> Self {
+    pub(crate) fn square(self) -> Self {
         let least = if self.contains(0.0) {
             0.0
         } else {
@@ -127,7 +127,7 @@ impl Interval {
         Self::checked((least * least * (1.0 - 4.0 * f64::EPSILON)).max(0.0), hi)
     }
 
-    pub(super) fn sqrt(self) -> Self {
+    pub(crate) fn sqrt(self) -> Self {
         self.growing_within([0.0, f64::INFINITY], f64::sqrt)
             .max_zero()
     }
@@ -137,11 +137,11 @@ impl Interval {
         Self::checked(self.lo.max(0.0), self.hi)
     }
 
-    pub(super) fn exp(self) -> Self {
+    pub(crate) fn exp(self) -> Self {
         self.growing(f64::exp).max_zero()
     }
 
-    pub(super) fn cosh(self) -> Self {
+    pub(crate) fn cosh(self) -> Self {
         let most = self.magnitude().cosh();
         let least = if self.contains(0.0) {
             1.0
@@ -151,11 +151,11 @@ impl Interval {
         Self::outward(least, most)
     }
 
-    pub(super) fn sin(self) -> Self {
+    pub(crate) fn sin(self) -> Self {
         self.wave(FRAC_PI_2, f64::sin)
     }
 
-    pub(super) fn cos(self) -> Self {
+    pub(crate) fn cos(self) -> Self {
         self.wave(0.0, f64::cos)
     }
 
@@ -184,7 +184,7 @@ impl Interval {
     }
 
     /// xⁿ for a constant n.
-    pub(super) fn power(self, n: f64) -> Self {
+    pub(crate) fn power(self, n: f64) -> Self {
         if n == 0.0 {
             return Self::point(1.0);
         }

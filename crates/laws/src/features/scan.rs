@@ -7,12 +7,16 @@ use crate::expression::Sides;
 
 /// A piece is smooth if a parabola is as good as its terms, to this part of their largest values.
 const SMOOTHNESS: f64 = 1e-3;
+/// What is below this is nothing in any unit: the tail of a pulse where it underflows.
+const NOTHING: f64 = 1e-280;
 /// Shortest piece, relative to the ends of the whole interval.
 const MIN_WIDTH: f64 = 64.0 * f64::EPSILON;
 /// Parts of the interval in which the largest values of the terms are looked for.
 const SCALE_PARTS: usize = 128;
 /// Most cells that may be tried for one piece.
 const MAX_TRIALS: usize = 100_000;
+/// So far from where it touches a level a function is apart from it by more than a rounding, as a part of time.
+const TOUCH: f64 = 1e-7;
 /// Roundings of time on both sides of a switch in which its value is not trusted.
 const ROUNDINGS: f64 = 2.0;
 
@@ -153,13 +157,14 @@ impl<'f> Scan<'f> {
                 }
                 match decide(pieces, switch, over, sides) {
                     Decision::Side(side) => sides[switch.op][switch.function] = Some(side),
-                    Decision::Never => {}
                     Decision::Unknown if is_short => {
-                        let value = pieces.switch_value(switch, 0.5 * (cell.from + cell.to));
-                        let side = match switch.at_integers {
-                            true => value.floor(),
-                            false => value.signum(),
-                        };
+                        let middle = 0.5 * (cell.from + cell.to);
+                        let apart = TOUCH * cell.from.abs().max(cell.to.abs());
+                        let side_at = |x: f64| switch.side(pieces.switch_value(switch, x));
+                        // What touches its level, within a rounding of its value, stays on its side.
+                        let around = [middle - apart, middle + apart].map(side_at);
+                        let touches = around[0] == around[1];
+                        let side = if touches { around[0] } else { side_at(middle) };
                         sides[switch.op][switch.function] = Some(side);
                     }
                     Decision::Unknown => return Examined::Halve(*source),
@@ -192,7 +197,7 @@ impl<'f> Scan<'f> {
                     value.width(),
                 ];
                 let deviation = deviations.into_iter().fold(f64::INFINITY, f64::min);
-                if !(deviation <= SMOOTHNESS * scale || is_short) {
+                if !(deviation <= SMOOTHNESS * scale + NOTHING || is_short) {
                     return Examined::Halve(*source);
                 }
                 if deviation > 0.02 * SMOOTHNESS * scale {
@@ -347,8 +352,6 @@ impl Scan<'_> {
 enum Decision {
     /// Throughout.
     Side(f64),
-    /// Both sides are the same.
-    Never,
     /// One switch within, where the function has this value; its values at the ends, less that.
     Root {
         level: f64,
@@ -360,6 +363,9 @@ enum Decision {
 fn decide(pieces: &Pieces, switch: &Switch, over: Interval, sides: &[Sides]) -> Decision {
     let enclosure = pieces.enclose_switch(switch, over, sides);
     let [value, slope, _] = enclosure.0;
+    if let Some(number) = enclosure.number() {
+        return Decision::Side(switch.side(number));
+    }
     let level = if switch.at_integers {
         let (low, high) = (value.lo.floor(), value.hi.floor());
         if low == high {
@@ -373,13 +379,15 @@ fn decide(pieces: &Pieces, switch: &Switch, over: Interval, sides: &[Sides]) -> 
         if value.lo > 0.0 || value.hi < 0.0 {
             return Decision::Side(value.lo.signum());
         }
-        if value.lo == 0.0 && value.hi == 0.0 {
-            return Decision::Never;
-        }
         0.0
     };
     if slope.contains(0.0) {
-        return Decision::Unknown;
+        let rests = !switch.at_integers && pieces.is_zero(switch, over, sides);
+        return if rests {
+            Decision::Side(0.0)
+        } else {
+            Decision::Unknown
+        };
     }
     let values = [over.lo, over.hi].map(|x| pieces.switch_value(switch, x) - level);
     if values[0] * values[1] < 0.0 {

@@ -2,7 +2,7 @@
 
 use super::enclosure::Enclosure;
 use super::interval::Interval;
-use crate::expression::{Binary, Expression, Op, Sides, Unary, run_parts};
+use crate::expression::{Binary, Expression, Op, Sides, Unary, run_held_parts, run_parts, sign};
 
 /// An expression in one of its variables, the others unknown.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +28,17 @@ pub(crate) struct Switch {
     pub(crate) right: Option<usize>,
     /// Whether it switches at every whole value, not only at zero.
     pub(crate) at_integers: bool,
+}
+
+impl Switch {
+    /// The side of a value of its function.
+    pub(super) fn side(&self, value: f64) -> f64 {
+        if self.at_integers {
+            value.floor()
+        } else {
+            sign(value)
+        }
+    }
 }
 
 /// The operations of an expression with what they depend on.
@@ -121,63 +132,15 @@ impl Pieces {
     /// Bounds of the part that ends with operation `last`, over an interval of the variable on which these sides hold.
     pub(super) fn enclose(&self, last: usize, over: Interval, sides: &[Sides]) -> Enclosure {
         let first = self.starts[last];
-        let mut stack: Vec<Enclosure> = Vec::new();
-        for (i, &op) in self.ops.iter().enumerate().take(last + 1).skip(first) {
-            let of = stack.split_off(stack.len().saturating_sub(op.arity()));
-            stack.push(self.enclose_op(op, &of, sides[i], over));
-        }
-        stack.pop().unwrap_or(Enclosure::UNKNOWN)
-    }
-
-    fn enclose_op(
-        &self,
-        op: Op,
-        operands: &[Enclosure],
-        [side, second]: Sides,
-        over: Interval,
-    ) -> Enclosure {
-        let choose = |side: Option<f64>, above: Enclosure, below: Enclosure| match side {
-            Some(s) if s > 0.0 => above,
-            Some(_) => below,
-            None => above.hull(below),
+        let is_own = |index| index == self.variable;
+        let variable = |index| {
+            if is_own(index) {
+                Enclosure::variable(over)
+            } else {
+                Enclosure::UNKNOWN
+            }
         };
-        match (op, operands) {
-            (Op::Number(number), _) => Enclosure::constant(number),
-            (Op::Constant(constant), _) => Enclosure::constant(constant.value()),
-            (Op::Variable(index), _) if index == self.variable => Enclosure::variable(over),
-            (Op::Negate, &[x]) => x.negate(),
-            (Op::Unary(Unary::Abs), &[x]) => choose(side, x, x.negate()),
-            (Op::Unary(Unary::Sign), &[_]) => {
-                choose(side, Enclosure::constant(1.0), Enclosure::constant(-1.0))
-            }
-            (Op::Unary(Unary::Step), &[_]) => {
-                choose(side, Enclosure::constant(1.0), Enclosure::constant(0.0))
-            }
-            (Op::Unary(Unary::Floor), &[x]) => match side {
-                Some(whole) => Enclosure::constant(whole),
-                None => {
-                    let Interval { lo, hi } = x.value();
-                    let (low, high) = (lo.floor(), hi.floor());
-                    Enclosure::constant(low).hull(Enclosure::constant(high))
-                }
-            },
-            (Op::Unary(function), &[x]) => x.unary(function),
-            (Op::Binary(Binary::Max), &[a, b]) => choose(side, a, b),
-            (Op::Binary(Binary::Min), &[a, b]) => choose(side, b, a),
-            (Op::Binary(operation), &[a, b]) => a.binary(operation, b),
-            (Op::Clamp, &[x, low, high]) => {
-                if low.value().hi > high.value().lo {
-                    return x.hull(low).hull(high);
-                }
-                choose(second, high, choose(side, x, low))
-            }
-            (Op::If(comparison), &[_, _, yes, no]) => {
-                let above = comparison.holds(1.0, 0.0);
-                let (a, b) = if above { (yes, no) } else { (no, yes) };
-                choose(side, a, b)
-            }
-            _ => Enclosure::UNKNOWN,
-        }
+        enclose_ops(&self.ops[first..=last], &sides[first..=last], variable)
     }
 
     /// Bounds of a switch's function.
@@ -194,6 +157,25 @@ impl Pieces {
         }
     }
 
+    /// Whether a switch's function is zero throughout an interval, as `abs(t) - t` is behind 0: its slope is zero, but for the
+    /// rounding of what it is made of.
+    pub(super) fn is_zero(&self, switch: &Switch, over: Interval, sides: &[Sides]) -> bool {
+        /// Roundings of the slopes of all parts together, as a part of the largest.
+        const ROUNDING: f64 = 1e-13;
+        let middle = 0.5 * (over.lo + over.hi);
+        if [over.lo, middle, over.hi]
+            .iter()
+            .any(|&x| self.switch_value(switch, x) != 0.0)
+        {
+            return false;
+        }
+        let parts = std::iter::once(switch.left).chain(switch.right);
+        let parts = parts.flat_map(|last| self.starts[last]..=last);
+        let slope = |last: usize| self.enclose(last, over, sides).0[1].magnitude();
+        let [_, own, _] = self.enclose_switch(switch, over, sides).0;
+        own.magnitude() <= ROUNDING * parts.map(slope).fold(0.0, f64::max)
+    }
+
     /// The value of a switch's function.
     pub(super) fn switch_value(&self, switch: &Switch, x: f64) -> f64 {
         let part = |last: usize| {
@@ -207,6 +189,91 @@ impl Pieces {
     pub(super) fn term_value(&self, last: usize, x: f64) -> f64 {
         run_parts(&self.ops[self.starts[last]..=last], |_| x)
     }
+}
+
+/// Bounds of an expression where its variables have these, on the sides that hold.
+pub(crate) fn enclose_ops(
+    ops: &[Op],
+    sides: &[Sides],
+    variable: impl Fn(usize) -> Enclosure,
+) -> Enclosure {
+    let mut stack: Vec<Enclosure> = Vec::new();
+    for (i, &op) in ops.iter().enumerate() {
+        let of = stack.split_off(stack.len().saturating_sub(op.arity()));
+        let held = sides.get(i).copied().unwrap_or_default();
+        let number = exact(op, &of, held).map(Enclosure::constant);
+        stack.push(number.unwrap_or_else(|| enclose_op(op, &of, held, &variable)));
+    }
+    stack.pop().unwrap_or(Enclosure::UNKNOWN)
+}
+
+fn enclose_op(
+    op: Op,
+    operands: &[Enclosure],
+    [side, second]: Sides,
+    variable: impl Fn(usize) -> Enclosure,
+) -> Enclosure {
+    let choose = |side: Option<f64>, above: Enclosure, below: Enclosure| match side {
+        Some(s) if s > 0.0 => above,
+        Some(_) => below,
+        None => above.hull(below),
+    };
+    match (op, operands) {
+        (Op::Number(number), _) => Enclosure::constant(number),
+        (Op::Constant(constant), _) => Enclosure::constant(constant.value()),
+        (Op::Variable(index), _) => variable(index),
+        (Op::Negate, &[x]) => x.negate(),
+        (Op::Unary(Unary::Abs), &[x]) => choose(side, x, x.negate()),
+        (Op::Unary(Unary::Sign), &[_]) => {
+            Enclosure::between(side.unwrap_or(-1.0), side.unwrap_or(1.0))
+        }
+        (Op::Unary(Unary::Step), &[_]) => {
+            let step = |side: f64| f64::from(u8::from(side >= 0.0));
+            Enclosure::between(step(side.unwrap_or(-1.0)), step(side.unwrap_or(1.0)))
+        }
+        (Op::Unary(Unary::Floor), &[x]) => match side {
+            Some(whole) => Enclosure::constant(whole),
+            None => {
+                let Interval { lo, hi } = x.value();
+                Enclosure::between(lo.floor(), hi.floor())
+            }
+        },
+        (Op::Unary(function), &[x]) => x.unary(function),
+        (Op::Binary(Binary::Max), &[a, b]) => choose(side, a, b),
+        (Op::Binary(Binary::Min), &[a, b]) => choose(side, b, a),
+        (Op::Binary(operation), &[a, b]) => a.binary(operation, b),
+        (Op::Clamp, &[x, low, high]) => {
+            if low.value().hi > high.value().lo {
+                return x.hull(low).hull(high);
+            }
+            choose(second, high, choose(side, x, low))
+        }
+        (Op::If(comparison), &[_, _, yes, no]) => match side {
+            Some(side) if comparison.holds(side, 0.0) => yes,
+            Some(_) => no,
+            None => yes.hull(no),
+        },
+        _ => Enclosure::UNKNOWN,
+    }
+}
+
+/// The value of an operation on numbers that do not vary, as its evaluation yields it: what rests on a threshold is not beside it.
+fn exact(op: Op, operands: &[Enclosure], sides: Sides) -> Option<f64> {
+    if op.arity() == 0 {
+        return None;
+    }
+    let numbers: Option<Vec<f64>> = operands.iter().map(|o| o.number()).collect();
+    let Some(numbers) = numbers else {
+        // Nothing times zero varies.
+        let is_zero = |o: &Enclosure| o.number() == Some(0.0);
+        let is_product = op == Op::Binary(Binary::Multiply);
+        return (is_product && operands.iter().any(is_zero)).then_some(0.0);
+    };
+    let mut held = vec![Sides::default(); numbers.len()];
+    held.push(sides);
+    let mut ops: Vec<Op> = numbers.into_iter().map(Op::Number).collect();
+    ops.push(op);
+    Some(run_held_parts(&ops, |_| f64::NAN, &held)).filter(|value: &f64| value.is_finite())
 }
 
 /// The functions whose zeros separate the pieces of an operation.

@@ -1,0 +1,167 @@
+//! What loads do between the points of a step at which they are looked at: conditions that change in a window, and pulses.
+
+use super::{Crossing, SwitchMonitor};
+use crate::error::Result;
+use crate::ode::{OdeState, OdeSystem, Step};
+use crate::state_switches::Hidden;
+use dwell_numerics::root;
+
+/// Points of a step through which the variables of the loads are polynomials.
+const POINTS: usize = 5;
+/// Where a polynomial is not exact enough to show a window, a part of the step around it is looked at, so often.
+const LEVELS: usize = 8;
+/// Half of that part.
+const ZOOM: f64 = 1.0 / 16.0;
+/// Steps over the rise of a pulse.
+const STEPS_OF_A_RISE: f64 = 4.0;
+
+/// What is looked at between the points of a step.
+#[derive(Default)]
+pub(super) struct Between {
+    /// The variables of the loads at equally spaced points.
+    samples: [Vec<f64>; POINTS],
+    /// The longest step (s) until a time (s) up to which a pulse rises.
+    pub(super) fine: Option<(f64, f64)>,
+}
+
+impl Between {
+    /// Of a system whose loads may vary there; else none.
+    pub(super) fn of(system: &dyn OdeSystem) -> Option<Self> {
+        system.may_hide().then(Self::default)
+    }
+}
+
+impl SwitchMonitor {
+    /// The longest step while a pulse rises, s.
+    pub(crate) fn max_step(&self) -> Option<f64> {
+        let fine = self.between.as_ref().and_then(|between| between.fine);
+        fine.map(|(step, _)| step)
+    }
+
+    /// Takes the variables of the loads, which have been evaluated at a point of the step.
+    pub(super) fn sample(&mut self, point: usize, system: &dyn OdeSystem) {
+        if let Some(between) = &mut self.between {
+            system.read_signals(&mut between.samples[point]);
+        }
+    }
+
+    /// What happens between the points of a step, or where a pulse has risen, so that the integration begins anew; `crossing` is
+    /// found at its points.
+    pub(super) fn earlier_between(
+        &mut self,
+        crossing: Option<Crossing>,
+        system: &mut dyn OdeSystem,
+        step: &mut Step<'_>,
+    ) -> Result<Option<Crossing>> {
+        let Some(mut between) = self.between.take() else {
+            return Ok(crossing);
+        };
+        if crossing.is_some() {
+            self.sample_all(
+                &mut between.samples,
+                [step.before.t, step.now.t],
+                system,
+                step,
+            )?;
+        }
+        let (from, length) = (step.before.t, step.duration());
+        let until = crossing.as_ref().map_or(f64::INFINITY, |c| c.state.t);
+        let pieces = self.pieces();
+        let found = match system.hidden_in(&between.samples, &pieces) {
+            Some(Hidden::Passage { switch, at }) => self.passage(
+                (switch, from + at * length),
+                &mut between.samples,
+                system,
+                step,
+            )?,
+            Some(Hidden::Pulse(pulse)) => {
+                between.fine = Some((
+                    pulse.width * length / STEPS_OF_A_RISE,
+                    from + (pulse.at + pulse.width) * length,
+                ));
+                Some(Crossing::begin_anew(step.state_from_start(
+                    from + (pulse.at - pulse.width).max(0.0) * length,
+                )?))
+            }
+            None if between.fine.is_some_and(|(_, risen)| step.now.t >= risen) => {
+                between.fine = None;
+                Some(Crossing::begin_anew(step.now.clone()))
+            }
+            None => None,
+        };
+        self.between = Some(between);
+        Ok(found.filter(|found| found.state.t < until).or(crossing))
+    }
+
+    /// Where a switch is passed at about a time in a step, if it is.
+    fn passage(
+        &mut self,
+        (mut k, mut t): (usize, f64),
+        samples: &mut [Vec<f64>; POINTS],
+        system: &mut dyn OdeSystem,
+        step: &mut Step<'_>,
+    ) -> Result<Option<Crossing>> {
+        let pieces = self.pieces();
+        let (start, mut length) = (step.before.t, step.duration());
+        for _ in 0..LEVELS {
+            let mut values = vec![0.0; self.switches.len()];
+            let mut value_at = |t: f64| -> Result<f64> {
+                let state = step.state_from_start(t)?;
+                system.switch_values(t, &state.y, &mut values)?;
+                Ok(values[k])
+            };
+            let value = value_at(t)?;
+            let switch = &self.switches[k];
+            if switch.margin(value).is_some_and(|margin| margin < 0.0) {
+                let margin_at =
+                    |t: f64| -> Result<f64> { Ok(switch.margin(value_at(t)?).unwrap_or(f64::NAN)) };
+                let upward = switch.is_above(value);
+                let at = root::find(margin_at, start, t)?.unwrap_or(t);
+                return Ok(Some(Crossing {
+                    state: step.state_from_start(at)?,
+                    passed: vec![(k, upward)],
+                    left: None,
+                }));
+            }
+            let from = (t - ZOOM * length).max(step.before.t);
+            let to = (t + ZOOM * length).min(step.now.t);
+            length = to - from;
+            self.sample_all(samples, [from, to], system, step)?;
+            let Some(Hidden::Passage { switch, at }) = system.hidden_in(samples, &pieces) else {
+                break;
+            };
+            (k, t) = (switch, from + at * length);
+        }
+        Ok(None)
+    }
+
+    /// The variables of the loads at equally spaced points from one time to another.
+    fn sample_all(
+        &mut self,
+        samples: &mut [Vec<f64>; POINTS],
+        [from, to]: [f64; 2],
+        system: &mut dyn OdeSystem,
+        step: &mut Step<'_>,
+    ) -> Result<()> {
+        let mut values = vec![0.0; self.switches.len()];
+        for (point, sample) in samples.iter_mut().enumerate() {
+            let t = from + (to - from) * point as f64 / (POINTS - 1) as f64;
+            let state = step.state_from_start(t)?;
+            system.switch_values(t, &state.y, &mut values)?;
+            system.read_signals(sample);
+        }
+        Ok(())
+    }
+}
+
+impl Crossing {
+    /// Where the integration begins anew, and nothing is passed.
+    pub(super) fn begin_anew(state: OdeState) -> Self {
+        let (passed, left) = (Vec::new(), None);
+        Self {
+            state,
+            passed,
+            left,
+        }
+    }
+}

@@ -1,0 +1,266 @@
+//! What functions do between the points of a short time at which they are seen: windows of their conditions, and pulses.
+//!
+//! An integrator's step sees a function at a few points. Over the step its variables are polynomials as good as the
+//! integration, so that interval arithmetic bounds the function everywhere in it: a condition that cannot change is excluded at once, and
+//! one that does so in a window however narrow is found by halving.
+
+use crate::expression::{Binary, HeldPieces, Op, Sides, Unary, run_held_parts};
+use crate::features::enclosure::Enclosure;
+use crate::features::interval::Interval;
+use crate::features::switching::{Operands, enclose_ops};
+
+/// Most parts of a step that are looked at for one function.
+const MAX_CELLS: usize = 2000;
+/// The narrowest of them, as a part of the step: what is narrower is not looked for.
+const MIN_WIDTH: f64 = 1e-9;
+/// Polynomials up to this degree are seen by the points of a step and a parabola through them.
+const SEEN_DEGREE: u32 = 2;
+/// Changes below this part of a term's largest value are no pulse.
+const NEGLIGIBLE: f64 = 1e-9;
+/// A pulse that is higher than what the step's ends show by this part of their difference is looked at.
+const UNSEEN: f64 = 0.5;
+/// The part of a step over which a feature that the method has seen extends at least, to either side of its top.
+const RESOLVED: f64 = 1.0 / 12.0;
+
+/// Variables over a short time: polynomials through their values at five equally spaced instants.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Course {
+    /// By variable: powers of the time, whose unit is a quarter of the whole.
+    coefficients: Vec<[f64; 5]>,
+}
+
+/// A pulse between the points at which it would be seen, in parts of the time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pulse {
+    /// Where it is.
+    pub at: f64,
+    /// From where it begins to there.
+    pub width: f64,
+}
+
+/// A term of an expression that may be a narrow pulse.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct NarrowTerm {
+    start: usize,
+    last: usize,
+    /// Its largest value, not finite where that is unknown.
+    scale: f64,
+}
+
+impl Course {
+    /// Through the values of all variables at five equally spaced instants.
+    pub fn through(samples: &[&[f64]; 5]) -> Self {
+        let of = |i: usize| {
+            let mut difference: [f64; 5] = std::array::from_fn(|k| samples[k][i]);
+            for order in 1..5 {
+                for k in (order..5).rev() {
+                    difference[k] -= difference[k - 1];
+                }
+            }
+            let [value, d1, d2, d3, d4] = difference;
+            [
+                value,
+                d1 - d2 / 2.0 + d3 / 3.0 - d4 / 4.0,
+                d2 / 2.0 - d3 / 2.0 + 11.0 * d4 / 24.0,
+                d3 / 6.0 - d4 / 4.0,
+                d4 / 24.0,
+            ]
+        };
+        Self {
+            coefficients: (0..samples[0].len()).map(of).collect(),
+        }
+    }
+
+    /// These variables of it alone.
+    pub fn of(&self, variables: std::ops::Range<usize>) -> Self {
+        let own = self.coefficients.get(variables).unwrap_or_default();
+        Self {
+            coefficients: own.to_vec(),
+        }
+    }
+
+    fn value(&self, variable: usize, at: f64) -> f64 {
+        let own = self.coefficients.get(variable);
+        own.map_or(f64::NAN, |c| {
+            c.iter().rev().fold(0.0, |sum, c| sum * 4.0 * at + c)
+        })
+    }
+
+    fn enclose(&self, variable: usize, [from, to]: [f64; 2]) -> Enclosure {
+        let Some(coefficients) = self.coefficients.get(variable) else {
+            return Enclosure::UNKNOWN;
+        };
+        // About the middle, where the powers of what is left are small.
+        let middle = 2.0 * (from + to);
+        let mut shifted = *coefficients;
+        for k in 0..4 {
+            for j in (k..4).rev() {
+                shifted[j] += middle * shifted[j + 1];
+            }
+        }
+        let half = 2.0 * (to - from);
+        let time = Enclosure::variable(Interval::checked(-half, half));
+        let sum = |sum: Enclosure, &c: &f64| {
+            let product = sum.binary(Binary::Multiply, time);
+            product.binary(Binary::Add, Enclosure::constant(c))
+        };
+        shifted.iter().rev().fold(Enclosure::constant(0.0), sum)
+    }
+}
+
+/// A part of an expression on held pieces, over a course of its variables.
+pub(crate) struct Traced<'a> {
+    pub(crate) ops: &'a [Op],
+    pub(crate) sides: &'a [Sides],
+    pub(crate) course: &'a Course,
+}
+
+impl<'a> Traced<'a> {
+    /// The operations from one to another.
+    pub(crate) fn part(
+        all: &'a [Op],
+        [start, last]: [usize; 2],
+        held: &'a HeldPieces,
+        course: &'a Course,
+    ) -> Self {
+        Self {
+            ops: &all[start..=last],
+            sides: held.sides.get(start..=last).unwrap_or_default(),
+            course,
+        }
+    }
+
+    pub(crate) fn value(&self, at: f64) -> f64 {
+        run_held_parts(self.ops, |i| self.course.value(i, at), self.sides)
+    }
+
+    pub(crate) fn enclose(&self, over: [f64; 2]) -> Enclosure {
+        enclose_ops(self.ops, self.sides, |i| self.course.enclose(i, over))
+    }
+}
+
+/// The first part of a step, from the left, in which a function is outside of an interval, where one is found.
+pub(crate) fn first_outside(
+    [low, high]: [f64; 2],
+    value: impl Fn(f64) -> f64,
+    enclose: impl Fn([f64; 2]) -> Enclosure,
+) -> Option<f64> {
+    let is_outside = |at: f64| value(at) < low || value(at) > high;
+    let mut open = vec![[0.0, 1.0]];
+    for _ in 0..MAX_CELLS {
+        let [from, to] = open.pop()?;
+        let [values, slope, _] = enclose([from, to]).0;
+        if values.lo >= low && values.hi <= high {
+            continue;
+        }
+        let middle = 0.5 * (from + to);
+        if let Some(at) = [from, middle, to].into_iter().find(|&at| is_outside(at)) {
+            return Some(at);
+        }
+        // What grows or falls throughout is between its ends.
+        if slope.contains(0.0) && to - from > MIN_WIDTH {
+            open.extend([[middle, to], [from, middle]]);
+        }
+    }
+    None
+}
+
+impl NarrowTerm {
+    /// Those of an expression that depend on more than `time`.
+    pub(crate) fn all(ops: &[Op], tree: &Operands) -> Vec<Self> {
+        let mut found = Vec::new();
+        let mut open: Vec<usize> = ops.len().checked_sub(1).into_iter().collect();
+        while let Some(last) = open.pop() {
+            let (start, of) = (tree.starts[last], &tree.operands[last]);
+            if !tree.depends[last][1] || !ops[start..=last].iter().any(|op| is_narrow(*op)) {
+                continue;
+            }
+            match ops[last] {
+                Op::Negate
+                | Op::Binary(Binary::Add | Binary::Subtract | Binary::Min | Binary::Max)
+                | Op::Clamp => open.extend(of),
+                Op::If(_) => open.extend(&of[2..]),
+                _ => {
+                    let anything = enclose_ops(&ops[start..=last], &[], |_| Enclosure::UNKNOWN);
+                    let scale = anything.value().magnitude();
+                    found.push(Self { start, last, scale });
+                }
+            }
+        }
+        found
+    }
+
+    /// A pulse of it that a step between two points does not show.
+    pub(crate) fn hidden(&self, ops: &[Op], held: &HeldPieces, course: &Course) -> Option<Pulse> {
+        let term = Traced::part(ops, [self.start, self.last], held, course);
+        let ends = [term.value(0.0), term.value(1.0)];
+        let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        let scale = if self.scale.is_finite() {
+            self.scale
+        } else {
+            low.abs().max(high.abs())
+        };
+        let unseen = (UNSEEN * (high - low)).max(NEGLIGIBLE * scale);
+        let enclose = |over: [f64; 2]| term.enclose(over);
+        let at = first_outside([low - unseen, high + unseen], |at| term.value(at), enclose)?;
+        let excess = |at: f64| (low - term.value(at)).max(term.value(at) - high);
+        let top = excess(at);
+        let is_low = |at: f64| !(0.0..=1.0).contains(&at) || excess(at) < 0.5 * top;
+        if !(is_low(at - RESOLVED) && is_low(at + RESOLVED)) {
+            return None;
+        }
+        let mut width = MIN_WIDTH;
+        while width < at && excess(at - width) > 1e-3 * top {
+            width *= 2.0;
+        }
+        Some(Pulse { at, width })
+    }
+}
+
+/// Whether an operation can make a narrow feature of what varies slowly.
+fn is_narrow(op: Op) -> bool {
+    matches!(
+        op,
+        Op::Unary(
+            Unary::Exp
+                | Unary::Tanh
+                | Unary::Tan
+                | Unary::Sinh
+                | Unary::Cosh
+                | Unary::Atan
+                | Unary::Ln
+                | Unary::Log10
+        ) | Op::Binary(Binary::Divide | Binary::Power | Binary::Atan2)
+    )
+}
+
+/// Whether a function may be beyond a bound between points at which it is not.
+pub(crate) fn may_hide(ops: &[Op], tree: &Operands, last: usize) -> bool {
+    degree(ops, tree, last) > SEEN_DEGREE
+}
+
+/// The degree of a part as a polynomial; beyond all, what is none.
+fn degree(ops: &[Op], tree: &Operands, last: usize) -> u32 {
+    const NONE: u32 = 1000;
+    let of: Vec<u32> = tree.operands[last]
+        .iter()
+        .map(|&o| degree(ops, tree, o))
+        .collect();
+    let most = of.iter().copied().max().unwrap_or(0);
+    match ops[last] {
+        Op::Number(_) | Op::Constant(_) => 0,
+        Op::Variable(_) => 1,
+        _ if most == 0 => 0,
+        Op::Negate | Op::Unary(Unary::Abs) | Op::Clamp => most,
+        Op::Binary(Binary::Add | Binary::Subtract | Binary::Min | Binary::Max) => most,
+        Op::Unary(Unary::Sign | Unary::Step | Unary::Floor) => 0,
+        Op::If(_) => of[2].max(of[3]),
+        Op::Binary(Binary::Multiply) => of[0].saturating_add(of[1]),
+        Op::Binary(Binary::Divide) if of[1] == 0 => of[0],
+        Op::Binary(Binary::Power) => match ops[tree.operands[last][1]] {
+            Op::Number(n) if n == 1.0 || n == 2.0 => of[0].saturating_mul(n as u32),
+            _ => NONE,
+        },
+        Op::Unary(_) | Op::Binary(_) => NONE,
+    }
+}
