@@ -51,6 +51,28 @@ pub(crate) fn fall_below_zero(
     root::find(margin_at, from.0, end)
 }
 
+/// A time soon after the start of an interval at which a margin is positive, and a later one at which it is not: what is soon passed again, a
+/// short rebound or a narrow window, lies between two points of a step.
+pub(crate) fn first_inside(
+    [start, end]: [f64; 2],
+    mut margin_at: impl FnMut(f64) -> Result<f64>,
+) -> Result<Option<[f64; 2]>> {
+    /// Halvings of the interval.
+    const HALVINGS: usize = 48;
+    let mut until = end;
+    for _ in 0..HALVINGS {
+        let at = start + 0.5 * (until - start);
+        if at <= start || at >= until {
+            break;
+        }
+        if margin_at(at)? > 0.0 {
+            return Ok(Some([at, until]));
+        }
+        until = at;
+    }
+    Ok(None)
+}
+
 /// Where the parabola through three points has its minimum, between the outer ones; none where it does not come near
 /// zero, or starts from there.
 fn vertex([(t0, m0), (t1, m1), (t2, m2)]: [(f64, f64); 3]) -> Option<f64> {

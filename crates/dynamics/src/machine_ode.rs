@@ -150,8 +150,8 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
         switches.hidden_in(&self.held, samples, pieces)
     }
 
-    fn switch_depends(&self, switch: usize, on: usize) -> bool {
-        self.machine.state_switches.depends(switch, on)
+    fn switch_operands(&self, switch: usize) -> Vec<usize> {
+        self.machine.state_switches.operands(switch).to_vec()
     }
 
     fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {

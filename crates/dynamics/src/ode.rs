@@ -94,9 +94,9 @@ pub trait OdeSystem {
         None
     }
 
-    /// Whether the value of one of these functions depends on the piece of another one, which comes before it.
-    fn switch_depends(&self, _switch: usize, _on: usize) -> bool {
-        false
+    /// The functions, before one of them, on whose pieces its value depends.
+    fn switch_operands(&self, _switch: usize) -> Vec<usize> {
+        Vec::new()
     }
 
     /// The values of these functions, on the pieces that are held.

@@ -189,8 +189,8 @@ impl OdeSystem for SlidingSystem<'_, '_> {
         self.shared.inner().hidden_in(samples, pieces)
     }
 
-    fn switch_depends(&self, switch: usize, on: usize) -> bool {
-        self.shared.inner().switch_depends(switch, on)
+    fn switch_operands(&self, switch: usize) -> Vec<usize> {
+        self.shared.inner().switch_operands(switch)
     }
 
     fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {

@@ -12,6 +12,8 @@ use dwell_laws::{Course, HeldPieces, Pulse, SwitchKind, Switches};
 pub(crate) struct StateSwitches {
     sources: Vec<SwitchSource>,
     kinds: Vec<SwitchKind>,
+    /// By function: those on whose pieces its value depends.
+    operands: Vec<Vec<usize>>,
 }
 
 /// A load or drive that switches.
@@ -69,6 +71,13 @@ impl StateSwitches {
             if magnitude.kinds().is_empty() && drive_kinds.is_empty() && !magnitude.may_hide() {
                 continue;
             }
+            let (first, own) = (all.kinds.len(), magnitude.kinds().len());
+            for k in 0..own + drive_kinds.len() {
+                // Those of a drive depend on its input.
+                let depends = |j: &usize| k >= own || magnitude.depends(k, *j);
+                let operands = (0..k.min(own)).filter(depends).map(|j| first + j);
+                all.operands.push(operands.collect());
+            }
             all.kinds.extend_from_slice(magnitude.kinds());
             let drive_count = drive_kinds.len();
             all.kinds.extend(drive_kinds);
@@ -96,29 +105,20 @@ impl StateSwitches {
     }
 
     /// The load's index of a function.
-    pub(crate) fn source_index(&self, function: usize) -> usize {
-        self.place(function).map_or(0, |(source, _)| source.index)
-    }
-
-    /// Whether a function's value depends on the piece of another one.
-    pub(crate) fn depends(&self, function: usize, on: usize) -> bool {
-        let (Some((source, k)), Some((other, j))) = (self.place(function), self.place(on)) else {
-            return false;
-        };
-        let own = source.magnitude.kinds().len();
-        // Those of a drive depend on its input.
-        source.index == other.index && j < own && (k >= own || source.magnitude.depends(k, j))
-    }
-
-    /// The load or drive of a function, and which of its functions it is.
-    fn place(&self, mut function: usize) -> Option<(&SwitchSource, usize)> {
-        self.sources.iter().find_map(|source| {
+    pub(crate) fn source_index(&self, mut function: usize) -> usize {
+        for source in &self.sources {
             let count = source.magnitude.kinds().len() + source.drive_count;
-            let is_here = function < count;
-            let place = is_here.then_some((source, function));
-            function = function.saturating_sub(count);
-            place
-        })
+            if function < count {
+                return source.index;
+            }
+            function -= count;
+        }
+        0
+    }
+
+    /// The functions, before this one, on whose pieces its value depends.
+    pub(crate) fn operands(&self, function: usize) -> &[usize] {
+        &self.operands[function]
     }
 
     /// Whether a load may vary, or a condition change, between points at which they are seen.

@@ -5,12 +5,13 @@
 //! Where the rates on both pieces lead back to the switch, as of a brake at rest, the motion [slides](crate::sliding_system)
 //! along it. Where that is not so simple, the switch is not held until it has kept its side for some steps.
 
-use crate::crossings::{are_together, fall_below_zero, first_of};
+use crate::crossings::{are_together, fall_below_zero, first_inside, first_of};
 use crate::error::{DynamicsError, Result};
 use crate::ode::{OdeState, OdeSystem, Step};
 use crate::sliding::Sliding;
 use crate::sliding_system::SlidingSystem;
 use dwell_laws::SwitchKind;
+use dwell_numerics::root;
 use windows::Between;
 
 mod decisions;
@@ -96,10 +97,9 @@ impl SwitchMonitor {
     /// Where the start cannot be evaluated.
     pub(crate) fn new(system: &mut dyn OdeSystem, start: &OdeState, span: f64) -> Result<Self> {
         let kinds = system.switch_kinds().iter().enumerate();
-        let inner = |k: usize| (0..k).filter(|&j| system.switch_depends(k, j)).collect();
         let switches = kinds.map(|(k, kind)| MonitoredSwitch {
             kind: kind.clone(),
-            inner: inner(k),
+            inner: system.switch_operands(k),
             piece: None,
             is_inside: false,
             switched: None,
@@ -259,20 +259,28 @@ impl SwitchMonitor {
         switch.margins = [(t, margin), earlier[0]];
         let was_inside = switch.is_inside;
         switch.is_inside |= margin > 0.0;
-        if margin < 0.0 && !was_inside {
-            // It was passed, within a rounding, where the integration began.
-            return Ok(Some((earlier[0].0, (k, switch.is_above(value)))));
-        }
         let (mut values, mut beyond) = (Vec::new(), None);
-        let margin_at = |at: f64| -> Result<f64> {
+        let mut margin_at = |at: f64| -> Result<f64> {
             let state = step.state_from_start(at)?;
             values.resize(self.values.len(), 0.0);
             system.switch_values(at, &state.y, &mut values)?;
             beyond.get_or_insert(values[k]);
             Ok(switch.margin(values[k]).unwrap_or(f64::NAN))
         };
-        let found = fall_below_zero(earlier, (t, margin), margin_at)?;
-        let upward = switch.is_above(beyond.unwrap_or(value));
+        let found = if margin < 0.0 && !was_inside {
+            // It was passed, within a rounding, where the integration began, or soon behind.
+            match first_inside([earlier[0].0, t], &mut margin_at)? {
+                Some([inside, until]) => root::find(margin_at, inside, until)?,
+                None => Some(earlier[0].0),
+            }
+        } else {
+            fall_below_zero(earlier, (t, margin), margin_at)?
+        };
+        let upward = switch.is_above(if was_inside {
+            beyond.unwrap_or(value)
+        } else {
+            value
+        });
         Ok(found.map(|at| (at, (k, upward))))
     }
 
@@ -298,17 +306,15 @@ impl SwitchMonitor {
             let switch = &mut self.switches[k];
             switch.piece = switch.piece.map(|piece| switch.kind.next(piece, upward));
         }
-        if self.sliding.is_some() {
-            return self.pass_while_sliding(crossing, system);
-        }
+        // What depends on another one that is passed is decided with it.
         let mut changed = self.marked(crossing.passed.iter().map(|(k, _)| *k));
-        let passed = changed.clone();
+        let all = changed.clone();
+        let is_independent = |(k, _): &(usize, bool)| !self.switches[*k].depends_on(&all);
+        crossing.passed.retain(is_independent);
+        if self.sliding.is_some() {
+            return self.pass_while_sliding(crossing, &all, system);
+        }
         self.settle(&mut changed, system, &crossing.state)?;
-        // What depends on another one that is passed has been decided with it.
-        let independent = |switch: &MonitoredSwitch| !switch.depends_on(&passed);
-        crossing
-            .passed
-            .retain(|(k, _)| independent(&self.switches[*k]));
         if self.slide_from_crossing(before, crossing, system)? {
             return Ok(());
         }

@@ -20,7 +20,7 @@ const NEGLIGIBLE: f64 = 1e-9;
 /// A pulse that is higher than what the step's ends show by this part of their difference is looked at.
 const UNSEEN: f64 = 0.5;
 /// The part of a step over which a feature that the method has seen extends at least, to either side of its top.
-const RESOLVED: f64 = 1.0 / 12.0;
+const RESOLVED: f64 = 0.25;
 
 /// Variables over a short time: polynomials through their values at five equally spaced instants.
 #[derive(Debug, Clone, PartialEq)]

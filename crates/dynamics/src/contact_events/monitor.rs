@@ -18,7 +18,7 @@
 //! sign of q̈ behind t₁ does: as long as it leads away from the stop, there is no contact.
 
 use crate::contact::ContactStep;
-use crate::crossings::{are_together, fall_below_zero, first_of};
+use crate::crossings::{are_together, fall_below_zero, first_inside, first_of};
 use crate::error::Result;
 use crate::ode::{OdeState, OdeSystem, Step};
 use dwell_numerics::root;
@@ -248,26 +248,4 @@ impl ContactMonitor {
         system.pass_contacts(at.t, &mut at.y, &step)?;
         self.find_leaving(system, at, Some(touched))
     }
-}
-
-/// A time soon after the start of an interval at which a margin is positive, and a later one at which it is not: a short rebound lies
-/// between two points of a step.
-fn first_inside(
-    [start, end]: [f64; 2],
-    mut margin_at: impl FnMut(f64) -> Result<f64>,
-) -> Result<Option<[f64; 2]>> {
-    /// Halvings of the interval.
-    const HALVINGS: usize = 48;
-    let mut until = end;
-    for _ in 0..HALVINGS {
-        let at = start + 0.5 * (until - start);
-        if at <= start || at >= until {
-            break;
-        }
-        if margin_at(at)? > 0.0 {
-            return Ok(Some([at, until]));
-        }
-        until = at;
-    }
-    Ok(None)
 }

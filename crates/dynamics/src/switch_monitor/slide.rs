@@ -201,6 +201,7 @@ impl SwitchMonitor {
     pub(super) fn pass_while_sliding(
         &mut self,
         crossing: &Crossing,
+        passed: &[bool],
         system: &mut dyn OdeSystem,
     ) -> Result<()> {
         let Some(mut sliding) = self.sliding.take() else {
@@ -214,8 +215,7 @@ impl SwitchMonitor {
                 *piece = if decided[k] { *piece } else { beside[k] };
             }
             self.take(side);
-            let mut changed = self.marked(crossing.passed.iter().map(|(k, _)| *k));
-            self.settle(&mut changed, system, at)?;
+            self.settle(&mut passed.to_vec(), system, at)?;
             *side = self.pieces();
         }
         self.watch_beside(&sliding);

@@ -1,6 +1,7 @@
 //! What loads do between the points of a step at which they are looked at: conditions that change in a window, and pulses.
 
 use super::{Crossing, SwitchMonitor};
+use crate::crossings::are_together;
 use crate::error::Result;
 use crate::ode::{OdeState, OdeSystem, Step};
 use crate::state_switches::Hidden;
@@ -65,32 +66,37 @@ impl SwitchMonitor {
             )?;
         }
         let (from, length) = (step.before.t, step.duration());
-        let until = crossing.as_ref().map_or(f64::INFINITY, |c| c.state.t);
         let pieces = self.pieces();
-        let found = match system.hidden_in(&between.samples, &pieces) {
-            Some(Hidden::Passage { switch, at }) => self.passage(
-                (switch, from + at * length),
-                &mut between.samples,
-                system,
-                step,
-            )?,
+        let hidden = system.hidden_in(&between.samples, &pieces);
+        let found = match hidden {
+            Some(Hidden::Passage { switch, at }) => {
+                let about = (switch, from + at * length);
+                self.passage(about, &mut between.samples, system, step)?
+            }
             Some(Hidden::Pulse(pulse)) => {
-                between.fine = Some((
-                    pulse.width * length / STEPS_OF_A_RISE,
-                    from + (pulse.at + pulse.width) * length,
-                ));
-                Some(Crossing::begin_anew(step.state_from_start(
-                    from + (pulse.at - pulse.width).max(0.0) * length,
-                )?))
+                let begins = from + (pulse.at - pulse.width).max(0.0) * length;
+                Some(Crossing::begin_anew(step.state_from_start(begins)?))
             }
             None if between.fine.is_some_and(|(_, risen)| step.now.t >= risen) => {
-                between.fine = None;
                 Some(Crossing::begin_anew(step.now.clone()))
             }
             None => None,
         };
+        let until = crossing.as_ref().map_or(f64::INFINITY, |c| c.state.t);
+        let is_earlier =
+            |found: &Crossing| found.state.t < until && !are_together(found.state.t, until);
+        let found = found.filter(is_earlier);
+        if let Some(found) = found.as_ref().filter(|found| found.passed.is_empty()) {
+            between.fine = match hidden {
+                Some(Hidden::Pulse(pulse)) => {
+                    let rise = pulse.width * length;
+                    Some((rise / STEPS_OF_A_RISE, found.state.t + 2.0 * rise))
+                }
+                _ => None,
+            };
+        }
         self.between = Some(between);
-        Ok(found.filter(|found| found.state.t < until).or(crossing))
+        Ok(found.or(crossing))
     }
 
     /// Where a switch is passed at about a time in a step, if it is.

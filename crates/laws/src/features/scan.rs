@@ -158,13 +158,7 @@ impl<'f> Scan<'f> {
                 match decide(pieces, switch, over, sides) {
                     Decision::Side(side) => sides[switch.op][switch.function] = Some(side),
                     Decision::Unknown if is_short => {
-                        let middle = 0.5 * (cell.from + cell.to);
-                        let apart = TOUCH * cell.from.abs().max(cell.to.abs());
-                        let side_at = |x: f64| switch.side(pieces.switch_value(switch, x));
-                        // What touches its level, within a rounding of its value, stays on its side.
-                        let around = [middle - apart, middle + apart].map(side_at);
-                        let touches = around[0] == around[1];
-                        let side = if touches { around[0] } else { side_at(middle) };
+                        let side = side_within(pieces, switch, over);
                         sides[switch.op][switch.function] = Some(side);
                     }
                     Decision::Unknown => return Examined::Halve(*source),
@@ -399,6 +393,19 @@ fn decide(pieces: &Pieces, switch: &Switch, over: Interval, sides: &[Sides]) -> 
         (true, _) => Decision::Unknown,
         (false, true) => Decision::Side(if sum > 0.0 { level } else { level - 1.0 }),
         (false, false) => Decision::Side(sum.signum()),
+    }
+}
+
+/// The side of a switch in an interval of a few roundings. What touches its level, within a rounding of its value, stays on its side.
+fn side_within(pieces: &Pieces, switch: &Switch, over: Interval) -> f64 {
+    let middle = 0.5 * (over.lo + over.hi);
+    let apart = TOUCH * over.magnitude();
+    let side_at = |x: f64| switch.side(pieces.switch_value(switch, x));
+    let [before, behind] = [middle - apart, middle + apart].map(side_at);
+    if before == behind {
+        before
+    } else {
+        side_at(middle)
     }
 }
 

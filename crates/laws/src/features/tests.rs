@@ -1,6 +1,7 @@
 //! Every switch is found, to rounding, and between switches every piece is as smooth as it says.
 
 use super::*;
+use proptest::prelude::*;
 
 fn features(text: &str) -> Features {
     let mut features = Features::default();
@@ -149,4 +150,50 @@ fn laws_end_their_pieces_at_their_corners() {
     }
     assert_eq!(pieces[1].width, 0.25);
     assert_eq!(pieces[4].width, pieces[4].to - pieces[4].from);
+}
+
+/// Functions of time that are constant between eighths of a second, of decisions within decisions.
+fn nested() -> impl Strategy<Value = String> {
+    let eighth = || (0..=16_i32).prop_map(|k| format!("{}", f64::from(k) / 8.0));
+    let leaf = prop_oneof![
+        eighth().prop_map(|k| format!("step(t - {k})")),
+        eighth().prop_map(|k| format!("floor(2*(t - {k}))")),
+        eighth().prop_map(|k| format!("sign(max(0, {k} - t))")),
+        eighth().prop_map(|k| format!("sign(abs(t - {k}) - (t - {k}))")),
+        (-1..=2_i32).prop_map(|k| format!("({k} + 0*t)")),
+    ];
+    leaf.prop_recursive(4, 24, 4, |inner| {
+        let compare = prop::sample::select(vec!["<", "<=", ">", ">="]);
+        let function = prop::sample::select(vec!["step", "sign", "floor", "abs", "-floor"]);
+        let pair = prop::sample::select(vec!["min", "max"]);
+        let three = (inner.clone(), inner.clone(), inner.clone());
+        prop_oneof![
+            3 => (three, compare, -1..=2_i32)
+                .prop_map(|((a, d, e), c, b)| format!("if({a} {c} {b}, {d}, {e})")),
+            3 => (function, inner.clone()).prop_map(|(f, a)| format!("{f}({a})")),
+            2 => (pair, inner.clone(), inner.clone()).prop_map(|(f, a, b)| format!("{f}({a}, {b})")),
+            1 => (inner.clone(), inner.clone()).prop_map(|(a, b)| format!("({a} - ({b}))")),
+            1 => inner.prop_map(|a| format!("clamp({a}, -1, 1)")),
+        ]
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// A function that rests on its threshold is decided, not searched: few pieces, and a restart wherever the value jumps.
+    #[test]
+    fn decisions_within_decisions_are_located(text in nested()) {
+        let expression = Expression::parse(&text, &["t"]).expect("a law");
+        let mut features = Features::default();
+        features.add_expression(0, &expression, 0);
+        let pieces: Vec<Piece> = features.scan_switches(0.0, 2.0).take(500).map_while(Result::ok).collect();
+        prop_assert!(features.is_empty() || pieces.len() < 400, "{text}: {} pieces", pieces.len());
+        let value = |k: i32| expression.eval(&[(f64::from(k) + 0.5) / 8.0]);
+        for k in 1..16 {
+            let at = f64::from(k) / 8.0;
+            let restarts = pieces.iter().any(|piece| piece.restart && (piece.to - at).abs() < 1e-12);
+            prop_assert!(value(k) == value(k - 1) || restarts, "{text} at {at}");
+        }
+    }
 }
