@@ -26,6 +26,10 @@ pub(crate) trait ConservativeSystem {
     /// Its inertia, potential and force at `q` (rad or m).
     fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms>;
 
+    /// For each frame or hinge at the last `q`: its angle (rad, but for whole revolutions) and the derivative of this angle with respect to
+    /// the coordinate; none where positions are not known.
+    fn turns(&self) -> Vec<[f64; 2]>;
+
     /// The range of the coordinate.
     fn range(&self) -> Range;
 
@@ -77,6 +81,10 @@ impl<R: ReducedModel> ConservativeSystem for UnloadedSystem<'_, R> {
             potential: 0.0,
             force: 0.0,
         })
+    }
+
+    fn turns(&self) -> Vec<[f64; 2]> {
+        self.model.unit_turns(&self.workspace)
     }
 
     fn range(&self) -> Range {
@@ -142,6 +150,10 @@ impl<M: MovingModel> ConservativeSystem for LoadedSystem<M> {
             potential,
             force,
         })
+    }
+
+    fn turns(&self) -> Vec<[f64; 2]> {
+        self.model.column_turns(&self.workspace)
     }
 
     fn range(&self) -> Range {

@@ -13,9 +13,9 @@
 //! F_{k−1}/(k−1) is −F₁ for k = 0 and zero for k = 1. The half towards b is the mirror image. The same
 //! integral places the turning points: to the rounding of Q, not of V.
 
-use crate::conservative::{ConservativeSystem, EnergyTerms};
+use crate::conservative::ConservativeSystem;
 use crate::error::{DynamicsError, Result};
-use crate::time_density::{ResolvedMotion, TimeDensity};
+use crate::time_density::{ResolvedMotion, Sample, TimeDensity, hides_turns, watched_panels};
 use dwell_numerics::fourier::{
     FourierSeries, MAX_POINTS, MIN_POINTS, SHARP_POINTS, refine_samples,
 };
@@ -24,6 +24,11 @@ use std::f64::consts::{PI, TAU};
 
 /// Highest number of improvements of the turning points.
 const MAX_REFINEMENTS: usize = 60;
+/// Samples at which the work of the force is compared with the potential, and by what part of the largest difference of potentials, or so many
+/// times the last coefficients of the force, it may differ.
+const COMPARED_WORKS: usize = 16;
+const WORK_ERROR: f64 = 1e-6;
+const LEFT_OUT: f64 = 100.0;
 
 /// The turning points of the libration that passes `q` with a kinetic energy (J), from approximate ones.
 pub(crate) fn turning_points(
@@ -53,7 +58,7 @@ pub(crate) fn turning_points(
 /// A libration sampled at equally spaced phases from the lower turning point up and back.
 pub(crate) struct SampledLibration {
     pub(crate) turning_points: [f64; 2],
-    samples: Vec<EnergyTerms>,
+    samples: Vec<Sample>,
     force_series: FourierSeries,
 }
 
@@ -84,9 +89,16 @@ impl SampledLibration {
             self.check_points()?;
         }
         let mut points = self.samples.len();
-        let series = self.time_density();
+        let mut series = self.time_density();
+        let (step, half) = (TAU / points as f64, self.half_width());
+        let upwards = self.samples.iter().take(points / 2 + 1);
+        let rate = |phase: f64| half * phase.sin();
+        let is_hidden = hides_turns(&mut series, accuracy, (upwards, step), rate);
+        if let (true, Some(tail)) = (is_hidden, self.missed_work()) {
+            return Err(DynamicsError::NotResolved { points, tail });
+        }
         let is_resolved = self.force_series.is_resolved && series.is_resolved;
-        let is_sharp = points >= SHARP_POINTS && !is_resolved;
+        let is_sharp = (points >= SHARP_POINTS || is_hidden) && !is_resolved;
         let time_density = if is_sharp && (series.tail >= accuracy || series.tail.is_nan()) {
             while !self.force_series.is_resolved {
                 self.check_points()?;
@@ -129,26 +141,50 @@ impl SampledLibration {
             } else {
                 b - 2.0 * half * cosine * cosine
             };
-            system.energy_terms(q)
+            let terms = system.energy_terms(q)?;
+            Ok::<_, DynamicsError>((terms, system.turns()))
         };
         let samples = std::mem::take(&mut self.samples);
         // Downwards is as upwards: half of a period is evaluated.
-        let (known, mut found) = (samples.len(), Vec::new());
+        let (known, mut found) = (samples.len(), Vec::<Sample>::new());
         self.samples = refine_samples::<_, DynamicsError>(samples, first, |part| {
             let k = found.len();
             let terms = match (part <= 0.5, known) {
                 (true, _) => terms_at(part)?,
-                (false, 0) => found[first - k],
-                (false, _) => found[known - 1 - k],
+                (false, 0) => found[first - k].clone(),
+                (false, _) => found[known - 1 - k].clone(),
             };
-            found.push(terms);
+            found.push(terms.clone());
             Ok(terms)
         })?;
-        let forces: Vec<f64> = self.samples.iter().map(|h| h.force).collect();
+        let forces: Vec<f64> = self.samples.iter().map(|(h, _)| h.force).collect();
         let size = forces.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
         self.force_series = FourierSeries::new(&forces, size);
         let series = &mut self.force_series;
-        series.check_between(size, |part| Ok(terms_at(part)?.force))
+        series.check_between(size, |part| terms_at(part).map(|(terms, _)| terms.force))
+    }
+
+    /// The largest difference between the work of the series of the force and that of the potential, as a part of the largest
+    /// potential difference, where it is more than the series leaves out. A force that acts within a small part of the phase is at
+    /// no sample, but its work is.
+    fn missed_work(&self) -> Option<f64> {
+        let n = self.samples.len();
+        let upwards = self.samples[..=n / 2].iter();
+        let works: Vec<f64> = upwards
+            .map(|(at, _)| self.samples[0].0.potential - at.potential)
+            .collect();
+        let size = works
+            .iter()
+            .fold(0.0_f64, |size, work| size.max(work.abs()));
+        let compared = works
+            .iter()
+            .enumerate()
+            .step_by((n / 2).div_ceil(COMPARED_WORKS));
+        let missed = compared.fold(0.0_f64, |missed, (k, work)| {
+            missed.max((work - self.kinetic_gain(TAU * k as f64 / n as f64)).abs())
+        });
+        let left_out = WORK_ERROR.max(LEFT_OUT * self.force_series.tail);
+        (missed > left_out * size).then_some(missed / size)
     }
 
     /// h (1 − cos s) G: the kinetic energy gained from the lower end to a phase.
@@ -172,7 +208,7 @@ impl SampledLibration {
         let phase = phase_of(q, self.turning_points).unwrap_or(if q < a { 0.0 } else { PI });
         let from_a = self.kinetic_gain(phase);
         let kinetic_left = [kinetic - from_a, kinetic - from_a + self.kinetic_gain(PI)];
-        let at = [0, self.samples.len() / 2].map(|k| self.samples[k].force);
+        let at = [0, self.samples.len() / 2].map(|k| self.samples[k].0.force);
         // At the lower end the force must point up, at the upper one down; else the end is too near.
         let mut moved = [a - width, b + width];
         if at[0] > 0.0 {
@@ -233,7 +269,7 @@ impl SampledLibration {
         let n = self.samples.len();
         let quotients = self.quotients();
         let mirrored = (0..n).map(|j| j.min(n - j));
-        let value = |j: usize| (self.samples[j].m / (2.0 * quotients[j])).sqrt();
+        let value = |j: usize| (self.samples[j].0.m / (2.0 * quotients[j])).sqrt();
         let values: Vec<f64> = mirrored.map(value).collect();
         let size = values.iter().sum::<f64>() / n as f64;
         FourierSeries::new(&values, size)
@@ -243,7 +279,7 @@ impl SampledLibration {
     fn piecewise_time_density(&self, system: &mut dyn ConservativeSystem) -> Result<Panels> {
         let [a, b] = self.turning_points;
         let half = 0.5 * (b - a);
-        Panels::new(|phase| {
+        let density = |system: &mut dyn ConservativeSystem, phase: f64| {
             // Downwards is as upwards.
             let phase = if phase > PI { TAU - phase } else { phase };
             let mirrored = phase > 0.5 * PI;
@@ -260,7 +296,8 @@ impl SampledLibration {
                 ratio * ratio
             });
             Ok((m * half * cos * cos / quotient).sqrt())
-        })
+        };
+        watched_panels(system, density, |phase| half * phase.sin())
     }
 
     /// The largest kinetic energy, J.

@@ -13,7 +13,8 @@
 //! with P the angle after which everything repeats itself, a and b the turning points, and c_k, s_k the Fourier
 //! coefficients of dt/ds. Both kinds of dt/ds are smooth and periodic, so that the trapezoid rule has all
 //! digits of (4) and (3) all of the time history. Where dt/ds is too sharp for equally spaced points, next to a
-//! maximum of V or where the inertia is small, it is integrated on panels.
+//! maximum of V or where the inertia is small, it is integrated on panels. So it is where a body swings between two points by more than
+//! its rates say: its peak of m may be at no point.
 
 use crate::close_branches::is_too_close;
 use crate::conservative::{ConservativeSystem, LoadedSystem, UnloadedSystem};

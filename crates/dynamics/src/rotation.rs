@@ -2,9 +2,8 @@
 
 use crate::conservative::{ConservativeSystem, EnergyTerms};
 use crate::error::{DynamicsError, Result};
-use crate::time_density::{ResolvedMotion, TimeDensity};
+use crate::time_density::{ResolvedMotion, Sample, TimeDensity, hides_turns, watched_panels};
 use dwell_numerics::fourier::{FourierSeries, SHARP_POINTS, refine_samples};
-use dwell_numerics::panels::Panels;
 use std::f64::consts::TAU;
 
 /// A rotation sampled at equally spaced phases.
@@ -14,7 +13,7 @@ pub(crate) struct SampledRotation {
     pub(crate) angle_per_period: f64,
     /// Kinetic and potential energy at the start, J.
     energies: [f64; 2],
-    samples: Vec<EnergyTerms>,
+    samples: Vec<Sample>,
 }
 
 impl SampledRotation {
@@ -40,15 +39,17 @@ impl SampledRotation {
         let (from, angle_per_period) = (self.first, self.angle_per_period);
         let samples = std::mem::take(&mut self.samples);
         self.samples = refine_samples(samples, first, |part| {
-            system.energy_terms(from + angle_per_period * part)
+            let terms = system.energy_terms(from + angle_per_period * part)?;
+            Ok::<_, DynamicsError>((terms, system.turns()))
         })?;
         let [kinetic, potential] = self.energies;
         let kinetic_left = |at: &EnergyTerms| kinetic + (potential - at.potential);
         let density = |at: &EnergyTerms| {
             angle_per_period.abs() / TAU * (at.m / (2.0 * kinetic_left(at))).sqrt()
         };
-        let values: Vec<f64> = self.samples.iter().map(density).collect();
-        let max_kinetic = self.samples.iter().map(kinetic_left).fold(0.0, f64::max);
+        let terms = || self.samples.iter().map(|(terms, _)| terms);
+        let values: Vec<f64> = terms().map(density).collect();
+        let max_kinetic = terms().map(kinetic_left).fold(0.0, f64::max);
         let mut points = self.samples.len();
         let size = values.iter().sum::<f64>() / points as f64;
         let mut series = FourierSeries::new(&values, size);
@@ -57,13 +58,21 @@ impl SampledRotation {
                 &system.energy_terms(from + angle_per_period * part)?,
             ))
         })?;
-        let is_sharp = points >= SHARP_POINTS && !series.is_resolved;
+        let step = TAU / points as f64;
+        let samples = self.samples.iter().chain(self.samples.first());
+        let rate = |_| angle_per_period / TAU;
+        let is_hidden = hides_turns(&mut series, accuracy, (samples, step), rate);
         let mut is_resolved = series.is_resolved;
+        let is_sharp = (points >= SHARP_POINTS || is_hidden) && !is_resolved;
         let time_density = if is_sharp && (series.tail >= accuracy || series.tail.is_nan()) {
-            let panels = Panels::new::<DynamicsError>(|phase| {
-                let at = system.energy_terms(from + angle_per_period * (phase / TAU))?;
-                Ok(density(&at))
-            })?;
+            let panels = watched_panels(
+                system,
+                |system: &mut dyn ConservativeSystem, phase: f64| {
+                    let q = from + angle_per_period * (phase / TAU);
+                    Ok(density(&system.energy_terms(q)?))
+                },
+                rate,
+            )?;
             points += panels.points;
             is_resolved = true;
             TimeDensity::Piecewise(panels)

@@ -24,6 +24,15 @@ pub struct Motion<T> {
     workspace: Vec<T>,
 }
 
+impl Motion<f64> {
+    /// For each frame: its angle at a pose (rad, whole revolutions left out) and its angular velocity, rad/s.
+    pub fn turns(&self, pose: &Pose<f64>) -> Vec<[f64; 2]> {
+        let frames = pose.rotation.iter().zip(&self.velocity.angular);
+        let turn = |(rotation, &rate): (&Vec2, _)| [rotation.y.atan2(rotation.x), rate];
+        frames.map(turn).collect()
+    }
+}
+
 impl Plan {
     /// A motion with the right sizes.
     pub fn motion<T: Scalar>(&self) -> Motion<T> {

@@ -57,6 +57,12 @@ pub trait ReducedModel: Sync {
     /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
     fn inertia(&self, q: f64, work: &mut Self::Workspace) -> PositionResult<(f64, f64)>;
 
+    /// The turns of the mechanism after [`ReducedModel::inertia`], as [`ReducibleModel::unit_turns`] gives them; none of a table, which
+    /// knows no positions.
+    fn unit_turns(&self, _work: &Self::Workspace) -> Vec<[f64; 2]> {
+        Vec::new()
+    }
+
     /// m, ½m′ and ½m″ at `q` (rad).
     ///
     /// # Errors
@@ -148,6 +154,10 @@ impl ReducibleModel for Model {
     ) -> PositionResult {
         self.reduce(q, workspace, out)
     }
+
+    fn unit_turns(&self, workspace: &Workspace<f64>) -> Vec<[f64; 2]> {
+        workspace.motion.turns(&workspace.pose)
+    }
 }
 
 impl Model {
@@ -215,6 +225,10 @@ impl<M: ReducibleModel> ReducedModel for ExactModel<M> {
             .inertia_model
             .reduced_inertia(q, &mut workspace.inertia);
         inertia.map(<(f64, f64)>::from)
+    }
+
+    fn unit_turns(&self, workspace: &Self::Workspace) -> Vec<[f64; 2]> {
+        self.inertia_model.unit_turns(&workspace.inertia)
     }
 
     fn inertia_derivatives(

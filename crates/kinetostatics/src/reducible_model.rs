@@ -85,4 +85,8 @@ pub trait ReducibleModel: Sync + Sized {
         self.reduce_at(q, workspace, &mut out)?;
         Ok([out.m, out.half_dm])
     }
+
+    /// After [`ReducibleModel::reduced_inertia`], for each frame or hinge: its angle (rad, whole revolutions left out) and the derivative
+    /// of this angle with respect to the coordinate.
+    fn unit_turns(&self, workspace: &Self::Workspace<f64>) -> Vec<[f64; 2]>;
 }

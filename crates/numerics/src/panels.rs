@@ -15,6 +15,10 @@ const COEFFICIENT_ROUNDING: f64 = 2e-15;
 const NOISY_TAIL: f64 = 1e-4;
 const FLATNESS: f64 = 0.25;
 
+/// So many times the last coefficients of a panel, or this part of its largest value, may separate its series from the function at its ends.
+const END_TAILS: f64 = 100.0;
+const END_ERROR: f64 = 1e-6;
+
 /// A function that the highest number of panels does not resolve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NotResolved {
@@ -54,7 +58,19 @@ impl Panels {
     ///
     /// # Errors
     /// [`NotResolved`], or the first error of the function.
-    pub fn new<E: From<NotResolved>>(mut of: impl FnMut(f64) -> Result<f64, E>) -> Result<Self, E> {
+    pub fn new<E: From<NotResolved>>(of: impl FnMut(f64) -> Result<f64, E>) -> Result<Self, E> {
+        Self::checked(of, || true)
+    }
+
+    /// The same, where a panel whose series is resolved is halved all the same unless a check of the points that were evaluated
+    /// since the check before accepts it.
+    ///
+    /// # Errors
+    /// As [`Panels::new`].
+    pub fn checked<E: From<NotResolved>>(
+        mut of: impl FnMut(f64) -> Result<f64, E>,
+        mut check: impl FnMut() -> bool,
+    ) -> Result<Self, E> {
         let mut found = Self::default();
         // The last is next: the panels come in order.
         let mut open = vec![(0.5 * TAU, TAU, 1), (0.0, 0.5 * TAU, 1)];
@@ -63,7 +79,8 @@ impl Panels {
         while let Some((from, to, halvings)) = open.pop() {
             let panel = Panel::new(from, to, sum, &mut of)?;
             found.points += PANEL_POINTS;
-            let done = panel.is_resolved();
+            let is_resolved = panel.is_resolved() && panel.holds_at_ends(&mut of)?;
+            let done = check() && is_resolved;
             if !done && (halvings >= MAX_HALVINGS || found.panels.len() + open.len() >= MAX_PANELS)
             {
                 return Err(E::from(NotResolved {
@@ -164,6 +181,18 @@ impl Panel {
         let [middle, last] = [third..2 * third, 2 * third..PANEL_POINTS];
         let is_flat = sum(&self.coefficients[last]) > FLATNESS * sum(&self.coefficients[middle]);
         self.tail <= COEFFICIENT_ROUNDING * largest || (self.tail < NOISY_TAIL * largest && is_flat)
+    }
+
+    /// Whether the series is the function at the ends, too: a peak there is beyond the outermost points.
+    fn holds_at_ends<E>(&self, of: &mut impl FnMut(f64) -> Result<f64, E>) -> Result<bool, E> {
+        let largest = self.coefficients.iter().map(|c| c.abs()).sum::<f64>();
+        let allowed = (END_TAILS * self.tail).max(END_ERROR * largest);
+        for end in [self.from, self.to] {
+            if !((of(end)? - self.eval(end)[0]).abs() <= allowed) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     fn eval(&self, phase: f64) -> [f64; 2] {

@@ -10,7 +10,7 @@ use super::lower::Lowered;
 use super::mechanism::{Assembly, Mechanism, Placement};
 use super::prediction::Predictions;
 use super::rank::Mobility;
-use super::tree::{Driver, Tree};
+use super::tree::{Driver, FreedomKind, Tree};
 use super::vector::{Rotation, Vec3};
 use super::wrench::Wrench;
 use crate::error::{AssemblyError, StructureError};
@@ -287,6 +287,20 @@ impl Plan {
     #[inline(always)]
     pub fn frame<'a, T: Scalar>(&self, pose: &'a Pose<T>, body: usize) -> &'a Frame<T> {
         &pose.frames[body]
+    }
+
+    /// For each hinge and screw: its angle, rad, and its rate in a motion of the pose, rad/s.
+    pub fn turns(&self, pose: &Pose<f64>, motion: &PoseMotion<f64>) -> Vec<[f64; 2]> {
+        let all = self.tree.freedoms.iter().zip(&pose.coordinates);
+        let turning = all
+            .zip(&motion.rates)
+            .filter(|((kind, _), _)| matches!(kind, FreedomKind::Turn | FreedomKind::Screw(_)));
+        turning.map(|((_, &angle), &rate)| [angle, rate]).collect()
+    }
+
+    /// The same in the motion that the pose has.
+    pub fn unit_turns(&self, pose: &Pose<f64>) -> Vec<[f64; 2]> {
+        self.turns(pose, &pose.motion)
     }
 
     /// Where a body is.

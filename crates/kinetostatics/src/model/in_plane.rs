@@ -216,6 +216,10 @@ impl MachineModel for Model {
         result.read_from(model, pose, pass);
     }
 
+    fn column_turns(&self, workspace: &Workspace<f64>) -> Vec<[f64; 2]> {
+        workspace.virtual_motion.turns(&workspace.pose)
+    }
+
     #[inline]
     fn load_response<T: Scalar>(
         &self,

@@ -162,6 +162,9 @@ pub trait MachineModel: ReducibleModel + Debug + Clone + PartialEq + Send + 'sta
         result: &mut InverseDynamics<T>,
     );
 
+    /// The turns, as of [`ReducibleModel::unit_turns`], in the motion of the last column of the mass matrix.
+    fn column_turns(&self, workspace: &Self::Workspace<f64>) -> Vec<[f64; 2]>;
+
     /// The response to a load alone of magnitude 1, at rest; of a damper, to a unit of its resistance.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use super::lifted_reactions::{LiftedReactions, LiftedWorkspace};
 use super::model::{Model, Workspace};
 use crate::mass::Mass;
 use crate::model::{Model as PlanarModel, Workspace as PlanarWorkspace};
-use crate::reduced::Coefficients;
+use crate::reduced::{Coefficients, ReducibleModel as _};
 use dwell_geometry::Range;
 use dwell_numerics::Scalar;
 use std::f64::consts::TAU;
@@ -136,6 +136,12 @@ impl Model {
     /// [for them](crate::ReducibleModel::for_coefficients) or [for inertia alone](crate::ReducibleModel::for_inertia).
     pub fn is_in_plane(&self) -> bool {
         self.in_plane.is_some()
+    }
+
+    /// The turns of the planar equivalent, where there is one.
+    pub(super) fn in_plane_turns(&self, workspace: &Workspace<f64>) -> Option<Vec<[f64; 2]>> {
+        let (in_plane, of) = self.in_plane.as_ref().zip(workspace.in_plane.as_ref())?;
+        Some(in_plane.model.unit_turns(&of.planar))
     }
 
     /// The reduced coefficients from the planar equivalent; false where there is none, or no pose.

@@ -307,6 +307,11 @@ impl MachineModel for Model {
         workspace.pose.swap_motion(&mut workspace.virtual_motion);
     }
 
+    fn column_turns(&self, workspace: &Workspace<f64>) -> Vec<[f64; 2]> {
+        self.plan()
+            .turns(&workspace.pose, &workspace.virtual_motion)
+    }
+
     #[inline]
     fn load_response<T: Scalar>(
         &self,

@@ -76,4 +76,11 @@ impl ReducibleModel for Model {
     ) -> PositionResult {
         self.reduce(q, workspace, out)
     }
+
+    fn unit_turns(&self, workspace: &Workspace<f64>) -> Vec<[f64; 2]> {
+        match self.in_plane_turns(workspace) {
+            Some(turns) => turns,
+            None => self.plan().unit_turns(&workspace.pose),
+        }
+    }
 }

@@ -13,6 +13,7 @@ mod large_groups;
 mod limit_positions;
 pub mod machines;
 mod mechanisms;
+mod narrow_peaks;
 mod paper_mechanism;
 pub mod pulses;
 mod ratios;
@@ -59,6 +60,7 @@ pub fn all_series(slow: bool) -> Vec<ParameterSeries> {
     series.extend(free_motion::series(slow));
     series.extend(stiff::series());
     series.extend(singular::series());
+    series.extend(narrow_peaks::series());
     series.extend(paper_mechanism::series());
     series.extend(ratios::series());
     series.extend(large_groups::series());

@@ -196,7 +196,7 @@ impl FreeMotionProblem<'_> {
 impl Difference {
     /// What is said of a motion with this error, how it was computed, and the numbers in it.
     pub(super) fn remarks(&self, accuracy: f64, how: &str) -> (String, Record) {
-        let (coordinate, energy) = (self.coordinate, self.energy);
+        let (coordinate, energy) = (self.coordinate, self.energy_error());
         let (required, reactions) = (two_digits(accuracy), self.reactions);
         let remarks = format!(
             "  accuracy {required}: {how}\n  estimated errors over the whole motion: {coordinate:.1e} in the coordinates, \

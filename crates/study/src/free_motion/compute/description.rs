@@ -1,6 +1,6 @@
 //! The summary of a motion.
 
-use crate::estimate;
+use crate::estimate::{self, error_scale, relative};
 use crate::free_motion::compute::{
     ComputedMotion, Energies, FreeMotionProblem, MotionProblem as _, NamedContacts,
     SegmentedMotion, balance_line, class_line, cost_line, event_line, times_of,
@@ -90,7 +90,7 @@ impl FreeMotionProblem<'_> {
         }
         text += &cost_line(&motion.statistics, &mut record);
         let turning_point_errors = |points| Some(self.turning_point_errors(points));
-        text += &class_line(self, turning_point_errors, &mut record);
+        text += &class_line(self, &motion.segments, turning_point_errors, &mut record);
         text += &self.describe_energy_balance(motion, duration, &mut record);
         (text, record)
     }
@@ -154,13 +154,9 @@ impl FreeMotionProblem<'_> {
         points.map_while(at).collect()
     }
 
-    /// The error of the energy balance.
-    fn describe_energy_balance(
-        &self,
-        motion: &SegmentedMotion,
-        duration: f64,
-        record: &mut Record,
-    ) -> String {
+    /// The largest kinetic energy and potential energy of a motion and the largest error of its energy balance, J; and the energies at its
+    /// samples.
+    fn balance(&self, motion: &SegmentedMotion) -> ([f64; 2], f64, Vec<Energies>) {
         let at_steps = self.energies(motion, motion.steps());
         let at_samples = self.energies(motion, motion.samples());
         let initial = at_steps.first().map_or(0.0, |at| at.balance);
@@ -169,6 +165,25 @@ impl FreeMotionProblem<'_> {
         let both = || at_steps.iter().chain(&at_samples);
         let max_kinetic = both().map(|at| at.kinetic).fold(0.0, f64::max);
         let max_potential = both().map(|at| at.potential.abs()).fold(0.0, f64::max);
+        ([max_kinetic, max_potential], max_difference, at_samples)
+    }
+
+    /// The largest error of the energy balance of a motion, as a part of the largest kinetic energy, or of the potential energy where that
+    /// is a rounding.
+    pub(super) fn imbalance(&self, motion: &SegmentedMotion) -> f64 {
+        let ([kinetic, potential], difference, _) = self.balance(motion);
+        relative(difference, error_scale(kinetic, potential))
+    }
+
+    /// The error of the energy balance.
+    fn describe_energy_balance(
+        &self,
+        motion: &SegmentedMotion,
+        duration: f64,
+        record: &mut Record,
+    ) -> String {
+        let (largest, max_difference, at_samples) = self.balance(motion);
+        let [max_kinetic, max_potential] = largest;
         if max_kinetic <= REST * self.energy_scale(duration, max_potential) {
             let rounding = if max_kinetic == 0.0 {
                 ""
@@ -181,7 +196,6 @@ impl FreeMotionProblem<'_> {
             }
             return text;
         }
-        let largest = [max_kinetic, max_potential];
         let (relative_loss, mut text) = balance_line(largest, max_difference, &at_samples, record);
         // By quadrature it is part of the estimated error.
         if relative_loss > MAX_ENERGY_LOSS && motion.orbit.is_none() {

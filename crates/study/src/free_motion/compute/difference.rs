@@ -13,8 +13,10 @@ const COMPARED_SAMPLES: usize = 64;
 pub(crate) struct Difference {
     /// Of the free coordinates: rad, or for lengths relative to the largest change.
     pub(crate) coordinate: f64,
-    /// Of the energy balance, relative to the largest kinetic energy.
-    pub(crate) energy: f64,
+    /// Of the kinetic energy and of the energy balance, relative to the largest kinetic energy.
+    energy: f64,
+    /// What the energy balance of the first computation shows of its error, relative to the largest kinetic energy.
+    imbalance: f64,
     /// Of the reactions, relative to the largest of their unit.
     pub(crate) reactions: f64,
     /// Of the end time, relative to it.
@@ -24,16 +26,27 @@ pub(crate) struct Difference {
 impl Difference {
     /// The largest of all.
     pub(crate) fn largest(&self) -> f64 {
-        let others = [self.energy, self.reactions, self.end];
+        let others = [self.energy_error(), self.reactions, self.end];
         // NaN counts as largest.
         others.into_iter().fold(self.coordinate, |largest, other| {
             if other <= largest { largest } else { other }
         })
     }
 
+    /// Of the energies: no less than what the balance shows.
+    pub(crate) fn energy_error(&self) -> f64 {
+        nan_max(self.imbalance, self.energy)
+    }
+
+    /// The same where the balance shows this error.
+    pub(crate) fn with_imbalance(self, imbalance: f64) -> Self {
+        Self { imbalance, ..self }
+    }
+
     /// The sums of both.
     pub(crate) fn plus(self, other: &Self) -> Self {
         Self {
+            imbalance: nan_max(self.imbalance, other.imbalance),
             coordinate: self.coordinate + other.coordinate,
             energy: self.energy + other.energy,
             reactions: self.reactions + other.reactions,
@@ -57,6 +70,7 @@ impl Difference {
             energy: factor * self.energy,
             reactions: factor * self.reactions,
             end: factor * self.end,
+            ..self
         }
     }
 }
@@ -108,9 +122,16 @@ impl Compared<'_> {
         let balance = |s: &TrajectorySample| s.extra_values[balance_index];
         let [kinetic, potential] = [0, 1].map(|k| max_abs(&|s| s.extra_values[k]));
         let [end_one, end_two] = self.ends;
+        let scale = error_scale(kinetic, potential);
+        // A motion that is late has the right balance and other energies.
+        let differences = [
+            max_difference(&|s| s.extra_values[0]),
+            max_difference(&balance),
+        ];
         Ok(Difference {
             coordinate,
-            energy: relative(max_difference(&balance), error_scale(kinetic, potential)),
+            energy: relative(differences.into_iter().fold(0.0, nan_max), scale),
+            imbalance: relative(max_abs(&balance), scale),
             reactions: self.reaction_difference(reactions, &pairs, kinetic)?,
             end: relative((end_one - end_two).abs(), end_one.max(end_two)),
         })

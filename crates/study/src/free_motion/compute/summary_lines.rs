@@ -4,11 +4,15 @@ use crate::estimate::{self, is_rounding};
 use crate::free_motion::compute::MotionProblem;
 use crate::machines::MachineScene as _;
 use crate::number_format::{digits, digits_within, how_often};
-use dwell_dynamics::{MotionClass, Solution, Statistics, motion_class};
+use dwell_dynamics::{
+    DynamicsError, MotionClass, OdeState, Orbit, Solution, Statistics, motion_class,
+};
 use dwell_findings::Record;
 
 /// Of many changes so many are listed.
 const MAX_LISTED: usize = 6;
+/// Part of its way by which a motion may miss its orbit in the first period.
+const MISSED: f64 = 0.05;
 
 /// The first of some changes, and how many more there are.
 pub(crate) fn first_changes(mut all: Vec<String>) -> Vec<String> {
@@ -94,9 +98,10 @@ pub(crate) fn cost_line(cost: &Statistics, record: &mut Record) -> String {
 }
 
 /// The class of a conservative motion of one degree of freedom, from its energy, and its period; the turning points with their errors
-/// (rad or m), where these are known.
+/// (rad or m), where these are known. The period is that of `parts`, unless these are not followed by its orbit.
 pub(crate) fn class_line(
     problem: &impl MotionProblem,
+    parts: &[(usize, Solution)],
     turning_point_errors: impl Fn([f64; 2]) -> Option<[f64; 2]>,
     record: &mut Record,
 ) -> String {
@@ -135,14 +140,54 @@ pub(crate) fn class_line(
         }
         _ => return String::new(),
     };
-    format!("  by energy: {class}{}\n", period_text(problem, record))
+    format!(
+        "  by energy: {class}{}\n",
+        period_text(problem, parts, record)
+    )
+}
+
+/// Whether a motion in one part, without impacts, is on an orbit at its last step in the first period. A coarse integration may be some
+/// per cent off at the end of its steps; a quadrature that missed a peak of the inertia is wrong by a large part of the period.
+fn is_followed(orbit: &Orbit, parts: &[(usize, Solution)]) -> bool {
+    let [(_, solution)] = parts else {
+        return true;
+    };
+    let start = orbit.initial_state();
+    let begins = solution.steps.first().and_then(|step| step.y.first());
+    // It may have begun in another coordinate, next to a dead point.
+    if begins != Some(&start.q) || !solution.contact_events.is_empty() {
+        return true;
+    }
+    let in_first = |step: &&OdeState| step.t - start.t <= orbit.period;
+    let steps = solution.steps.iter().filter(in_first);
+    let coordinates = steps.filter_map(|step| Some((step.t, step.y.first().copied()?)));
+    let (mut moved, mut last) = (0.0_f64, None);
+    for (t, q) in coordinates {
+        moved = moved.max((q - start.q).abs());
+        last = Some((t, q));
+    }
+    let missed = last.map_or(0.0, |(t, q)| (orbit.state_at(t).q - q).abs());
+    missed <= MISSED * moved
 }
 
 /// The period of a motion with its error, where it has one.
-fn period_text(problem: &impl MotionProblem, record: &mut Record) -> String {
-    let Ok(orbit) = problem.orbit(1.0) else {
-        return String::new();
+fn period_text(
+    problem: &impl MotionProblem,
+    parts: &[(usize, Solution)],
+    record: &mut Record,
+) -> String {
+    let orbit = match problem.orbit(1.0) {
+        Ok(orbit) => orbit,
+        Err(DynamicsError::NotResolved { .. }) => {
+            return "; its period is not known: the quadrature does not resolve the inertia"
+                .to_owned();
+        }
+        Err(_) => return String::new(),
     };
+    if !is_followed(&orbit, parts) {
+        return "; its period is not known: the quadrature and the integrated motion disagree"
+            .to_owned();
+    }
     let period = match estimate::of_period(&orbit, |factor| problem.orbit(factor)) {
         Ok(error) => {
             record.add_within("period", "s", orbit.period, error);

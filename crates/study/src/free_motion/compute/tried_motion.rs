@@ -95,7 +95,8 @@ impl TriedMotion for FreeMotionProblem<'_> {
 
     fn difference_of(&self, [one, two]: [&SegmentedMotion; 2]) -> Result<Difference, StudyError> {
         let difference = self.difference(one, two);
-        difference.map_err(|error| self.explain(&error))
+        let difference = difference.map_err(|error| self.explain(&error))?;
+        Ok(difference.with_imbalance(self.imbalance(one)))
     }
 
     fn statistics(motion: &SegmentedMotion) -> Statistics {

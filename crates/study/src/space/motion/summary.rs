@@ -38,7 +38,7 @@ impl SpaceMotionProblem<'_> {
         text += &NamedContacts::new(self).describe(parts, second, &mut record);
         text += &self.describe_changes(run);
         text += &cost_line(&run.motion.statistics(), &mut record);
-        text += &class_line(self, |_| None, &mut record);
+        text += &class_line(self, parts, |_| None, &mut record);
         text += &self.describe_energy(run, &mut record);
         text += &self.describe_errors(run, &mut record);
         (text, record)
