@@ -139,10 +139,7 @@ impl Plan {
         counting: impl Fn(JointId) -> Result<Counting, &'static str>,
     ) -> Result<CoordinateFunction, &'static str> {
         let unknown = "the mechanism does not have its coordinate";
-        let in_frame = |body: BodyId, point: Vec3| {
-            let inverse = self.tree.internal[body.0].inverse();
-            inverse.point(point)
-        };
+        let in_frame = |body: BodyId, point| self.tree.internal[body.0].inner_point(point);
         if let Coordinate::Distance { bodies, points } = coordinate {
             if bodies.iter().any(|b| b.0 >= mechanism.bodies.len()) {
                 return Err(unknown);

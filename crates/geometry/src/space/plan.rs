@@ -273,8 +273,6 @@ impl Plan {
                 }
             }
         }
-        // The ground is placed once.
-        pose.frames[self.ground].position = self.tree.internal[self.ground].position.cast();
         pose
     }
 
@@ -283,19 +281,27 @@ impl Plan {
         self.tree.internal[body]
     }
 
-    /// That frame at a pose.
+    /// That frame at a pose: its origin from that of the ground's, so that nothing depends on where the mechanism stands.
     #[inline(always)]
     pub fn frame<'a, T: Scalar>(&self, pose: &'a Pose<T>, body: usize) -> &'a Frame<T> {
         &pose.frames[body]
     }
 
+    /// The point of the ground from which the [frames](Plan::frame) are counted, m.
+    pub fn origin(&self) -> Vec3 {
+        self.tree.internal[self.ground].position
+    }
+
     /// Where a body is.
     pub fn placement(&self, pose: &Pose<f64>, body: usize) -> Placement {
-        pose.frames[body].then(&self.tree.internal[body].inverse())
+        let mut placed = pose.frames[body].then(&self.tree.internal[body].inverse());
+        placed.position += self.origin();
+        placed
     }
 
     /// A point of a body, m in its frame, in the frame of the ground.
     pub fn point(&self, pose: &Pose<f64>, body: usize, point: Vec3) -> Vec3 {
-        self.placement(pose, body).point(point)
+        let inner = self.tree.internal[body].inner_point(point);
+        self.origin() + pose.frames[body].point(inner)
     }
 }
