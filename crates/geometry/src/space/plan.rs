@@ -60,6 +60,8 @@ pub struct Plan {
     /// The poses stored along the range of one actuator.
     pub(super) predictions: Predictions,
     pub(super) range: Range,
+    /// After how much of the only coordinate everything repeats but coordinates that gain the same each time.
+    pub(super) repetition: Option<f64>,
     /// Whether the branch ends at the lower and at the upper end of the range; otherwise it was not followed any further.
     pub(super) range_ends: [bool; 2],
     /// The coordinates at the assembly.
@@ -69,7 +71,7 @@ pub struct Plan {
     pub(super) closure_angles: Vec<StoredAngles>,
     /// By freedom: what it gains in a period of the only coordinate.
     pub(super) freedom_gains: Vec<f64>,
-    /// The freedoms that teeth turn, which keep count of all periods.
+    /// The freedoms that keep count of all periods: those that teeth turn, and those that gain where the pose does not repeat.
     pub(super) geared: Vec<usize>,
     /// In the range of the only coordinate.
     pub(super) change_points: Vec<ChangePoint>,
@@ -179,6 +181,7 @@ impl Plan {
         };
         plan.follow_range(&assembly.q, start, kind)
             .map_err(singular)?;
+        plan.require_closed_range(mechanism)?;
         plan.count_revolutions(mechanism);
         if plan.actuators() == 1 {
             plan.find_change_points();

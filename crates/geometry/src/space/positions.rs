@@ -48,8 +48,8 @@ impl Plan {
     /// # Errors
     /// [`PositionError`] when there is none.
     pub fn positions<T: Scalar>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PositionError> {
-        if let Some(wrong) = q.iter().find(|q| !q.value().is_finite()) {
-            return Err(PositionError::NotFinite { q: wrong.value() });
+        if q.iter().any(|q| !q.value().is_finite()) {
+            return Err(PositionError::NotFinite);
         }
         let Some(first) = q.first() else {
             self.start_from(&self.start, 0.0, pose);
@@ -195,8 +195,9 @@ impl Plan {
             self.place(&group.links, pose);
             self.fill_rows(group, pose);
             let outcome = self.factor(group, pose);
-            if outcome.pivot_ratio.is_nan() || outcome.pivot_ratio < singular::<T>() {
-                let relative_determinant = outcome.pivot_ratio;
+            // Not a number becomes zero.
+            let relative_determinant = outcome.pivot_ratio.max(0.0);
+            if relative_determinant < singular::<T>() {
                 return Err(PositionError::Singular {
                     group: g,
                     q,
@@ -219,7 +220,10 @@ impl Plan {
                 };
             }
             let step = self.newton_step(group, pose);
-            if step.is_nan() || step > LONG_STEP {
+            if step.is_nan() {
+                return Err(PositionError::NotFinite);
+            }
+            if step > LONG_STEP {
                 return Err(PositionError::NotConverged {
                     group: g,
                     q,

@@ -160,9 +160,10 @@ impl CompiledKind {
         let at = |body: usize, point: Vec3| plan.origin() + plan.frame(pose, body).point(point);
         match (self.action, self.resistance) {
             (Action::Gravity(direction), _) => {
-                let weights = masses.iter().enumerate().map(|(body, mass)| {
-                    -mass.mass * at(body, mass.center).dot(direction)
-                });
+                let weights = masses
+                    .iter()
+                    .enumerate()
+                    .map(|(body, mass)| -mass.mass * at(body, mass.center).dot(direction));
                 Some(weights.sum())
             }
             (Action::Force(body, arm, Direction::Ground(direction)), _) => {

@@ -14,6 +14,7 @@ mod limit_positions;
 pub mod machines;
 mod mechanisms;
 mod paper_mechanism;
+mod places;
 pub mod pulses;
 mod ratios;
 mod report;
@@ -63,6 +64,7 @@ pub fn all_series(slow: bool) -> Vec<ParameterSeries> {
     series.extend(ratios::series());
     series.extend(large_groups::series());
     series.extend(jamming::series());
+    series.extend(places::series());
     series
 }
 
