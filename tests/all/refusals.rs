@@ -283,10 +283,7 @@ fn a_coordinate_must_be_a_number() {
         let model = Setup::of(&case.scene()).model().expect("a model");
         for q in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let error = model.inertia(q, &mut model.workspace()).unwrap_err();
-            let PositionError::NotFinite { q: named } = error else {
-                panic!("{}: {error:?}", case.name);
-            };
-            assert_eq!(named.to_bits(), q.to_bits());
+            assert_eq!(error, PositionError::NotFinite, "{}", case.name);
         }
     }
 }

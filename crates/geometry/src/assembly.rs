@@ -184,7 +184,7 @@ impl Plan {
             PositionError::NotConverged { residual, .. } => residual,
             PositionError::OtherBranch { .. }
             | PositionError::OutOfRange { .. }
-            | PositionError::NotFinite { .. }
+            | PositionError::NotFinite
             | PositionError::LanesDiverge { .. } => f64::NAN,
         };
         AssemblyError::NoAssembly {

@@ -89,6 +89,18 @@ pub enum AssemblyError {
         /// What stays open, m.
         gap: f64,
     },
+    /// Redundant constraints agree at the assembly, but not along the range.
+    #[error("redundant constraints agree at assembly, but {gap:.3e} m stay open at q = {q}")]
+    NotThroughout {
+        /// The joints of their loops.
+        joints: Vec<JointId>,
+        /// Where they stay open, rad or m.
+        q: f64,
+        /// What stays open, m.
+        gap: f64,
+        /// Two joints whose axes are nearly parallel, and the angle between the axes, rad.
+        nearly_parallel: Option<([JointId; 2], f64)>,
+    },
     /// Gears, or a rack and its pinion, do not stand at the distance that their radii require.
     #[error("the gears are {distance} m apart, but their pitch radii require {required} m")]
     NotMeshing {
@@ -165,12 +177,9 @@ pub enum PositionError {
         /// Upper end of the range, rad.
         to: f64,
     },
-    /// A coordinate that is not a finite number was asked for.
-    #[error("the coordinate {q} is not a finite number")]
-    NotFinite {
-        /// The coordinate.
-        q: f64,
-    },
+    /// A coordinate, or what is computed from it, is not a finite number. It has no place to name.
+    #[error("a coordinate is not a finite number")]
+    NotFinite,
     /// Several poses were requested at once ([`Lanes`](dwell_numerics::Lanes)), but a decision differs between their
     /// coordinates: each is to be evaluated alone.
     #[error("the poses near q = {q} cannot be evaluated together in SIMD lanes")]
@@ -181,16 +190,18 @@ pub enum PositionError {
 }
 
 impl PositionError {
-    /// The coordinate of the first actuator at which it occurred, rad or m.
-    pub fn coordinate(&self) -> f64 {
+    /// The coordinate of the first actuator at which it occurred, rad or m; none of one that is not finite.
+    pub fn coordinate(&self) -> Option<f64> {
         let (Self::NoAssembly { q, .. }
         | Self::Singular { q, .. }
         | Self::OtherBranch { q, .. }
         | Self::NotConverged { q, .. }
         | Self::OutOfRange { q, .. }
-        | Self::LanesDiverge { q }
-        | Self::NotFinite { q }) = *self;
-        q
+        | Self::LanesDiverge { q }) = *self
+        else {
+            return None;
+        };
+        Some(q)
     }
 
     /// The group in which the error occurred.
@@ -200,7 +211,7 @@ impl PositionError {
             | Self::Singular { group, .. }
             | Self::OtherBranch { group, .. }
             | Self::NotConverged { group, .. } => Some(group),
-            Self::OutOfRange { .. } | Self::NotFinite { .. } | Self::LanesDiverge { .. } => None,
+            Self::OutOfRange { .. } | Self::NotFinite | Self::LanesDiverge { .. } => None,
         }
     }
 }

@@ -341,7 +341,7 @@ fn take_coordinates<T: Scalar>(q: &[T], pose: &mut Pose<T>) -> Result<(), Positi
         if T::LANES == 1 || !T::from_f64(f64::MAX).exceeds(value * value) {
             for q in (0..T::LANES).map(|lane| value.lane(lane)) {
                 if !q.is_finite() {
-                    return Err(PositionError::NotFinite { q });
+                    return Err(PositionError::NotFinite);
                 }
             }
         }

@@ -4,6 +4,7 @@
 //! `DWELL_SEED` and `DWELL_LOOPS` choose others than the usual ones, and `DWELL_FIRST` the number of the first.
 
 mod assembled;
+mod places;
 
 use assembled::{Assembled, DrivenBy, Random};
 use dwell_geometry::space::{

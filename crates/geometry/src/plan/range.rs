@@ -77,7 +77,7 @@ impl Range {
             return Ok(q);
         };
         if !q.is_finite() {
-            return Err(PositionError::NotFinite { q });
+            return Err(PositionError::NotFinite);
         }
         if (from..=to).contains(&q) {
             return Ok(q);

@@ -52,7 +52,7 @@ impl StoredPoses {
     /// The first and the last stored pose, and the coordinate among them with the whole periods that it is away.
     fn folded(&self, q: f64, range: Range) -> Result<([&StoredPose; 2], f64, f64), PositionError> {
         let (Some(first), Some(last)) = (self.poses.first(), self.poses.last()) else {
-            return Err(PositionError::NotFinite { q });
+            return Err(PositionError::NotFinite);
         };
         let (folded, periods) = match range.period() {
             // Over a period the stored poses repeat.

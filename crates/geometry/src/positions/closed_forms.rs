@@ -197,7 +197,7 @@ fn sqrt_error<T>(
     missing: impl Fn() -> f64,
 ) -> Result<T, PositionError> {
     if value.is_nan() {
-        return Err(PositionError::NotFinite { q });
+        return Err(PositionError::NotFinite);
     }
     if value < 0.0 {
         return Err(PositionError::NoAssembly {

@@ -299,8 +299,7 @@ impl Plan {
         let outcome = self.factor_jacobian(group, factored_group, pose)?;
         let largest = self.apply_newton_step(group, factored_group, pose);
         if !largest.is_finite() {
-            let q = pose.first_coordinate();
-            return Err(PositionError::NotFinite { q });
+            return Err(PositionError::NotFinite);
         }
         self.rotate_group(group, pose);
         self.check_redundant(group, factored_group, pose)?;

@@ -51,6 +51,7 @@ impl Plan {
             start: Node::default(),
             predictions: Predictions::default(),
             range: Range::Unbounded,
+            repetition: None,
             range_ends: [false; 2],
             assembly_q: Vec::new(),
             closure_angles: Vec::new(),

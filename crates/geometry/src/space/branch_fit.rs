@@ -90,7 +90,7 @@ impl Plan {
 
     /// The whole periods between a fit and a coordinate at a distance from its centre, less those by which a freedom is counted there.
     fn counted_periods(&self, fit: &BranchFit, [q, x]: [f64; 2]) -> f64 {
-        let periods = match self.range.period() {
+        let periods = match self.period() {
             Some(period) => ((q - x - fit.center) / period).round(),
             None => 0.0,
         };

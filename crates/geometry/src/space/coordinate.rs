@@ -15,6 +15,7 @@ use super::closure::RowKind;
 use super::frames::BodyMotion;
 use super::mechanism::{ActuatorKind, Joint, JointKind, Mechanism};
 use super::plan::{Plan, Pose};
+use super::tree::FreedomKind;
 use super::vector::{Rotation, Vec3};
 use crate::mechanism::{BodyId, Guide, JointId};
 use dwell_numerics::Scalar;
@@ -139,10 +140,7 @@ impl Plan {
         counting: impl Fn(JointId) -> Result<Counting, &'static str>,
     ) -> Result<CoordinateFunction, &'static str> {
         let unknown = "the mechanism does not have its coordinate";
-        let in_frame = |body: BodyId, point: Vec3| {
-            let inverse = self.tree.internal[body.0].inverse();
-            inverse.point(point)
-        };
+        let in_frame = |body: BodyId, point| self.tree.internal[body.0].inner_point(point);
         if let Coordinate::Distance { bodies, points } = coordinate {
             if bodies.iter().any(|b| b.0 >= mechanism.bodies.len()) {
                 return Err(unknown);
@@ -252,13 +250,19 @@ impl Plan {
         self.closure_angles = stored;
     }
 
-    /// The freedoms on the paths of gear pairs that no actuator moves.
+    /// The freedoms on the paths of gear pairs that no actuator moves; where the pose does not repeat all that gain.
     fn find_geared(&self) -> Vec<usize> {
         let is_gear = |kinds: &[RowKind]| matches!(kinds, [RowKind::Mesh(_)]);
         let gears = self.closures.iter().filter(|c| is_gear(&c.kinds));
         let on_paths = gears.flat_map(|gear| gear.path.iter().map(|(freedom, _)| *freedom));
         let is_driven = |f: &usize| self.drivers.iter().any(|driver| driver.freedom == *f);
-        let mut geared: Vec<usize> = on_paths.filter(|f| !is_driven(f)).collect();
+        let gains = |f: &usize| {
+            let is_number = self.tree.freedoms[*f] != FreedomKind::BallTurn;
+            self.repetition.is_some() && is_number && self.freedom_gains[*f] != 0.0
+        };
+        let gaining = (0..self.tree.freedoms.len()).filter(gains);
+        let counted = on_paths.chain(gaining).filter(|f| !is_driven(f));
+        let mut geared: Vec<usize> = counted.collect();
         geared.sort_unstable();
         geared.dedup();
         geared
@@ -283,7 +287,7 @@ impl Plan {
     /// The whole periods of the only coordinate from the first stored pose.
     #[inline(always)]
     pub(super) fn periods(&self, q: f64) -> f64 {
-        match (self.range.period(), self.predictions.range()) {
+        match (self.period(), self.predictions.range()) {
             (Some(period), Some([first, _])) => ((q - first) / period).floor(),
             _ => 0.0,
         }

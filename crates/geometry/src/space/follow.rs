@@ -2,12 +2,16 @@
 //! evaluated before.
 
 use super::frames::Frame;
-use super::mechanism::ActuatorKind;
+use super::groups::Group;
+use super::mechanism::{ActuatorKind, JointKind, Mechanism};
 use super::plan::{Plan, Pose};
+use super::planes::is_parallel;
+use super::positions::OPEN;
 use super::prediction::Predictions;
 use super::tree::{FreedomKind, Step};
 use super::vector::{Rotation, Vec3, vec3};
-use crate::error::PositionError;
+use crate::error::{AssemblyError, PositionError};
+use crate::mechanism::JointId;
 use crate::plan::range::Range;
 use dwell_numerics::Scalar;
 use std::f64::consts::TAU;
@@ -35,6 +39,10 @@ const SMALLEST: f64 = 1e-9;
 const MAX_REVOLUTIONS: u32 = 8;
 /// Two poses are the same: rad, or parts of the size.
 const SAME: f64 = 1e-7;
+/// Where a range ends with redundant rows open by this part of what is allowed, they end it: at limit positions they are closed to rounding.
+const DRIFTED: f64 = 0.5;
+/// Axes that differ by less are meant to be parallel, rad.
+const MEANT_PARALLEL: f64 = 1e-3;
 
 impl Plan {
     /// Sets the coordinates to the prediction from a stored pose at so much more of the coordinate.
@@ -56,7 +64,7 @@ impl Plan {
         if q >= first && q < last {
             return Ok(q);
         }
-        match (self.range.period(), self.range.limits()) {
+        match (self.period(), self.range.limits()) {
             (Some(period), _) => Ok(first + (q - first).rem_euclid(period)),
             (None, Some((from, to))) if q < from || q > to => {
                 Err(PositionError::OutOfRange { q, from, to })
@@ -127,11 +135,13 @@ impl Plan {
         let unit = if is_angle { TAU } else { self.size };
         let start_frames = pose.frames.clone();
         let mut forward = vec![first.clone()];
+        let mut revolution_ends = vec![0];
         for revolution in 1..=MAX_REVOLUTIONS {
             let end = first.q + f64::from(revolution) * unit;
             if !self.continue_branch(&mut forward, end, unit, &mut pose) {
                 return self.follow_back(forward, &first, unit, is_angle, &mut pose);
             }
+            revolution_ends.push(forward.len() - 1);
             let same = self.moved_by(&start_frames, &pose.frames) < SAME;
             if is_angle && same {
                 self.range = if revolution == 1 {
@@ -143,7 +153,84 @@ impl Plan {
                 return Ok(());
             }
         }
+        let mut strides = (1..=revolution_ends.len() / 2).map(|k| revolution_ends[k]);
+        if let Some(stride) = strides.find(|stride| self.repeats(&forward, *stride)) {
+            self.repetition = Some(forward[stride].q - first.q);
+            self.store(&forward[..=stride]);
+            return Ok(());
+        }
         self.follow_back(forward, &first, unit, is_angle, &mut pose)
+    }
+
+    /// Whether everything repeats after so many stored poses, but coordinates that gain the same each time, as those of a screw do: then
+    /// nothing ends the range.
+    fn repeats(&self, nodes: &[Node], stride: usize) -> bool {
+        let unit = if self.is_angle(0) { 1.0 } else { self.size };
+        let (first, end) = (&nodes[0], &nodes[stride]);
+        let (period, near) = (end.q - first.q, SAME * unit);
+        let numbers = |f: &usize| self.tree.freedoms[*f] != FreedomKind::BallTurn;
+        let same = |a: &Node, b: &Node, f: usize| {
+            let gain = end.coordinates[f][0] - first.coordinates[f][0];
+            let (a, b, size) = (a.coordinates[f], b.coordinates[f], self.unit(f));
+            let slope = (b[1] - a[1]) * unit;
+            let differences = [b[0] - a[0] - gain, slope, (b[2] - a[2]) * unit * unit];
+            differences
+                .iter()
+                .all(|d| d.abs() <= SAME * (size + (a[1] * unit).abs()))
+        };
+        nodes[stride..].iter().all(|b| {
+            let before = nodes.partition_point(|node| node.q < b.q - period - near);
+            let a = &nodes[before];
+            let mut balls = a.balls.iter().zip(&b.balls);
+            let mut freedoms = (0..a.coordinates.len()).filter(numbers);
+            (b.q - a.q - period).abs() <= near
+                && freedoms.all(|f| same(a, b, f))
+                && balls.all(|(a, b)| a.inverse().after(b).vector().norm() <= SAME)
+        })
+    }
+
+    /// After how much of the only coordinate the pose repeats, or all of it but what gains the same each time.
+    pub(super) fn period(&self) -> Option<f64> {
+        self.range.period().or(self.repetition)
+    }
+
+    /// Refuses redundant constraints that hold at the assembly and open along the range, before its end: that is no limit position.
+    pub(super) fn require_closed_range(&self, mechanism: &Mechanism) -> Result<(), AssemblyError> {
+        let ends = self.predictions.range().into_iter().flatten();
+        let blocked = ends.zip(self.range_ends).filter(|(_, blocked)| *blocked);
+        let mut pose = self.pose::<f64>();
+        for (q, _) in blocked {
+            if self.positions(&[q], &mut pose).is_err() {
+                continue;
+            }
+            for group in self.groups.iter().filter(|group| !group.is_square()) {
+                let open = self.largest_residual(group, &pose);
+                if open > DRIFTED * OPEN {
+                    let (joints, gap) = (self.loop_joints(group), open * self.size);
+                    let rotation = |body| self.placement(&pose, body).rotation;
+                    return Err(AssemblyError::NotThroughout {
+                        nearly_parallel: nearly_parallel(mechanism, &joints, rotation),
+                        joints,
+                        q,
+                        gap,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The joints of a group's loops.
+    fn loop_joints(&self, group: &Group) -> Vec<JointId> {
+        let closures = group.closures.iter().map(|(c, _)| &self.closures[*c]);
+        let joints = closures.flat_map(|closure| {
+            let links = closure.links.iter().map(|(l, _)| self.tree.links[*l].joint);
+            links.chain([closure.joint]).flatten()
+        });
+        let mut joints: Vec<JointId> = joints.collect();
+        joints.sort_unstable();
+        joints.dedup();
+        joints
     }
 
     /// How far bodies are from where they were, rad or parts of the size; how a body that turns idly stands about its line
@@ -276,4 +363,35 @@ impl Plan {
         }
         self.close(q, None, pose)
     }
+}
+
+/// The first two joints whose axes are the farthest from parallel among those that are nearly so, with the angle between them, rad.
+fn nearly_parallel(
+    mechanism: &Mechanism,
+    joints: &[JointId],
+    rotation: impl Fn(usize) -> Rotation,
+) -> Option<([JointId; 2], f64)> {
+    use JointKind::{Distance, Gear, Spherical, Universal, Weld};
+    let has_none = |kind| {
+        matches!(
+            kind,
+            Weld | Universal | Spherical | Distance { .. } | Gear { .. }
+        )
+    };
+    let of = |id: &JointId| Some((*id, mechanism.joints.get(id.0)?));
+    let joints = joints.iter().filter_map(of);
+    let axes = joints.filter(|(_, joint)| !has_none(joint.kind));
+    let axes: Vec<(JointId, Vec3)> = axes
+        .map(|(id, joint)| (id, rotation(joint.bodies[0].0).apply(joint.sides[0].axis)))
+        .collect();
+    let mut found: Option<([JointId; 2], f64)> = None;
+    for (k, (a, u)) in axes.iter().enumerate() {
+        for (b, v) in &axes[k + 1..] {
+            let angle = u.cross(*v).norm();
+            if angle < MEANT_PARALLEL && !is_parallel(*u, *v) && found.is_none_or(|f| f.1 < angle) {
+                found = Some(([*a, *b], angle));
+            }
+        }
+    }
+    found
 }

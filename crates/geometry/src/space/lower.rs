@@ -212,7 +212,8 @@ impl Lowered {
                 own_bodies(bodies);
                 own_joints(joints);
             }
-            AssemblyError::Inconsistent { joints, .. } => own_joints(joints),
+            AssemblyError::Inconsistent { joints, .. }
+            | AssemblyError::NotThroughout { joints, .. } => own_joints(joints),
             AssemblyError::NotMeshing { .. } => {}
             AssemblyError::Structure(structure) => match structure {
                 StructureError::UnderActuated { bodies, .. }

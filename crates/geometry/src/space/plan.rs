@@ -60,6 +60,8 @@ pub struct Plan {
     /// The poses stored along the range of one actuator.
     pub(super) predictions: Predictions,
     pub(super) range: Range,
+    /// After how much of the only coordinate everything repeats but coordinates that gain the same each time.
+    pub(super) repetition: Option<f64>,
     /// Whether the branch ends at the lower and at the upper end of the range; otherwise it was not followed any further.
     pub(super) range_ends: [bool; 2],
     /// The coordinates at the assembly.
@@ -69,7 +71,7 @@ pub struct Plan {
     pub(super) closure_angles: Vec<StoredAngles>,
     /// By freedom: what it gains in a period of the only coordinate.
     pub(super) freedom_gains: Vec<f64>,
-    /// The freedoms that teeth turn, which keep count of all periods.
+    /// The freedoms that keep count of all periods: those that teeth turn, and those that gain where the pose does not repeat.
     pub(super) geared: Vec<usize>,
     /// In the range of the only coordinate.
     pub(super) change_points: Vec<ChangePoint>,
@@ -179,6 +181,7 @@ impl Plan {
         };
         plan.follow_range(&assembly.q, start, kind)
             .map_err(singular)?;
+        plan.require_closed_range(mechanism)?;
         plan.count_revolutions(mechanism);
         if plan.actuators() == 1 {
             plan.find_change_points();
@@ -273,8 +276,6 @@ impl Plan {
                 }
             }
         }
-        // The ground is placed once.
-        pose.frames[self.ground].position = self.tree.internal[self.ground].position.cast();
         pose
     }
 
@@ -283,7 +284,7 @@ impl Plan {
         self.tree.internal[body]
     }
 
-    /// That frame at a pose.
+    /// That frame at a pose: its origin from that of the ground's, so that nothing depends on where the mechanism stands.
     #[inline(always)]
     pub fn frame<'a, T: Scalar>(&self, pose: &'a Pose<T>, body: usize) -> &'a Frame<T> {
         &pose.frames[body]
@@ -303,13 +304,21 @@ impl Plan {
         self.turns(pose, &pose.motion)
     }
 
+    /// The point of the ground from which the [frames](Plan::frame) are counted, m.
+    pub fn origin(&self) -> Vec3 {
+        self.tree.internal[self.ground].position
+    }
+
     /// Where a body is.
     pub fn placement(&self, pose: &Pose<f64>, body: usize) -> Placement {
-        pose.frames[body].then(&self.tree.internal[body].inverse())
+        let mut placed = pose.frames[body].then(&self.tree.internal[body].inverse());
+        placed.position += self.origin();
+        placed
     }
 
     /// A point of a body, m in its frame, in the frame of the ground.
     pub fn point(&self, pose: &Pose<f64>, body: usize, point: Vec3) -> Vec3 {
-        self.placement(pose, body).point(point)
+        let inner = self.tree.internal[body].inner_point(point);
+        self.origin() + pose.frames[body].point(inner)
     }
 }

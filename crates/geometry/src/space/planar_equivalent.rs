@@ -19,7 +19,7 @@ pub struct PlanarEquivalent {
     pub assembly: AssemblyConfiguration,
     /// By body: the frame whose x and y axes are those of the body in the plane, in the [evaluation frame](Plan::evaluation_frame).
     pub frames: Vec<Placement>,
-    /// By body: the height of its own frame's origin along the normal, m; it is constant.
+    /// By body: the height of the evaluation frame's origin along the normal, m; it is constant.
     pub heights: Vec<f64>,
     /// By joint: the heights of its points on both bodies, m.
     pub joint_heights: Vec<[f64; 2]>,
@@ -31,6 +31,8 @@ pub struct PlanarEquivalent {
 /// A mechanism in space at its assembly, seen along the normal of its plane.
 struct View<'a> {
     mechanism: &'a Mechanism,
+    plan: &'a Plan,
+    pose: Pose,
     normal: Vec3,
     /// By body: where it is, and the axes of the plane in its frame.
     placements: Vec<Placement>,
@@ -55,22 +57,19 @@ impl Plan {
             ActuatorKind::Length(_) => return None,
         };
         let guesses = (0..mechanism.bodies.len()).map(|b| Some(view.angle(b)));
-        let frames = view.axes.iter().enumerate().map(|(b, axes)| {
-            let own = Placement {
-                position: Vec3::ZERO,
-                rotation: *axes,
-            };
-            self.tree.internal[b].inverse().then(&own)
+        let frames = view.axes.iter().enumerate().map(|(b, axes)| Placement {
+            position: Vec3::ZERO,
+            rotation: self.tree.internal[b].rotation.inverse().after(axes),
         });
-        let height = |placement: &Placement| view.normal.dot(placement.position);
-        let heights = view.placements.iter().map(height).collect();
+        let heights = view.pose.frames.iter();
+        let heights = heights.map(|frame| view.normal.dot(frame.position));
         let carried = self.joint_places.iter().map(|place| match *place {
             JointPlace::Link(link) => Some(self.carried_by(link)),
             JointPlace::Closure(_) => None,
         });
         let joint_heights = mechanism.joints.iter().map(|joint| view.heights(joint));
         Some(PlanarEquivalent {
-            heights,
+            heights: heights.collect(),
             joint_heights: joint_heights.collect(),
             carried: carried.collect(),
             frames: frames.collect(),
@@ -101,7 +100,7 @@ impl Plan {
     }
 
     /// The mechanism along the normal of its plane, with the axes of the bodies such that the coordinate is that of the actuator.
-    fn view<'a>(&self, mechanism: &'a Mechanism, kind: ActuatorKind) -> Option<View<'a>> {
+    fn view<'a>(&'a self, mechanism: &'a Mechanism, kind: ActuatorKind) -> Option<View<'a>> {
         let mut pose = self.pose();
         self.start_from(&self.start, 0.0, &mut pose);
         self.close(&self.assembly_q, None, &mut pose).ok()?;
@@ -124,9 +123,11 @@ impl Plan {
             }
         });
         Some(View {
+            axes: axes.collect(),
+            plan: self,
+            pose,
             mechanism,
             normal,
-            axes: axes.collect(),
             placements,
         })
     }
@@ -180,25 +181,29 @@ impl View<'_> {
         self.direction(self.placements[body].rotation.apply(x))
     }
 
+    /// A joint's point on one of its bodies, in the evaluation frame.
+    fn inner_point(&self, joint: &Joint, side: usize) -> Vec3 {
+        let internal = &self.plan.tree.internal[joint.bodies[side].0];
+        internal.inner_point(joint.sides[side].point)
+    }
+
+    /// Where it is.
+    fn point(&self, joint: &Joint, side: usize) -> Vec3 {
+        let frame = &self.pose.frames[joint.bodies[side].0];
+        frame.point(self.inner_point(joint, side))
+    }
+
     /// The heights of a joint's points on both bodies, m.
     fn heights(&self, joint: &Joint) -> [f64; 2] {
-        [0, 1].map(|k| {
-            let placement = &self.placements[joint.bodies[k].0];
-            let point = placement.rotation.apply(joint.sides[k].point);
-            self.normal.dot(placement.position + point)
-        })
+        [0, 1].map(|side| self.normal.dot(self.point(joint, side)))
     }
 
     /// A joint with the approximate value by which its branch is chosen; none of one that has no equivalent.
     fn joint(&self, joint: &Joint) -> Option<(planar::Joint, Option<f64>)> {
         let [a, b] = joint.bodies.map(|body| body.0);
-        let at = |k: usize| {
-            let placement = &self.placements[joint.bodies[k].0];
-            placement.position + placement.rotation.apply(joint.sides[k].point)
-        };
         let axis = self.placements[a].rotation.apply(joint.sides[0].axis);
         let (along, across) = (is_parallel(axis, self.normal), is_across(axis, self.normal));
-        let d = at(1) - at(0);
+        let d = self.point(joint, 1) - self.point(joint, 0);
         let (kind, hint) = match joint.kind {
             JointKind::Revolute | JointKind::Cylindrical if along => {
                 (planar::JointKind::Revolute, None)
@@ -226,7 +231,11 @@ impl View<'_> {
             JointKind::Helical { .. } | JointKind::Universal => return None,
             JointKind::Planar | JointKind::Gear { .. } => return None,
         };
-        let points = [0, 1].map(|k| self.flat(joint.bodies[k].0, joint.sides[k].point));
+        let points = [0, 1].map(|k| {
+            let body = joint.bodies[k].0;
+            let from_origin = joint.sides[k].point - self.plan.tree.internal[body].position;
+            self.flat(body, from_origin)
+        });
         Some((
             planar::Joint::new(&*joint.name, joint.bodies, points, kind),
             hint,

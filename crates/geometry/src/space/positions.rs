@@ -14,17 +14,31 @@ use dwell_numerics::Scalar;
 /// Steps with a predicted inverse at most.
 const MAX_PREDICTED_STEPS: usize = 3;
 /// A residual this small, relative to the size, is rounding: that of the points along a loop, which no step makes smaller.
-const ROUNDING: f64 = 2e-15;
+const fn rounding<T: Scalar>() -> f64 {
+    2e-15_f64.max(9.0 * T::EPSILON)
+}
 /// One step with a predicted inverse leaves rounding of so large a residual: where the inverse is wrong by a part of a thousand.
-const ONE_STEP: f64 = 1e-13;
+const fn one_step<T: Scalar>() -> f64 {
+    1e-13_f64.max(450.0 * T::EPSILON)
+}
 /// Newton's steps at most.
 const MAX_STEPS: usize = 40;
 /// The square of a step, relative to the pivots, below which a further step would be rounding.
-const NO_STEP: f64 = 2e-16;
+const fn no_step<T: Scalar>() -> f64 {
+    2e-16_f64.max(0.9 * T::EPSILON)
+}
 /// A residual this large, relative to the size, is no closure.
 pub(super) const OPEN: f64 = 1e-9;
+/// The same in a number type: in a coarser one than `f64`, some roundings of the coordinates.
+const fn open<T: Scalar>() -> f64 {
+    OPEN.max(64.0 * T::EPSILON)
+}
 /// Pivots this far apart make a group singular.
-pub(super) const SINGULAR: f64 = 1e-9;
+const SINGULAR: f64 = 1e-9;
+/// The same in a number type: in a coarser one than `f64`, where pivots are rounding.
+pub(super) const fn singular<T: Scalar>() -> f64 {
+    SINGULAR.max(8.0 * T::EPSILON)
+}
 /// Steps this long, rad, leave the branch.
 pub(super) const LONG_STEP: f64 = 0.5;
 
@@ -34,8 +48,8 @@ impl Plan {
     /// # Errors
     /// [`PositionError`] when there is none.
     pub fn positions<T: Scalar>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PositionError> {
-        if let Some(wrong) = q.iter().find(|q| !q.value().is_finite()) {
-            return Err(PositionError::NotFinite { q: wrong.value() });
+        if q.iter().any(|q| !q.value().is_finite()) {
+            return Err(PositionError::NotFinite);
         }
         let Some(first) = q.first() else {
             self.start_from(&self.start, 0.0, pose);
@@ -115,7 +129,7 @@ impl Plan {
         for _ in 0..MAX_PREDICTED_STEPS {
             self.fill_residuals(group, pose);
             let residual = self.largest_residual(group, pose);
-            if residual <= ROUNDING {
+            if residual <= rounding::<T>() {
                 return true;
             }
             for (i, row) in group.residuals.iter().enumerate() {
@@ -136,7 +150,7 @@ impl Plan {
                 }
             }
             self.place(&group.links, pose);
-            if residual <= ONE_STEP {
+            if residual <= one_step::<T>() {
                 return true;
             }
         }
@@ -150,7 +164,7 @@ impl Plan {
             return self.factor_rod(group, rod, pose);
         }
         self.fill_rows(group, pose);
-        self.factor(group, pose).pivot_ratio >= SINGULAR
+        self.factor(group, pose).pivot_ratio >= singular::<T>()
     }
 
     /// The frames of some bodies, with the screws of their freedoms.
@@ -181,8 +195,9 @@ impl Plan {
             self.place(&group.links, pose);
             self.fill_rows(group, pose);
             let outcome = self.factor(group, pose);
-            if outcome.pivot_ratio.is_nan() || outcome.pivot_ratio < SINGULAR {
-                let relative_determinant = outcome.pivot_ratio;
+            // Not a number becomes zero.
+            let relative_determinant = outcome.pivot_ratio.max(0.0);
+            if relative_determinant < singular::<T>() {
                 return Err(PositionError::Singular {
                     group: g,
                     q,
@@ -194,7 +209,7 @@ impl Plan {
                 if let Some(rod) = &group.rod {
                     self.factor_rod(group, rod, pose);
                 }
-                return if residual <= OPEN {
+                return if residual <= open::<T>() {
                     Ok(())
                 } else {
                     Err(PositionError::NoAssembly {
@@ -205,7 +220,10 @@ impl Plan {
                 };
             }
             let step = self.newton_step(group, pose);
-            if step.is_nan() || step > LONG_STEP {
+            if step.is_nan() {
+                return Err(PositionError::NotFinite);
+            }
+            if step > LONG_STEP {
                 return Err(PositionError::NotConverged {
                     group: g,
                     q,
@@ -215,7 +233,7 @@ impl Plan {
             // Derivatives are exact after one step more than values.
             settled = match T::HAS_DERIVATIVES {
                 true => step < 1e-14 * self.count_size(pose) / outcome.pivot_ratio,
-                false => step * step / outcome.pivot_ratio < NO_STEP,
+                false => step * step / outcome.pivot_ratio < no_step::<T>(),
             };
         }
         let residual = self.largest_residual(group, pose) * self.size;

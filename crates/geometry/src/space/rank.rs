@@ -169,7 +169,7 @@ impl Plan {
             }
             self.fill_states(pose);
             for body in 0..mechanism.bodies.len() {
-                let motion = self.body_motion(pose, body);
+                let motion = self.state(pose, body);
                 let (w, v) = (motion.angular_velocity, motion.velocity);
                 if w.norm().max(v.norm() / self.size) < PART {
                     continue;
@@ -181,10 +181,11 @@ impl Plan {
                 } else {
                     1.0
                 };
-                let placement = self.placement(pose, body);
-                let to_body = |u: Vec3| placement.rotation.apply_inverse(u);
-                let axis = to_body(w).unit().unwrap_or(Vec3::ZERO);
-                let point = to_body(w.cross(v).scaled(1.0 / w.dot(w).max(f64::MIN_POSITIVE)));
+                let rotation = self.placement(pose, body).rotation;
+                let axis = rotation.apply_inverse(w).unit().unwrap_or(Vec3::ZERO);
+                let nearest = w.cross(v).scaled(1.0 / w.dot(w).max(f64::MIN_POSITIVE));
+                let nearest = pose.frames[body].rotation.apply_inverse(nearest);
+                let point = self.tree.internal[body].point(nearest);
                 is_spin &= along < PART && hangs_between_balls(mechanism, body);
                 let here = IdleBody {
                     body: BodyId(body),

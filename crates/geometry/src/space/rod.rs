@@ -13,7 +13,7 @@
 use super::closure::RowKind;
 use super::groups::Group;
 use super::plan::{Plan, Pose};
-use super::positions::SINGULAR;
+use super::positions::singular;
 use super::tree::{Link, Step};
 use super::vector::{Vec3, vec3};
 use dwell_numerics::Scalar;
@@ -204,7 +204,8 @@ impl Plan {
         };
         factors.write(&mut pose.factors[group.factors..]);
         let [across, square, other] = [across, square, u.dot(u)].map(|v| v.value());
-        across * across >= SINGULAR * SINGULAR * square * other && across != 0.0
+        let smallest = singular::<T>();
+        across * across >= smallest * smallest * square * other && across != 0.0
     }
 
     /// (2) for the right-hand sides in the scratch memory; it leaves the unknowns there.

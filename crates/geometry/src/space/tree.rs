@@ -105,16 +105,20 @@ impl Placement {
             rotation,
         }
     }
+
+    /// A point in this frame, of its coordinates outside: the difference comes first, which is exact where both are far away.
+    pub fn inner_point(&self, point: Vec3) -> Vec3 {
+        self.rotation.apply_inverse(point - self.position)
+    }
 }
 
 impl Side {
     /// The same side in a frame of its body.
     pub(super) fn in_frame(&self, frame: &Placement) -> Self {
-        let inverse = frame.inverse();
         Self {
-            point: inverse.point(self.point),
-            axis: inverse.rotation.apply(self.axis),
-            normal: inverse.rotation.apply(self.normal),
+            point: frame.inner_point(self.point),
+            axis: frame.rotation.apply_inverse(self.axis),
+            normal: frame.rotation.apply_inverse(self.normal),
         }
     }
 }
@@ -132,11 +136,7 @@ impl Tree {
         };
         // A point of the ground near the mechanism is its origin: results do not depend on where it stands.
         let ground = mechanism.ground;
-        let on_ground = mechanism.joints.iter().find_map(|joint| {
-            let side = (0..2).find(|k| joint.side_body(*k).0 == ground)?;
-            Some(joint.sides[side].point)
-        });
-        tree.internal[ground].position = on_ground.unwrap_or(Vec3::ZERO);
+        tree.internal[ground].position = first_point(mechanism, ground);
         let mut reached = vec![ground];
         let mut next = 0;
         loop {
@@ -206,6 +206,7 @@ impl Tree {
         let first = self.freedoms.len();
         let (steps, on_parent, sign) = match by {
             None => {
+                self.internal[body].position = first_point(mechanism, body);
                 self.freedoms.extend([FreedomKind::Slide; 3]);
                 let mut steps: Vec<Step> = (0..3).map(|k| Step::Slide(k, first + k)).collect();
                 steps.push(self.ball());
@@ -339,6 +340,15 @@ impl Tree {
         }
         (coordinates, balls)
     }
+}
+
+/// The point of the first joint on a body; of a body without a joint its origin.
+fn first_point(mechanism: &Mechanism, body: usize) -> Vec3 {
+    let on_body = mechanism.joints.iter().find_map(|joint| {
+        let side = (0..2).find(|k| joint.side_body(*k).0 == body)?;
+        Some(joint.sides[side].point)
+    });
+    on_body.unwrap_or(Vec3::ZERO)
 }
 
 /// The axes renamed: y becomes z, z becomes x.

@@ -150,23 +150,24 @@ impl CompiledKind {
         }
     }
 
-    /// The potential energy of a unit of the load at a pose, J; none of one that has no potential.
+    /// The potential energy of a unit of the load at a pose, J: zero at the origin of the ground's frame; none of one that has no potential.
     pub(super) fn potential(
         &self,
         plan: &Plan,
         pose: &Pose,
         masses: &[super::Mass],
     ) -> Option<f64> {
+        let at = |body: usize, point: Vec3| plan.origin() + plan.frame(pose, body).point(point);
         match (self.action, self.resistance) {
             (Action::Gravity(direction), _) => {
-                let weights = masses.iter().enumerate().map(|(body, mass)| {
-                    let center = plan.frame(pose, body).point(mass.center);
-                    -mass.mass * center.dot(direction)
-                });
+                let weights = masses
+                    .iter()
+                    .enumerate()
+                    .map(|(body, mass)| -mass.mass * at(body, mass.center).dot(direction));
                 Some(weights.sum())
             }
             (Action::Force(body, arm, Direction::Ground(direction)), _) => {
-                Some(-plan.frame(pose, body).point(arm).dot(direction))
+                Some(-at(body, arm).dot(direction))
             }
             (Action::Along(coordinate), Resistance::Spring(free)) => {
                 let [value, ..] = plan.coordinate(pose, coordinate);

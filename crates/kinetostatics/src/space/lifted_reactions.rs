@@ -129,7 +129,7 @@ impl BodyDirection {
 struct Lifting<'a> {
     of: &'a Model,
     equivalent: &'a PlanarEquivalent,
-    /// By body, in the axes of the plane, with the centre from the body's own origin.
+    /// By body, in the axes of the plane, with the centre from the origin of its evaluation frame.
     masses: &'a [Mass],
     plan: &'a Plan,
     /// By joint: its place among the forces that are read.

@@ -89,7 +89,9 @@ impl Mass {
             along_x.dot(y),
             along_x.dot(x) - along_y.dot(y),
         ];
-        self.mass * off.norm() * (off.norm() + self.center.norm()) > 1e-12 * scale
+        // Coordinates of the body's frame are rounded where its origin is far away.
+        let is_off = off.norm() > 8.0 * f64::EPSILON * self.center.norm();
+        is_off && self.mass * off.norm() * (off.norm() + self.center.norm()) > 1e-12 * scale
             || products.iter().any(|p| p.abs() > 1e-9 * scale)
     }
 

@@ -145,7 +145,7 @@ impl Grid {
     #[cold]
     fn out_of_range(&self, q: f64) -> PositionError {
         if !q.is_finite() {
-            return PositionError::NotFinite { q };
+            return PositionError::NotFinite;
         }
         let limit = MAX_REVOLUTIONS * TAU;
         let (from, to) = match self.revolutions {

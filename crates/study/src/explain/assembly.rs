@@ -105,6 +105,10 @@ fn explain_assembly(scene: &Scene, error: &AssemblyError) -> StudyError {
             let help = "correct a length or a point, or remove a joint";
             inconsistent(scene, joints, (*redundant_count, *gap), help)
         }
+        // Only mechanisms in space yield it.
+        AssemblyError::NotThroughout { .. } => {
+            scene_error(scene, error.to_string(), "", [(SceneLocation::Whole, "")])
+        }
         AssemblyError::SingularAssembly { bodies, joints } => {
             let what = "the start is a limit position or a change point: the actuator does not determine the motion of";
             let message = format!("{what} {}", body_names(mechanism, bodies));

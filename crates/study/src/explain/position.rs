@@ -71,7 +71,8 @@ pub(crate) fn explain_position_in(
 ) -> StudyError {
     const RANGE_ENDS: &str = "this is outside the range; `dwell check` shows the range";
     let unit = coordinate_unit(plan.is_angle(0));
-    let at = format!("{phi} = {} {unit}", number(error.coordinate()));
+    let at = error.coordinate().map_or(String::new(), number);
+    let at = format!("{phi} = {at} {unit}");
     let group = error.group();
     let bodies = group.map(|g| body_names(&scene.mechanism, &plan.group_bodies(g)));
     let bodies = bodies.unwrap_or_default();
@@ -108,8 +109,8 @@ pub(crate) fn explain_position_in(
             format!("the poses near {at} cannot be evaluated together in SIMD lanes"),
             "evaluate them one by one",
         ),
-        PositionError::NotFinite { q } => (
-            format!("{phi} = {q} {unit} is not a finite number"),
+        PositionError::NotFinite => (
+            format!("{phi} is not a finite number"),
             "check the numbers of the motion",
         ),
     };

@@ -90,6 +90,12 @@ fn explain_assembly(scene: &SpaceScene, error: &AssemblyError) -> StudyError {
             let help = "correct a length, a point or an axis, or replace a joint by one with more freedoms";
             inconsistent(scene, joints, (*redundant_count, *gap), help)
         }
+        AssemblyError::NotThroughout {
+            joints,
+            q,
+            gap,
+            nearly_parallel,
+        } => explain_not_throughout(scene, joints, [*q, *gap], *nearly_parallel),
         AssemblyError::SingularAssembly { joints, .. } => {
             let message = "the start is a singular position: the actuator does not determine the motion there";
             let help = "start a little away from it, or drive another joint";
@@ -100,6 +106,34 @@ fn explain_assembly(scene: &SpaceScene, error: &AssemblyError) -> StudyError {
             scene_error(scene, error.to_string(), "", [(SceneLocation::Whole, "")])
         }
     }
+}
+
+/// Redundant constraints that agree at the start alone.
+fn explain_not_throughout(
+    scene: &SpaceScene,
+    joints: &[JointId],
+    [q, gap]: [f64; 2],
+    nearly_parallel: Option<([JointId; 2], f64)>,
+) -> StudyError {
+    let name = scene.mechanism.actuators.first().map_or("", |a| &a.name);
+    let (at, unit) = (number(q), coordinate_unit(super::prepared::is_angle(scene)));
+    let mut message = format!(
+        "redundant constraints agree at the start, but not along the motion: at `{name}` = {at} {unit} they leave a gap of {} m",
+        digits(gap, 3)
+    );
+    let Some((pair, angle)) = nearly_parallel else {
+        let help = "redundant constraints must agree to the last digits: correct a length, a point or an axis, or replace a joint \
+                    by one with more freedoms";
+        let labels = joint_labels(joints, "among the redundant constraints");
+        return scene_error(scene, message, help, labels);
+    };
+    let [a, b] = pair.map(|joint| &scene.mechanism.joints[joint.0].name);
+    message += &format!(
+        "; the axes of `{a}` and `{b}` are {} rad from parallel",
+        digits(angle, 3)
+    );
+    let help = "give both joints the same axis to the last digit, or replace one by a joint with more freedoms";
+    scene_error(scene, message, help, joint_labels(&pair, "nearly parallel"))
 }
 
 /// One arm for each error, so longer than a screen.
@@ -158,7 +192,8 @@ pub(super) fn explain_position(
     const RANGE_ENDS: &str = "this is outside the range; `dwell check` shows the range";
     let is_angle = super::prepared::is_angle(scene);
     let name = scene.mechanism.actuators.first().map_or("", |a| &a.name);
-    let (q, unit) = (number(error.coordinate()), coordinate_unit(is_angle));
+    let q = error.coordinate().map_or(String::new(), number);
+    let unit = coordinate_unit(is_angle);
     let at = format!("`{name}` = {q} {unit}");
     let (message, help) = match *error {
         PositionError::OutOfRange { from, to, .. } => (
@@ -185,6 +220,10 @@ pub(super) fn explain_position(
                 digits(gap, 3)
             ),
             RANGE_ENDS,
+        ),
+        PositionError::NotFinite => (
+            format!("`{name}` is not a finite number"),
+            "check the numbers of the motion",
         ),
         _ => (
             format!("there is no position at {at}: the loops do not close there"),

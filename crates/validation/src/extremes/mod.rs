@@ -15,6 +15,7 @@ pub mod machines;
 mod mechanisms;
 mod narrow_peaks;
 mod paper_mechanism;
+mod places;
 pub mod pulses;
 mod ratios;
 mod report;
@@ -65,6 +66,7 @@ pub fn all_series(slow: bool) -> Vec<ParameterSeries> {
     series.extend(ratios::series());
     series.extend(large_groups::series());
     series.extend(jamming::series());
+    series.extend(places::series());
     series
 }
 

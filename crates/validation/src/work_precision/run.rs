@@ -76,7 +76,7 @@ pub(super) fn solve<S: StudiedScene>(
 /// Why a run is left out. A coordinate that is no number is not printed as one.
 pub(super) fn reason(error: &DynamicsError) -> String {
     match error {
-        DynamicsError::Position(PositionError::NotFinite { .. }) => {
+        DynamicsError::Position(PositionError::NotFinite) => {
             "its coordinates grow beyond all numbers".to_owned()
         }
         other => other.to_string(),

@@ -170,7 +170,7 @@ impl<'a> EarlyStop<'a> {
         let joints = group.map(|g| plan.group_joints(g)).unwrap_or_default();
         let who = body_names_or_mechanism(&scene.mechanism, &bodies);
         let why = match error {
-            PositionError::NotFinite { .. } => "a coordinate is not a finite number beyond".into(),
+            PositionError::NotFinite => "a coordinate is not a finite number beyond".into(),
             PositionError::NoAssembly { .. } => format!("{who} cannot reach each other beyond"),
             PositionError::Singular { .. } => format!(
                 "{who} are in a singular configuration there, and the actuators do not determine their motion"
