@@ -75,8 +75,8 @@ impl StateSwitches {
     }
 
     /// The indices of the loads that switch.
-    pub(crate) fn loads(&self) -> Vec<usize> {
-        self.sources.iter().map(|source| source.index).collect()
+    pub(crate) fn loads(&self) -> impl Iterator<Item = usize> + '_ {
+        self.sources.iter().map(|source| source.index)
     }
 
     /// The load's index of a function.

@@ -45,16 +45,21 @@ pub enum SwitchKind {
     Knots(Vec<f64>),
 }
 
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 enum Source {
-    /// A law of one variable, which is the function itself.
-    #[default]
-    Law,
+    /// Some of the variables themselves, by their indices: of a law its only one.
+    Variables(Vec<usize>),
     Expression {
         ops: Vec<Op>,
         /// By switch: where its operands begin.
         switches: Vec<(Switch, [usize; 2])>,
     },
+}
+
+impl Default for Source {
+    fn default() -> Self {
+        Self::Variables(Vec::new())
+    }
 }
 
 impl SwitchKind {
@@ -120,6 +125,17 @@ impl Switches {
         }
     }
 
+    /// Of a function that is not known but for the values of its variables, each by its index, between which it is smooth.
+    pub fn at_values<'v>(values: impl IntoIterator<Item = (usize, &'v [f64])>) -> Self {
+        let all = values.into_iter();
+        let all = all.map(|(variable, values)| (variable, SwitchKind::Knots(values.to_vec())));
+        let (variables, kinds) = all.unzip();
+        Self {
+            kinds,
+            source: Source::Variables(variables),
+        }
+    }
+
     /// Those of a law of a coordinate or speed.
     pub fn of_law(law: &Law) -> Self {
         let knots = match law {
@@ -128,10 +144,7 @@ impl Switches {
             Law::Profile(profile) => profile.corners().to_vec(),
             Law::Spline(_) | Law::Polynomial(_) | Law::Sinusoid(_) => return Self::default(),
         };
-        Self {
-            kinds: vec![SwitchKind::Knots(knots)],
-            source: Source::Law,
-        }
+        Self::at_values([(0, &knots[..])])
     }
 
     /// At which values each function switches.
@@ -142,7 +155,11 @@ impl Switches {
     /// The value of each function at these variables, on the pieces that are held.
     pub fn values(&self, variables: &[f64], held: &HeldPieces, out: &mut [f64]) {
         match &self.source {
-            Source::Law => out.fill(variables.first().copied().unwrap_or(f64::NAN)),
+            Source::Variables(which) => {
+                for (out, &i) in out.iter_mut().zip(which) {
+                    *out = variables.get(i).copied().unwrap_or(f64::NAN);
+                }
+            }
             Source::Expression { ops, switches } => {
                 let variable = |i: usize| variables.get(i).copied().unwrap_or(f64::NAN);
                 let part = |start: usize, last: usize| {
@@ -160,7 +177,11 @@ impl Switches {
     /// The value of each function and its rate, where the variables have rates.
     pub fn rates(&self, variables: &[[f64; 2]], held: &HeldPieces, out: &mut [[f64; 2]]) {
         match &self.source {
-            Source::Law => out.fill(variables.first().copied().unwrap_or([f64::NAN; 2])),
+            Source::Variables(which) => {
+                for (out, &i) in out.iter_mut().zip(which) {
+                    *out = variables.get(i).copied().unwrap_or([f64::NAN; 2]);
+                }
+            }
             Source::Expression { ops, switches } => {
                 let variable = |i: usize| Jet::moving(variables.get(i).copied());
                 let part = |start: usize, last: usize| -> [f64; 2] {
@@ -187,7 +208,7 @@ impl Switches {
             return;
         }
         match &self.source {
-            Source::Law => held.sides.extend(pieces.iter().map(|&piece| [piece, None])),
+            Source::Variables(_) => held.sides.extend(pieces.iter().map(|&piece| [piece, None])),
             Source::Expression { ops, switches } => {
                 held.sides.resize(ops.len(), Sides::default());
                 for ((switch, _), &piece) in switches.iter().zip(pieces) {

@@ -4,10 +4,11 @@ use super::{LoadEffect, TabulatedCoordinate, TabulatedMachine, TabulatedSignal};
 use crate::contact::ContactEvent;
 use crate::error::{DynamicsError, Result, positive_inertia};
 use crate::machine_ode::with_later_works;
+use crate::modes::SharedModes;
 use crate::ode::{DualWorkspace, OdeState, OdeSystem};
 use crate::sliding::Sliding;
 use crate::state_switches::{HeldSource, SourceState};
-use dwell_kinetostatics::KinetostaticsError;
+use dwell_kinetostatics::{KinetostaticsError, Magnitude};
 use dwell_laws::{Features, SwitchKind};
 use dwell_numerics::{Dual, Scalar};
 use std::sync::Arc;
@@ -24,12 +25,18 @@ pub struct TabulatedMachineOde<'t> {
     /// By switching load: its held pieces.
     held: Vec<HeldSource>,
     contact_events: Vec<ContactEvent>,
+    modes: SharedModes,
 }
 
 impl TabulatedMachineOde<'_> {
     /// Where the motion so far began to slide along a switch of a load, and where it left it; they are taken.
     pub fn take_contact_events(&mut self) -> Vec<ContactEvent> {
         std::mem::take(&mut self.contact_events)
+    }
+
+    /// The modes of the motion so far.
+    pub fn modes(&self) -> &SharedModes {
+        &self.modes
     }
 }
 
@@ -98,6 +105,7 @@ impl TabulatedMachine {
             energy_scale: with_later_works(energy_scale, largest_work),
             held: Vec::new(),
             contact_events: Vec::new(),
+            modes: SharedModes::default(),
         })
     }
 
@@ -217,6 +225,12 @@ impl OdeSystem for TabulatedMachineOde<'_> {
         Some(Arc::clone(&self.machine.time_features))
     }
 
+    fn own_function(&self) -> Option<usize> {
+        let mut loads = self.machine.tabulated_loads.iter();
+        let found = loads.find(|load| matches!(load.magnitude, Magnitude::Function(..)));
+        found.map(|load| load.load)
+    }
+
     fn switch_kinds(&self) -> &[SwitchKind] {
         self.machine.state_switches.kinds()
     }
@@ -291,6 +305,10 @@ impl OdeSystem for TabulatedMachineOde<'_> {
             load: self.switch_source(switch),
             sliding: sliding.cloned(),
         });
+    }
+
+    fn record_mode(&mut self, at: &OdeState, pieces: &[Option<f64>], sliding: Option<&Sliding>) {
+        self.modes.get().add(at, pieces, sliding);
     }
 
     fn hold_pieces(&mut self, pieces: &[Option<f64>]) {

@@ -31,14 +31,13 @@ impl SpaceMotionProblem<'_> {
         for (i, event) in self.spec.events.iter().enumerate() {
             let own = times_of(parts, i);
             let others = second.map(|parts| times_of(parts, i));
-            record.add_count(format!("event.{}.count", event.name), own.len());
             let named = (&event.name[..], event.terminal);
             text += &event_line(named, (&own, others.as_deref()), late, &mut record);
         }
         text += &NamedContacts::new(self).describe(parts, second, &mut record);
         text += &self.describe_changes(run);
         text += &cost_line(&run.motion.statistics(), &mut record);
-        text += &class_line(self, |_| None, &mut record);
+        text += &class_line(self, parts, |_| None, &mut record);
         text += &self.describe_energy(run, &mut record);
         text += &self.describe_errors(run, &mut record);
         (text, record)
