@@ -47,6 +47,18 @@
 //! | the same of a mechanism in space | [`space`] |
 //! | the same as code for a controller, or as formulas | [`Scene::export`], [`Scene::closed_form`] |
 //!
+//! # Loads of one's own
+//!
+//! A load may be a function of the program, [`Magnitude::function`], of time, coordinates and velocities. An expression is searched for its switches,
+//! a function cannot be: between its [breakpoints](Magnitude::breakpoints) it must be smooth in the signals that it is called with, and
+//! depend on nothing else. A breakpoint is a value of one signal at which the function jumps or has a kink. A motion stops there, goes on with
+//! the other side, or slides along it where both sides lead back; it is then the motion of the same expression. Next to a breakpoint the
+//! function is called on one side of it at a time, and is continued in a straight line beyond.
+//!
+//! A jump that is not named makes the steps of every method too short to go on: [`MotionResults::early_stop`] then names the load. A kink costs accuracy and
+//! steps, and a pulse shorter than a step may be missed. Switches that depend on several signals at once (`x > y`) need a coordinate of
+//! their own, or an expression.
+//!
 //! # Conventions
 //!
 //! SI everywhere: m, rad, kg, s, N. Right-handed plane, angles counter-clockwise. A reaction is the force or moment of the

@@ -20,6 +20,7 @@ use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
 use crate::machine::{CoordinateMode, Machine, MachineError};
 use crate::machine_ode::MachineOde;
+use crate::modes::SharedModes;
 use crate::ode::{DenseOutput, OdeState, Step};
 use crate::options::Options;
 use crate::solve::{Event, ObservedMachine, RecorderState, Solution};
@@ -146,6 +147,24 @@ impl<'s> Atlas<'s> {
     /// The change-point fits that were needed so far.
     pub fn change_point_fits(&self) -> impl ExactSizeIterator<Item = &ChangePointFit> {
         self.crossings.iter().map(|c| c.fit.as_ref())
+    }
+
+    /// Those of the change points that a motion comes to.
+    pub fn change_points_of(&self, motion: &ContinuedMotion) -> Vec<&ChangePointFit> {
+        let is_met = |crossing: usize| {
+            motion.segments.iter().any(|segment| {
+                let windows = self.charts[segment.chart].machine.fit_windows.iter();
+                let mut windows = windows.filter(|window| window.crossing == crossing);
+                let steps = &segment.solution.steps;
+                windows.any(|window| {
+                    let mut pairs = steps.windows(2);
+                    pairs.any(|pair| window.is_met([pair[0].y[0], pair[1].y[0]]))
+                })
+            })
+        };
+        let fits = self.change_point_fits().enumerate();
+        let met = fits.filter(|(crossing, _)| is_met(*crossing));
+        met.map(|(_, fit)| fit).collect()
     }
 
     /// The change points that cannot be crossed, and why.
@@ -312,14 +331,16 @@ impl<'s> Atlas<'s> {
         recorder_state: &mut RecorderState<'_>,
     ) -> Result<(Solution, Option<ChartExit>)> {
         let current = &self.charts[chart];
+        let modes = SharedModes::default();
         let observed = ObservedMachine::new(&current.machine, &current.output_model);
+        let observed = observed.in_modes(&modes);
         let mut recorder = recorder_state.recorder(observed, at)?;
         let mut solution = recorder.begin_solution(at, options);
         let mut monitor = ChartMonitor::new(self, chart, passage);
         if let Some(exit_at_start) = monitor.exit_at_fold(at)? {
             return Ok((solution, Some(exit_at_start)));
         }
-        let mut ode = MachineOde::until(&current.machine, at.t, &at.y, Some(end))?;
+        let mut ode = MachineOde::until(&current.machine, at.t, &at.y, Some(end))?.in_modes(&modes);
         let mut exit = None;
         let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
             monitor.observe(&mut Step { before, now, dense }, &mut exit, |step| {
@@ -331,6 +352,7 @@ impl<'s> Atlas<'s> {
             recorder.record_end(&mut solution);
         }
         solution.add_contact_events(ode.take_contact_events());
+        solution.modes = modes.take();
         solution.error = termination.error;
         solution.statistics = termination.statistics;
         Ok((solution, exit))

@@ -114,6 +114,16 @@ impl FitWindow {
         (self.bounds[0]..=self.bounds[1]).contains(&x).then_some(x)
     }
 
+    /// Whether a step from one coordinate to another passes the change point, or begins or ends within the window.
+    pub(crate) fn is_met(&self, ends: [f64; 2]) -> bool {
+        let passed = |q: f64| {
+            let x = q - self.fit.center;
+            self.period
+                .map_or(x.signum(), |period| (x / period).floor())
+        };
+        passed(ends[0]) != passed(ends[1]) || ends.iter().any(|q| self.offset_within(*q).is_some())
+    }
+
     /// Whether a coordinate is so far behind the window that the machine of the branch there goes on.
     pub(crate) fn has_passed(&self, q: f64) -> bool {
         let half_width = self.fit.half_width;

@@ -182,6 +182,16 @@ pub enum DynamicsError {
         /// The time reached, s.
         t: f64,
     },
+    /// The integrator's steps are so short, and stay so, that they do not lead on.
+    #[error("the integrator's steps of {step:.1e} s do not lead on at t = {t} s")]
+    NoProgress {
+        /// The first load that a program computes, which may jump there: by its index, if there is one.
+        function: Option<usize>,
+        /// The time reached, s.
+        t: f64,
+        /// The length of the last steps, s.
+        step: f64,
+    },
     /// The motion is too short: its end equals its start to rounding.
     #[error("the motion is too short to compute: its end equals its start to rounding")]
     DurationTooShort,

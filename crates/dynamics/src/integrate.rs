@@ -7,6 +7,7 @@
 //! its step or fails, and the caller gets the error of that evaluation.
 
 mod impasse;
+mod progress;
 mod step_loop;
 
 use crate::contact_events::ContactMonitor;
@@ -20,6 +21,7 @@ use crate::switch_monitor::{Crossing, SwitchMonitor};
 use crate::time_pieces::TimePieces;
 use diffsol::{DiffsolError, NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverState, Tableau};
 use impasse::Impasse;
+use progress::Progress;
 use std::cell::{Cell, RefCell};
 use step_loop::{StepLoop, solver_error};
 
@@ -112,6 +114,7 @@ fn integrate_held(
     }
     let mut monitor = SwitchMonitor::new(system, &whole.start, span)?;
     let longest = whole.options.max_step;
+    system.record_mode(&whole.start, &monitor.pieces(), monitor.sliding());
     let shared = SharedSystem::new(system);
     let mut parts = Parts::new(whole);
     // The last step that an event has not cut short.
@@ -160,7 +163,11 @@ fn integrate_held(
         }
         let passed = pass_event(&shared, &mut monitor, contacts.as_mut(), event);
         match (passed, &mut parts.whole) {
-            (Ok(state), _) => parts.next.start = state,
+            (Ok(state), _) => {
+                let mut passed = SlidingSystem::new(&shared, None);
+                passed.record_mode(&state, &monitor.pieces(), monitor.sliding());
+                parts.next.start = state;
+            }
             (Err(error), Some(whole)) => {
                 whole.error = Some(error);
                 break;
@@ -238,10 +245,15 @@ fn integrate_smooth(
     let options = &whole.options;
     let weights = (0..system.size()).map(|i| options.atol * system.error_weight(i));
     let mut impasse = Impasse::new(whole.start.t, options.rtol, weights.collect());
+    let mut progress = Progress::new(&whole, system.own_function());
     let mut parts = Parts::new(whole);
+    let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
+        progress.step_taken(now)?;
+        observer(before, now, dense)
+    };
     loop {
         let pieces = pieces.as_deref_mut();
-        let part = integrate_part(system, &parts.next, pieces, &mut impasse, observer);
+        let part = integrate_part(system, &parts.next, pieces, &mut impasse, &mut observer);
         let is_ended = parts.add(part)?;
         // A step whose end cannot be evaluated was taken, or one of an explicit method, which does not shorten it: a shorter one is tried.
         let shorter = impasse.failed_step.take();

@@ -61,6 +61,7 @@ pub mod interruption;
 mod libration;
 pub mod machine;
 pub mod machine_ode;
+mod modes;
 pub mod motion_class;
 pub mod ode;
 pub mod options;
@@ -95,9 +96,10 @@ pub use flywheel::{Flywheel, size_flywheel};
 pub use integrate::integrate;
 pub use machine::{
     CoordinateMode, EvaluatedIn, Machine, MachineError, MachineState, MachineWorkspace,
-    MovingModel, NonconservativeSource, SlidingForces, SpaceFitWindow, loads_with_drives,
+    MovingModel, NonconservativeSource, SpaceFitWindow, loads_with_drives,
 };
 pub use machine_ode::MachineOde;
+pub use modes::{EventSide, MotionModes, SharedModes};
 pub use motion_class::{MotionClass, motion_class};
 pub use ode::{
     DenseOutput, OdeState, OdeSystem, ReducedState, StepControl, StepObserver, Termination,

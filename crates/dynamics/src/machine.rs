@@ -39,7 +39,6 @@ use dwell_numerics::{Scalar, lu};
 pub use evaluated_in::EvaluatedIn;
 pub use on_fit::MovingModel;
 pub use on_fit_in_space::SpaceFitWindow;
-pub use sliding::SlidingForces;
 pub use state::MachineState;
 use std::sync::Arc;
 pub use works::NonconservativeSource;
@@ -444,7 +443,7 @@ impl<M: MovingModel> Machine<M> {
 }
 
 /// The functions of time among loads, inputs of drives and prescribed motions, numbered in this order; the drives are
-/// the last of the loads. What a program's own function does in time is unknown.
+/// the last of the loads. Of a program's own function the breakpoints in time are known, and nothing else.
 fn time_features<M: MovingModel>(
     model: &M,
     drives: &[CompiledDrive<M>],
@@ -458,9 +457,15 @@ fn time_features<M: MovingModel>(
                 features.add_expression(source, expression, time);
             }
         }
+        Magnitude::Function(function, signals) => {
+            for (i, at) in function.breakpoints() {
+                if matches!(signals.get(i), Some(Signal::Time)) {
+                    features.add_instants(at);
+                }
+            }
+        }
         Magnitude::Constant(_)
         | Magnitude::Law(..)
-        | Magnitude::Function(..)
         | Magnitude::Friction(_)
         | Magnitude::Separating(_)
         | Magnitude::External(_) => {}

@@ -5,10 +5,11 @@ use crate::contact_events::pass;
 use crate::error::{DynamicsError, Result};
 use crate::interruption;
 use crate::machine::{Machine, MachineState, MachineWorkspace, MovingModel};
+use crate::modes::SharedModes;
 use crate::ode::{DualWorkspace, OdeState, OdeSystem};
 use crate::sliding::Sliding;
 use crate::state_switches::{HeldSource, Hidden, signal_value};
-use dwell_kinetostatics::Model;
+use dwell_kinetostatics::{Magnitude, Model};
 use dwell_laws::{Features, SwitchKind};
 use dwell_numerics::Dual;
 use std::sync::Arc;
@@ -24,6 +25,7 @@ pub struct MachineOde<'m, M: MovingModel = Model> {
     /// The variables of the loads that switch, where they were looked at last.
     seen: Vec<f64>,
     contact_events: Vec<ContactEvent>,
+    modes: SharedModes,
 }
 
 impl<'m, M: MovingModel> MachineOde<'m, M> {
@@ -62,12 +64,24 @@ impl<'m, M: MovingModel> MachineOde<'m, M> {
             held: Vec::new(),
             seen: Vec::new(),
             contact_events: Vec::new(),
+            modes: SharedModes::default(),
         }
     }
 
     /// The changes of contacts in the motion so far, in order of time; they are taken.
     pub fn take_contact_events(&mut self) -> Vec<ContactEvent> {
         std::mem::take(&mut self.contact_events)
+    }
+
+    /// The modes of the motion so far.
+    pub fn modes(&self) -> &SharedModes {
+        &self.modes
+    }
+
+    /// The same that records its modes elsewhere.
+    pub(crate) fn in_modes(mut self, modes: &SharedModes) -> Self {
+        self.modes = modes.clone();
+        self
     }
 }
 
@@ -129,6 +143,11 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
         Some(Arc::clone(&self.machine.time_features))
     }
 
+    fn own_function(&self) -> Option<usize> {
+        let mut loads = self.machine.model.loads().iter();
+        loads.position(|load| matches!(load.magnitude, Magnitude::Function(..)))
+    }
+
     fn switch_kinds(&self) -> &[SwitchKind] {
         self.machine.state_switches.kinds()
     }
@@ -186,6 +205,10 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
             load: self.switch_source(switch),
             sliding: sliding.cloned(),
         });
+    }
+
+    fn record_mode(&mut self, at: &OdeState, pieces: &[Option<f64>], sliding: Option<&Sliding>) {
+        self.modes.get().add(at, pieces, sliding);
     }
 
     fn hold_pieces(&mut self, pieces: &[Option<f64>]) {

@@ -71,6 +71,11 @@ pub trait OdeSystem {
         None
     }
 
+    /// The index of the first load that a program computes, of which only its breakpoints are known.
+    fn own_function(&self) -> Option<usize> {
+        None
+    }
+
     /// At which values the functions of the state switch on which pieces of the right-hand side depend.
     fn switch_kinds(&self) -> &[SwitchKind] {
         &[]
@@ -124,6 +129,10 @@ pub trait OdeSystem {
 
     /// Called where the motion begins to slide along one of these switches, and where it leaves it.
     fn record_sliding(&mut self, _at: &OdeState, _switch: usize, _sliding: Option<&Sliding>) {}
+
+    /// Called where a mode of the motion begins: with the piece of each function, and along which switch it slides.
+    fn record_mode(&mut self, _at: &OdeState, _pieces: &[Option<f64>], _sliding: Option<&Sliding>) {
+    }
 
     /// Holds one piece of each function, wherever the state is, until others are set; none: as the state says.
     fn hold_pieces(&mut self, _pieces: &[Option<f64>]) {}

@@ -169,6 +169,10 @@ impl OdeSystem for SlidingSystem<'_, '_> {
         Ok(())
     }
 
+    fn own_function(&self) -> Option<usize> {
+        self.shared.inner().own_function()
+    }
+
     fn switch_kinds(&self) -> &[SwitchKind] {
         &self.shared.kinds
     }
@@ -210,6 +214,10 @@ impl OdeSystem for SlidingSystem<'_, '_> {
 
     fn record_sliding(&mut self, at: &OdeState, switch: usize, sliding: Option<&Sliding>) {
         self.shared.inner().record_sliding(at, switch, sliding);
+    }
+
+    fn record_mode(&mut self, at: &OdeState, pieces: &[Option<f64>], sliding: Option<&Sliding>) {
+        self.shared.inner().record_mode(at, pieces, sliding);
     }
 
     fn hold_pieces(&mut self, pieces: &[Option<f64>]) {

@@ -16,6 +16,7 @@ use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
 use crate::machine::{Machine, MovingModel};
 use crate::machine_ode::MachineOde;
+use crate::modes::MotionModes;
 use crate::ode::{DenseOutput, OdeState, OdeSystem, Step, StepControl};
 use crate::options::{Options, Statistics};
 use dwell_geometry::body_states::CoordinateFunction;
@@ -36,6 +37,8 @@ pub struct Solution {
     pub event_occurrences: Vec<EventOccurrence>,
     /// Where surfaces with dry friction came to rest or let go, and end stops were met, in order of time.
     pub contact_events: Vec<ContactEvent>,
+    /// On what it was from each event to the next.
+    pub modes: MotionModes,
     /// Whether a terminal event ended it.
     pub terminated_by_event: bool,
     /// The error that ended it early, if one did.
@@ -142,9 +145,16 @@ fn record_machine<M: MovingModel>(
 ) -> Result<Solution> {
     machine.check_start(&start.y)?;
     let mut ode = MachineOde::until(machine, start.t, &start.y, Some(end))?;
-    let observed = (ObservedMachine::new(machine, output_model), recorder_state);
-    let mut solution = record(&mut ode, observed, start, Some(end), options)?;
+    let observed = ObservedMachine::new(machine, output_model).in_modes(ode.modes());
+    let mut solution = record(
+        &mut ode,
+        (observed, recorder_state),
+        start,
+        Some(end),
+        options,
+    )?;
     solution.add_contact_events(ode.take_contact_events());
+    solution.modes = ode.modes().take();
     Ok(solution)
 }
 

@@ -97,11 +97,11 @@ impl StateSwitches {
     }
 
     /// The indices of the loads that switch.
-    pub(crate) fn loads(&self) -> Vec<usize> {
+    pub(crate) fn loads(&self) -> impl Iterator<Item = usize> + '_ {
         let switches =
             |source: &&SwitchSource| !source.magnitude.kinds().is_empty() || source.drive_count > 0;
         let all = self.sources.iter().filter(switches);
-        all.map(|source| source.index).collect()
+        all.map(|source| source.index)
     }
 
     /// The load's index of a function.

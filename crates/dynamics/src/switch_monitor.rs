@@ -159,7 +159,8 @@ impl SwitchMonitor {
         system.hold_pieces(&self.pieces());
     }
 
-    fn pieces(&self) -> Vec<Option<f64>> {
+    /// By switch: the piece that is held, if one is.
+    pub(crate) fn pieces(&self) -> Vec<Option<f64>> {
         self.switches.iter().map(|s| s.piece).collect()
     }
 

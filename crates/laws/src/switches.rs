@@ -53,16 +53,21 @@ pub enum SwitchKind {
     Knots(Vec<f64>),
 }
 
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 enum Source {
-    /// A law of one variable, which is the function itself.
-    #[default]
-    Law,
+    /// Some of the variables themselves, by their indices: of a law its only one.
+    Variables(Vec<usize>),
     Expression {
         ops: Vec<Op>,
         /// By switch: where its operands begin.
         switches: Vec<(Switch, [usize; 2])>,
     },
+}
+
+impl Default for Source {
+    fn default() -> Self {
+        Self::Variables(Vec::new())
+    }
 }
 
 impl SwitchKind {
@@ -137,6 +142,19 @@ impl Switches {
         }
     }
 
+    /// Of a function that is not known but for the values of its variables, each by its index, between which it is smooth.
+    pub fn at_values<'v>(values: impl IntoIterator<Item = (usize, &'v [f64])>) -> Self {
+        let all = values.into_iter();
+        let all = all.map(|(variable, values)| (variable, SwitchKind::Knots(values.to_vec())));
+        let (variables, kinds): (Vec<usize>, Vec<SwitchKind>) = all.unzip();
+        Self {
+            may_hide: vec![false; kinds.len()],
+            kinds,
+            source: Source::Variables(variables),
+            ..Self::default()
+        }
+    }
+
     /// Those of a law of a coordinate or speed.
     pub fn of_law(law: &Law) -> Self {
         let knots = match law {
@@ -145,11 +163,7 @@ impl Switches {
             Law::Profile(profile) => profile.corners().to_vec(),
             Law::Spline(_) | Law::Polynomial(_) | Law::Sinusoid(_) => return Self::default(),
         };
-        Self {
-            kinds: vec![SwitchKind::Knots(knots)],
-            may_hide: vec![false],
-            ..Self::default()
-        }
+        Self::at_values([(0, &knots[..])])
     }
 
     /// At which values each function switches.
@@ -160,7 +174,7 @@ impl Switches {
     /// Whether a function has another one's operation among its operands, so that its value depends on that one's piece.
     pub fn depends(&self, function: usize, on: usize) -> bool {
         match &self.source {
-            Source::Law => false,
+            Source::Variables(_) => false,
             Source::Expression { switches, .. } => {
                 let (switch, [left, right]) = &switches[function];
                 let op = switches[on].0.op;
@@ -228,7 +242,11 @@ impl Switches {
     /// The value of each function at these variables, on the pieces that are held.
     pub fn values(&self, variables: &[f64], held: &HeldPieces, out: &mut [f64]) {
         match &self.source {
-            Source::Law => out.fill(variables.first().copied().unwrap_or(f64::NAN)),
+            Source::Variables(which) => {
+                for (out, &i) in out.iter_mut().zip(which) {
+                    *out = variables.get(i).copied().unwrap_or(f64::NAN);
+                }
+            }
             Source::Expression { ops, switches } => {
                 let variable = |i: usize| variables.get(i).copied().unwrap_or(f64::NAN);
                 let part = |start: usize, last: usize| {
@@ -246,7 +264,11 @@ impl Switches {
     /// The value of each function and its rate, where the variables have rates.
     pub fn rates(&self, variables: &[[f64; 2]], held: &HeldPieces, out: &mut [[f64; 2]]) {
         match &self.source {
-            Source::Law => out.fill(variables.first().copied().unwrap_or([f64::NAN; 2])),
+            Source::Variables(which) => {
+                for (out, &i) in out.iter_mut().zip(which) {
+                    *out = variables.get(i).copied().unwrap_or([f64::NAN; 2]);
+                }
+            }
             Source::Expression { ops, switches } => {
                 let variable = |i: usize| Jet::moving(variables.get(i).copied());
                 let part = |start: usize, last: usize| -> [f64; 2] {
@@ -273,7 +295,7 @@ impl Switches {
             return;
         }
         match &self.source {
-            Source::Law => held.sides.extend(pieces.iter().map(|&piece| [piece, None])),
+            Source::Variables(_) => held.sides.extend(pieces.iter().map(|&piece| [piece, None])),
             Source::Expression { ops, switches } => {
                 held.sides.resize(ops.len(), Sides::default());
                 for ((switch, _), &piece) in switches.iter().zip(pieces) {

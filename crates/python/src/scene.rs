@@ -51,13 +51,14 @@ impl Scene {
         Ok(Self { scene })
     }
 
-    /// The magnitude of a load by a Python function of a tuple of signals.
+    /// The magnitude of a load by a Python function of a tuple of signals, with the breakpoints of some of them.
     fn with_function(
         &self,
         py: Python<'_>,
         load: &str,
         signals: Vec<String>,
         function: Py<PyAny>,
+        breakpoints: Vec<(String, Vec<f64>)>,
     ) -> PyResult<Self> {
         let names: Vec<&str> = signals.iter().map(String::as_str).collect();
         let called = move |signals: &[f64]| {
@@ -71,7 +72,11 @@ impl Scene {
                 f64::NAN
             })
         };
-        let scene = self.scene.with_function(load, &names, called);
+        let mut magnitude = dwell::Magnitude::function(&names, called);
+        for (signal, values) in breakpoints {
+            magnitude = magnitude.breakpoints(&signal, &values);
+        }
+        let scene = self.scene.with_magnitude(load, &magnitude);
         let scene = scene.or_raise(py)?;
         Ok(Self { scene })
     }

@@ -118,6 +118,21 @@ def test_a_function_does_what_its_expression_does():
         build((["phi"], lambda q: 0.0 * q))
 
 
+def test_a_function_with_named_jumps_does_what_its_expression_does():
+    def build(magnitude, **given):
+        m = pendulum(duration=1.0, initial_coordinate={"phi": 0.3})
+        return m.load("brake", torque="bob", magnitude=magnitude, **given).assemble().simulate(1e-8)
+
+    jumps = {"phi.velocity": [-2.0, 1], "t": [0.4]}
+    one = build("if(phi.velocity < -2, 5, 0) + if(phi.velocity < 1, 0, -3) + if(t < 0.4, 1, -1)")
+    two = build(
+        (["phi.velocity", "t"], lambda v, t: 5 * (v < -2) - 3 * (v >= 1) + (1 if t < 0.4 else -1)), breakpoints=jumps
+    )
+    assert np.abs(one["phi"] - two["phi"]).max() < 1e-12
+    with pytest.raises(dwell.SceneError, match="breakpoints .* of `q`"):
+        build((["t"], lambda t: t), breakpoints={"q": [1.0]})
+
+
 def test_a_function_that_fails_says_which_load():
     m = pendulum(duration=1.0)
     m.load("broken", torque="bob", magnitude=(["t"], lambda t: 1 / 0), breakpoints=False)

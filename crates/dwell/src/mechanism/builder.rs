@@ -265,8 +265,8 @@ impl MechanismBuilder {
             return Err(Error::GivenTwice { section, name });
         }
         let mut scene = Scene::parse(&self.to_toml())?;
-        for (load, (signals, function)) in &self.functions {
-            scene = scene.with_load_function(load, signals, function)?;
+        for (load, function) in &self.functions {
+            scene = scene.with_load_function(load, function)?;
         }
         Ok(scene)
     }

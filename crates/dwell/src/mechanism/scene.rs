@@ -2,8 +2,8 @@
 
 use crate::error::Error;
 use crate::mechanism::Mechanism;
+use crate::mechanism::parts::{LoadFunction, Magnitude};
 use dwell_geometry::{BodyId, Vec2};
-use dwell_kinetostatics::MagnitudeFunction;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -151,8 +151,26 @@ impl Scene {
         signals: &[&str],
         function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static,
     ) -> Result<Self, Error> {
-        let signals: Vec<String> = signals.iter().map(|&s| s.to_owned()).collect();
-        self.with_load_function(load, &signals, &MagnitudeFunction::new(function))
+        let magnitude = Magnitude::function(signals, function);
+        self.with_magnitude(load, &magnitude)
+    }
+
+    /// The same with the magnitude of a load computed by a [function](Magnitude::function), with its
+    /// [breakpoints](Magnitude::breakpoints).
+    ///
+    /// # Errors
+    /// [`Error::Study`] where there is no such load or signal. A magnitude that is no function changes nothing.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// let gas = dwell::Magnitude::function(&["t", "phi"], |s| if s[0] < 0.1 { 0.0 } else { 400.0 * s[1].cos() });
+    /// let scene = scene.with_magnitude("gas", &gas.breakpoints("t", &[0.1]))?;
+    /// # assert!(scene.assemble().is_ok());
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn with_magnitude(&self, load: &str, magnitude: &Magnitude) -> Result<Self, Error> {
+        let function = magnitude.load_function();
+        function.map_or_else(|| Ok(self.clone()), |of| self.with_load_function(load, of))
     }
 
     /// Assembles its mechanism.
@@ -194,15 +212,12 @@ impl Scene {
     }
 
     /// The same scene with the magnitude of a load computed by a function.
-    pub(crate) fn with_load_function(
-        &self,
-        load: &str,
-        signals: &[String],
-        function: &MagnitudeFunction,
-    ) -> Result<Self, Error> {
-        let signals: Vec<&str> = signals.iter().map(String::as_str).collect();
+    pub(crate) fn with_load_function(&self, load: &str, of: &LoadFunction) -> Result<Self, Error> {
+        let signals: Vec<&str> = of.signals.iter().map(String::as_str).collect();
+        let breakpoints = of.breakpoints.iter();
+        let breakpoints: Vec<_> = breakpoints.map(|(s, v)| (&s[..], &v[..])).collect();
         let scene = (*self.0).clone();
-        let scene = scene.with_load_function(load, &signals, function.clone())?;
+        let scene = scene.with_load_function(load, &signals, of.function.clone(), &breakpoints)?;
         Ok(Self(Arc::new(scene)))
     }
 }

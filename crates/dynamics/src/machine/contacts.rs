@@ -87,7 +87,15 @@ impl<M: MovingModel> Machine<M> {
 
     /// The loads, those of the drives last, that switch as coordinates and speeds move.
     pub fn switching_loads(&self) -> Vec<usize> {
-        self.state_switches.loads()
+        self.state_switches.loads().collect()
+    }
+
+    /// The loads whose magnitudes are known from the motion alone: those of drives and contacts, and those that switch, which at a switch may have
+    /// either value.
+    pub fn given_loads(&self) -> impl Iterator<Item = usize> + '_ {
+        let drives = self.drives.iter().map(|drive| drive.load);
+        let all = drives.chain(self.contact_loads());
+        all.chain(self.state_switches.loads())
     }
 
     /// Refuses an analysis of smooth motions where friction holds at rest; `what` says why.

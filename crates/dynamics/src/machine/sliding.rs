@@ -1,55 +1,96 @@
-//! The forces of a machine whose motion slides along the switch of a load: those of both sides, by the part of each.
+//! A machine at a state of a motion: on the pieces that its loads and drives are held on there, or sliding along the switch of one, with what acts on
+//! both sides of it, by the part of each.
 
-use super::{Machine, MachineWorkspace, MovingModel};
+use super::workspace::EquationWorkspace;
+use super::{Machine, MachineState, MachineWorkspace, MovingModel};
 use crate::error::Result;
+use crate::modes::{EventSide, Mode, MotionModes};
 use crate::ode::OdeState;
-use crate::sliding::{SideRates, Sliding};
-
-/// What acts and what it causes in a motion that slides along a switch.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SlidingForces {
-    /// By actuator: its acceleration, per s².
-    pub q_ddot: Vec<f64>,
-    /// By load, those of the drives last: its magnitude.
-    pub magnitudes: Vec<f64>,
-}
+use crate::sliding::SideRates;
 
 impl<M: MovingModel> Machine<M> {
-    /// The accelerations and the magnitudes of loads that keep a motion on its switch, at a state.
+    /// Evaluates a state of a motion in the mode that it is in on a side of an event. What is held then stays held in the workspace.
     ///
     /// # Errors
-    /// [`DynamicsError`](crate::DynamicsError) where the state cannot be evaluated.
-    pub fn sliding_forces(
-        &self,
-        sliding: &Sliding,
+    /// As [`Machine::evaluate`].
+    pub fn evaluate_along<'a>(
+        &'a self,
+        (modes, side): (&MotionModes, EventSide),
         at: &OdeState,
-        workspace: &mut MachineWorkspace<f64, M>,
-    ) -> Result<SlidingForces> {
+        workspace: &'a mut MachineWorkspace<f64, M>,
+    ) -> Result<MachineState<'a, f64, M>> {
+        let state = modes.state_at(at, side);
+        match modes.mode_at(at.t, side) {
+            Some(mode) => self.evaluate_in_mode(&mode, &state, workspace),
+            None => self.evaluate(at.t, &at.y, workspace),
+        }
+    }
+
+    /// The same in a mode that is known.
+    fn evaluate_in_mode<'a>(
+        &'a self,
+        mode: &Mode<'_>,
+        at: &OdeState,
+        workspace: &'a mut MachineWorkspace<f64, M>,
+    ) -> Result<MachineState<'a, f64, M>> {
         let mut held = Vec::new();
-        let mut sides = Vec::with_capacity(2);
-        let mut functions = vec![[0.0; 2]; self.state_switches.kinds().len()];
-        let mut first = [[0.0; 2]; 2];
-        let mut rates = vec![0.0; self.state_count()];
-        for (pieces, first) in sliding.sides.iter().zip(&mut first) {
+        let mut hold = |pieces: &[Option<f64>], workspace: &mut MachineWorkspace<f64, M>| {
             let set = |load: usize, held: &_| self.hold_source(load, held, workspace);
             self.state_switches.hold(pieces, &mut held, set);
+        };
+        let Some(sliding) = mode.sliding else {
+            hold(&mode.pieces, workspace);
+            return self.evaluate(at.t, &at.y, workspace);
+        };
+        let mut functions = vec![[0.0; 2]; self.state_switches.kinds().len()];
+        let mut rates = vec![0.0; self.state_count()];
+        let (mut first, mut lower) = ([[0.0; 2]; 2], None);
+        for (pieces, first) in sliding.sides.iter().zip(&mut first) {
+            hold(pieces, workspace);
             let state = self.evaluate(at.t, &at.y, workspace)?;
             state.derivative(&mut rates);
-            sides.push((state.q_ddot().to_vec(), state.magnitudes().to_vec()));
+            lower.get_or_insert_with(|| (state.equation.clone(), state.magnitudes().to_vec()));
+            let mut held = Vec::new();
+            self.state_switches.hold(pieces, &mut held, |_, _| {});
             self.switch_rates((at.t, &at.y), &rates, workspace, &held, &mut functions)?;
             *first = functions[sliding.switches[0]];
         }
-        let set = |load: usize, held: &_| self.hold_source(load, held, workspace);
-        let none = vec![None; functions.len()];
-        self.state_switches.hold(&none, &mut held, set);
         let part = SideRates { sides: first }.upper_part();
-        let mix = |lower: &[f64], upper: &[f64]| -> Vec<f64> {
-            let both = lower.iter().zip(upper);
-            both.map(|(l, u)| l + part * (u - l)).collect()
-        };
-        Ok(SlidingForces {
-            q_ddot: mix(&sides[0].0, &sides[1].0),
-            magnitudes: mix(&sides[0].1, &sides[1].1),
-        })
+        let mut state = self.evaluate(at.t, &at.y, workspace)?;
+        if let Some((equation, magnitudes)) = lower {
+            state.equation.mix_with(&equation, part);
+            let mut mixed = state.magnitudes().to_vec();
+            mix(&mut mixed, &magnitudes, part);
+            state.forces.set_magnitudes(mixed.into_iter().enumerate())?;
+        }
+        Ok(state)
+    }
+}
+
+impl EquationWorkspace<f64> {
+    /// Takes a part of the forces and accelerations, and the rest of those on the lower side of a switch.
+    fn mix_with(&mut self, lower: &Self, part: f64) {
+        let both = [
+            (&mut self.q_ddot, &lower.q_ddot),
+            (&mut self.drive_forces, &lower.drive_forces),
+            (&mut self.drive_accelerations, &lower.drive_accelerations),
+            (&mut self.drive_state_rates, &lower.drive_state_rates),
+            (&mut self.stop_forces, &lower.stop_forces),
+            (&mut self.inverse_dynamics.tau, &lower.inverse_dynamics.tau),
+            (
+                &mut self.inverse_dynamics.reactions,
+                &lower.inverse_dynamics.reactions,
+            ),
+        ];
+        for (upper, lower) in both {
+            mix(upper, lower, part);
+        }
+    }
+}
+
+/// A part of some numbers, and the rest of others.
+fn mix(upper: &mut [f64], lower: &[f64], part: f64) {
+    for (upper, lower) in upper.iter_mut().zip(lower) {
+        *upper = lower + part * (*upper - lower);
     }
 }

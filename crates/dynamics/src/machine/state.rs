@@ -194,8 +194,7 @@ impl<M: MovingModel> MachineState<'_, f64, M> {
         let at = [&equation.q[..], &equation.q_dot[..]];
         let state = KinematicState::new(output_model, at, workspace)?;
         let mut state = state.apply_loads(self.t)?;
-        let drives = self.machine.drives.iter().map(|drive| drive.load);
-        for load in drives.chain(self.machine.contact_loads()) {
+        for load in self.machine.given_loads() {
             state.set_magnitude(load, self.magnitudes()[load]);
         }
         Ok(state.evaluate(&equation.q_ddot, result)?)

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::machine::{Machine, MachineWorkspace, MovingModel};
+use crate::modes::{EventSide, SharedModes};
 use crate::ode::OdeState;
 use dwell_kinetostatics::{InverseDynamics, Model};
 
@@ -46,6 +47,8 @@ pub struct ObservedMachine<'m, M: MovingModel = Model> {
     workspace: MachineWorkspace<f64, M>,
     output_workspace: M::Workspace<f64>,
     inverse_dynamics: InverseDynamics<f64>,
+    /// The modes of the motion, where it has any.
+    modes: SharedModes,
 }
 
 impl<'m, M: MovingModel> ObservedMachine<'m, M> {
@@ -58,7 +61,15 @@ impl<'m, M: MovingModel> ObservedMachine<'m, M> {
             workspace: machine.workspace(),
             output_workspace: output_model.pass_workspace(),
             inverse_dynamics: output_model.result_buffer(),
+            modes: SharedModes::default(),
         }
+    }
+
+    /// The same in the modes of a motion that is being integrated.
+    #[must_use]
+    pub fn in_modes(mut self, modes: &SharedModes) -> Self {
+        self.modes = modes.clone();
+        self
     }
 }
 
@@ -80,7 +91,11 @@ impl<M: MovingModel> Observed for ObservedMachine<'_, M> {
     }
 
     fn reaction(&mut self, index: usize, at: &OdeState) -> Result<f64> {
-        let state = self.machine.evaluate(at.t, &at.y, &mut self.workspace)?;
+        let modes = self.modes.get();
+        let along = (&*modes, EventSide::Behind);
+        let state = self
+            .machine
+            .evaluate_along(along, at, &mut self.workspace)?;
         let (workspace, result) = (&mut self.output_workspace, &mut self.inverse_dynamics);
         let outputs = state.outputs(self.output_model, workspace, result)?;
         Ok(outputs.inverse_dynamics().reactions[index])

@@ -56,8 +56,8 @@ pub fn solve_orbit<O: Observed>(
         samples,
         terminated_by_event,
         event_occurrences: found.occurrences,
-        contact_events: Vec::new(),
         error,
+        ..Solution::default()
     })
 }
 

@@ -4,10 +4,11 @@ use super::{LoadEffect, TabulatedCoordinate, TabulatedMachine, TabulatedSignal};
 use crate::contact::ContactEvent;
 use crate::error::{DynamicsError, Result, positive_inertia};
 use crate::machine_ode::with_later_works;
+use crate::modes::SharedModes;
 use crate::ode::{DualWorkspace, OdeState, OdeSystem};
 use crate::sliding::Sliding;
 use crate::state_switches::{HeldSource, Hidden, SourceState};
-use dwell_kinetostatics::KinetostaticsError;
+use dwell_kinetostatics::{KinetostaticsError, Magnitude};
 use dwell_laws::{Features, SwitchKind};
 use dwell_numerics::{Dual, Scalar};
 use std::sync::Arc;
@@ -26,12 +27,18 @@ pub struct TabulatedMachineOde<'t> {
     /// The variables of the loads that switch, where they were looked at last.
     seen: Vec<f64>,
     contact_events: Vec<ContactEvent>,
+    modes: SharedModes,
 }
 
 impl TabulatedMachineOde<'_> {
     /// Where the motion so far began to slide along a switch of a load, and where it left it; they are taken.
     pub fn take_contact_events(&mut self) -> Vec<ContactEvent> {
         std::mem::take(&mut self.contact_events)
+    }
+
+    /// The modes of the motion so far.
+    pub fn modes(&self) -> &SharedModes {
+        &self.modes
     }
 }
 
@@ -101,6 +108,7 @@ impl TabulatedMachine {
             held: Vec::new(),
             seen: Vec::new(),
             contact_events: Vec::new(),
+            modes: SharedModes::default(),
         })
     }
 
@@ -220,6 +228,12 @@ impl OdeSystem for TabulatedMachineOde<'_> {
         Some(Arc::clone(&self.machine.time_features))
     }
 
+    fn own_function(&self) -> Option<usize> {
+        let mut loads = self.machine.tabulated_loads.iter();
+        let found = loads.find(|load| matches!(load.magnitude, Magnitude::Function(..)));
+        found.map(|load| load.load)
+    }
+
     fn switch_kinds(&self) -> &[SwitchKind] {
         self.machine.state_switches.kinds()
     }
@@ -312,6 +326,10 @@ impl OdeSystem for TabulatedMachineOde<'_> {
             load: self.switch_source(switch),
             sliding: sliding.cloned(),
         });
+    }
+
+    fn record_mode(&mut self, at: &OdeState, pieces: &[Option<f64>], sliding: Option<&Sliding>) {
+        self.modes.get().add(at, pieces, sliding);
     }
 
     fn hold_pieces(&mut self, pieces: &[Option<f64>]) {

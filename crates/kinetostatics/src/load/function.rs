@@ -13,41 +13,116 @@ const STEP: f64 = 6e-6;
 
 /// A magnitude computed by the caller's own program from the values of its signals, in SI.
 ///
-/// It must be a smooth function of them where a motion passes: the integrators' Jacobians and linearised motions take
-/// its derivatives by central differences (about ten digits). Two are equal if they are the same function.
+/// It must be a smooth function of them between its breakpoints: the integrators' Jacobians and linearised motions take
+/// its derivatives by differences (about ten digits). Nothing of it is searched: a jump or a kink that is no breakpoint makes
+/// the steps of a motion so short that it ends. Two are equal if they are the same function.
 #[derive(Clone)]
-pub struct MagnitudeFunction(Arc<Function>);
+pub struct MagnitudeFunction {
+    function: Arc<Function>,
+    /// By signal that has any, its index and the values at which the function jumps or has a kink, ascending.
+    breakpoints: Vec<(usize, Vec<f64>)>,
+}
 
 type Function = dyn Fn(&[f64]) -> f64 + Send + Sync;
 
 impl MagnitudeFunction {
     /// From a function or closure.
     pub fn new(function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static) -> Self {
-        Self(Arc::new(function))
+        Self {
+            function: Arc::new(function),
+            breakpoints: Vec::new(),
+        }
+    }
+
+    /// The same with values of a signal, by its index, at which it jumps or has a kink: a motion stops at each, and is integrated on one
+    /// side at a time. What is not finite is left out.
+    #[must_use]
+    pub fn with_breakpoints(mut self, signal: usize, values: &[f64]) -> Self {
+        let known = self.breakpoints.iter().position(|(i, _)| *i == signal);
+        let k = known.unwrap_or(self.breakpoints.len());
+        if known.is_none() {
+            self.breakpoints.push((signal, Vec::new()));
+        }
+        let all = &mut self.breakpoints[k].1;
+        all.extend(values.iter().filter(|value| value.is_finite()));
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        self
+    }
+
+    /// By signal that has breakpoints: its index, and their values, ascending.
+    pub fn breakpoints(&self) -> impl Iterator<Item = (usize, &[f64])> {
+        self.breakpoints.iter().map(|(i, values)| (*i, &values[..]))
     }
 
     /// The value at these signals.
     pub fn value(&self, signals: &[f64]) -> f64 {
-        (self.0)(signals)
+        (self.function)(signals)
     }
 
     /// The value in any kind of number, with derivatives by central differences.
     pub(super) fn eval<T: Scalar>(&self, numbers: &[T], values: &[f64]) -> T {
+        self.eval_by(|at| self.value(at), numbers, values)
+    }
+
+    /// The same between the bounds of the pieces that are held; beyond one it goes on by its slope there.
+    pub(super) fn eval_held<T: Scalar>(&self, numbers: &[T], values: &[f64], held: &[Held]) -> T {
+        self.eval_by(|at| self.value_held(at, held), numbers, values)
+    }
+
+    fn eval_by<T: Scalar>(
+        &self,
+        value: impl Fn(&[f64]) -> f64,
+        numbers: &[T],
+        values: &[f64],
+    ) -> T {
         let slope = |i: usize| {
-            let mut near = [0.0; MAX_FUNCTION_SIGNALS];
-            let Some(near) = near.get_mut(..values.len()) else {
-                return f64::NAN;
-            };
             let step = STEP * values[i].abs().max(1.0);
-            let mut at = |x: f64| {
-                near.copy_from_slice(values);
-                near[i] = x;
-                self.value(near)
-            };
+            let at = |x: f64| with_signal(values, i, x, &value);
             (at(values[i] + step) - at(values[i] - step)) / (2.0 * step)
         };
-        first_order(self.value(values), slope, numbers, values)
+        first_order(value(values), slope, numbers, values)
     }
+
+    fn value_held(&self, values: &[f64], held: &[Held]) -> f64 {
+        let is_inside = |&(i, [low, high]): &Held| low < values[i] && values[i] < high;
+        if held.iter().all(is_inside) {
+            return self.value(values);
+        }
+        let mut inside = [0.0; MAX_FUNCTION_SIGNALS];
+        let Some(inside) = inside.get_mut(..values.len()) else {
+            return f64::NAN;
+        };
+        inside.copy_from_slice(values);
+        for &(i, [low, high]) in held {
+            inside[i] = values[i].max(low.next_up()).min(high.next_down());
+        }
+        let value = |at: &[f64]| self.value(at);
+        let beyond = held.iter().filter(|held| !is_inside(held));
+        let beyond = beyond.map(|&(i, [low, high])| {
+            // Into the piece, from its bound.
+            let step = (STEP * inside[i].abs().max(1.0)).min(0.25 * (high - low));
+            let step = if values[i] <= low { step } else { -step };
+            let at = |k: f64| with_signal(inside, i, inside[i] + k * step, &value);
+            let [first, second] = [at(1.0) - at(0.0), at(2.0) - at(1.0)];
+            (first + 0.5 * (first - second)) / step * (values[i] - inside[i])
+        });
+        self.value(inside) + beyond.sum::<f64>()
+    }
+}
+
+/// The index of a signal, and the bounds of the piece on which it is held.
+pub(super) type Held = (usize, [f64; 2]);
+
+/// A function of signals where one of them has another value.
+fn with_signal(values: &[f64], i: usize, x: f64, function: &impl Fn(&[f64]) -> f64) -> f64 {
+    let mut near = [0.0; MAX_FUNCTION_SIGNALS];
+    let Some(near) = near.get_mut(..values.len()) else {
+        return f64::NAN;
+    };
+    near.copy_from_slice(values);
+    near[i] = x;
+    function(near)
 }
 
 /// A function in any kind of number: its value, plus its slopes times what each variable holds beside its plain
@@ -75,6 +150,6 @@ impl fmt::Debug for MagnitudeFunction {
 
 impl PartialEq for MagnitudeFunction {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
+        Arc::ptr_eq(&self.function, &other.function) && self.breakpoints == other.breakpoints
     }
 }

@@ -1,11 +1,11 @@
 //! The signals that magnitudes depend on, and magnitudes as laws and expressions of them.
 
-use super::function::first_order;
+use super::function::{Held, MagnitudeFunction, first_order};
 use super::{CompiledLoads, CompiledSignal, MAX_FUNCTION_SIGNALS, Magnitude, Signal};
 use crate::error::{KinetostaticsError, Result};
 use dwell_geometry::Mechanism;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
-use dwell_laws::{HeldPieces, Switches};
+use dwell_laws::{HeldPieces, SwitchKind, Switches};
 use dwell_numerics::{Dual, Scalar};
 
 impl CompiledLoads {
@@ -112,10 +112,12 @@ impl<C> Magnitude<C> {
                 };
                 first_order(expression.eval_held(values, held), slope, numbers, values)
             }
+            (Self::Function(function, signals), numbers) => {
+                function.eval_held(numbers, values, &bounds_held(function, signals, held))
+            }
             (
                 Self::Constant(_)
                 | Self::Law(..)
-                | Self::Function(..)
                 | Self::Friction(_)
                 | Self::Separating(_)
                 | Self::External(_),
@@ -140,10 +142,10 @@ impl<C> Magnitude<C> {
                 let slope = |i: usize| expression.derivatives_held(&values, i, held)[1];
                 moving.map(|(i, [_, rate])| slope(i) * rate).sum()
             }
-            Self::Function(function, _) => {
+            Self::Function(..) => {
                 let numbers = signals.iter().map(|&[v, d]| Dual { v, d });
                 let numbers: Vec<Dual> = numbers.collect();
-                function.eval(&numbers, &values).d
+                self.eval(&numbers, &values, held).d
             }
             Self::Constant(_) | Self::Friction(_) | Self::Separating(_) | Self::External(_) => 0.0,
         }
@@ -157,14 +159,38 @@ impl<C> Magnitude<C> {
                 let time = signals.iter().position(|s| matches!(s, Signal::Time));
                 Switches::of_expression(expression, time)
             }
+            Self::Function(function, signals) => {
+                Switches::at_values(state_breakpoints(function, signals))
+            }
             Self::Constant(_)
             | Self::Law(Signal::Time, _)
-            | Self::Function(..)
             | Self::Friction(_)
             | Self::Separating(_)
             | Self::External(_) => Switches::default(),
         }
     }
+}
+
+/// The breakpoints of a function in its signals other than time.
+fn state_breakpoints<'f, C>(
+    function: &'f MagnitudeFunction,
+    signals: &'f [Signal<C>],
+) -> impl Iterator<Item = (usize, &'f [f64])> {
+    let all = function.breakpoints();
+    all.filter(|(i, _)| !matches!(signals.get(*i), Some(Signal::Time) | None))
+}
+
+/// By signal of a function that is held: its index and the bounds of its piece.
+fn bounds_held<C>(
+    function: &MagnitudeFunction,
+    signals: &[Signal<C>],
+    held: &HeldPieces,
+) -> Vec<Held> {
+    let all = state_breakpoints(function, signals).zip(held.pieces());
+    let bounds = |((i, values), piece): ((usize, &[f64]), Option<f64>)| {
+        Some((i, SwitchKind::Knots(values.to_vec()).bounds(piece?)))
+    };
+    all.filter_map(bounds).collect()
 }
 
 /// Working memory for the signals of one magnitude.

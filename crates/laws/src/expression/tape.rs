@@ -90,6 +90,11 @@ impl HeldPieces {
     pub fn is_empty(&self) -> bool {
         self.sides.is_empty()
     }
+
+    /// The pieces of a function that is held by the values of its variables, one for each.
+    pub fn pieces(&self) -> impl Iterator<Item = Option<f64>> {
+        self.sides.iter().map(|[piece, _]| *piece)
+    }
 }
 
 fn sides_of(sides: &[Sides], op: usize) -> Sides {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from typing import Any, Callable, Mapping, Sequence
+from typing import Any, Callable, Literal, Mapping, Sequence
 
 from ._mechanism import Mechanism
 from ._scene import Scene
@@ -36,7 +36,9 @@ class Builder:
         self.title = title
         self._bodies: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {}
         self._sections: dict[str, dict[str, Any]] = {}
-        self._functions: list[tuple[str, Sequence[str], Callable[..., float], bool | None]] = []
+        self._functions: list[
+            tuple[str, Sequence[str], Callable[..., float], Mapping[str, Sequence[float]] | Literal[False] | None]
+        ] = []
         self._text = ""
 
     def body(
@@ -74,7 +76,9 @@ class Builder:
         self._sections.setdefault("assembly", {}).update(values)
         return self
 
-    def load(self, name: str, *, breakpoints: bool | None = None, **keys: Any) -> Builder:
+    def load(
+        self, name: str, *, breakpoints: Mapping[str, Sequence[float]] | Literal[False] | None = None, **keys: Any
+    ) -> Builder:
         """Adds a load by its keys: ``gravity=(0, -9.81)``, ``force="piston.C", direction=(-1, 0), magnitude="400*cos(phi)"``.
 
         A magnitude may be a pair (signals, function): ``torque="crank", magnitude=(["phi.velocity"], lambda v: -0.2 * v)``. See

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import pathlib
 import warnings
-from typing import TYPE_CHECKING, Callable, Sequence
+from typing import TYPE_CHECKING, Callable, Literal, Mapping, Sequence
 
 import numpy.typing as npt
 
@@ -68,23 +68,31 @@ class Scene:
         return Scene._of(self._native.with_value(path, value))
 
     def with_function(
-        self, load: str, signals: Sequence[str], function: Callable[..., float], *, breakpoints: bool | None = None
+        self,
+        load: str,
+        signals: Sequence[str],
+        function: Callable[..., float],
+        *,
+        breakpoints: Mapping[str, Sequence[float]] | Literal[False] | None = None,
     ) -> Scene:
         """The same scene with the magnitude of a load computed by a Python function.
 
         It is called with the signals, in their order: ``t`` (s), coordinates (rad or m), velocities such as ``phi.velocity``.
-        One call costs about 1 µs more than an expression. Nothing is known of where the function switches: a motion may step over
-        a short pulse of it. ``breakpoints=False`` says that it is smooth, and is silent; otherwise a warning says so.
+        One call costs about 1 µs more than an expression. Where the function jumps or has a kink is not searched: name the values of the
+        signals, ``breakpoints={"x.velocity": [-0.02], "t": [0.5]}``, and a motion stops at each of them and is integrated on one side at a
+        time, as with an expression. A jump that is not named makes the steps so short that the motion ends there, and a short pulse may be
+        missed. ``breakpoints=False`` says that the function is smooth; without either a warning says so.
 
         An exception in the function makes the magnitude not a number: the evaluation fails there and names the load.
         """
         if breakpoints is None:
             warnings.warn(
                 f"`{load}` is a Python function: where it switches is not known, and a motion may step over a short pulse of it "
-                "(breakpoints=False says that it is smooth)",
+                "(breakpoints={signal: [values]} names where it switches, breakpoints=False says that it is smooth)",
                 stacklevel=2,
             )
-        return Scene._of(self._native.with_function(load, list(signals), function))
+        named = [(signal, [float(value) for value in values]) for signal, values in (breakpoints or {}).items()]
+        return Scene._of(self._native.with_function(load, list(signals), function, named))
 
     def export(self, target: str, folder: str | os.PathLike[str] = ".", *, accuracy: float = 1e-9) -> list[pathlib.Path]:
         """Writes the machine as code into a folder, and returns the files: ``"c"`` (C99), ``"exact-c"`` (the model's own operations),

@@ -1,7 +1,7 @@
-//! Explains friction that holds, and end stops.
+//! Explains friction that holds, end stops, and functions of a program that jump.
 
 use crate::explain::{NamedScene, StudyError, scene_error};
-use crate::number_format::{coordinate_unit, number};
+use crate::number_format::{coordinate_unit, digits, number};
 use dwell_geometry::ActuatorId;
 use dwell_scene::SceneLocation;
 
@@ -25,6 +25,34 @@ pub(super) fn explain_sticking(scene: &impl NamedScene, load: usize, what: &str)
     let help = "give it a `regularization-speed`, with which it is smooth and does not hold; `dwell simulate` computes the \
                 motion with friction that holds";
     let label = "has no `regularization-speed`";
+    scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
+}
+
+/// Explains steps that are so short that they do not lead on: by a load that the program computes, where there is one.
+pub(super) fn explain_no_progress(
+    scene: &impl NamedScene,
+    function: Option<usize>,
+    [t, step]: [f64; 2],
+) -> StudyError {
+    let [at, step] = [digits(t, 6), digits(step, 2)];
+    let message =
+        format!("the motion does not go on at t = {at} s: its steps of {step} s get no longer");
+    let name = function.and_then(|load| Some((load, scene.load_name(load)?)));
+    let Some((load, name)) = name else {
+        let help = "a limit position or a change point may be near, or a load varies without end: end the motion earlier, or use a larger \
+                    tolerance";
+        return scene_error(
+            scene,
+            message,
+            help,
+            [(SceneLocation::Duration, "beyond that time")],
+        );
+    };
+    let message = format!(
+        "{message}; load `{name}` is a function of your program, which may jump or have a kink there"
+    );
+    let help = "name the values of its signals at which it does so as its breakpoints, or write it as an expression, whose switches are found";
+    let label = "its function has a jump that is not named";
     scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
 }
 

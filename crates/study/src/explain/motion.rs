@@ -1,7 +1,8 @@
 //! Explains motions that fail, with their locations in the scene.
 
 use super::contacts::{
-    explain_beyond_stop, explain_endless_impacts, explain_no_mode, explain_sticking, explain_stop,
+    explain_beyond_stop, explain_endless_impacts, explain_no_mode, explain_no_progress,
+    explain_sticking, explain_stop,
 };
 use crate::explain::{
     NamedScene, StudyError, body_names, explain_position, joint_labels, labels, scene_error,
@@ -39,6 +40,9 @@ pub(crate) fn explain_any_motion(scene: &impl NamedScene, error: &DynamicsError)
             t,
             max_steps,
         } => explain_fast(scene, *source_index, [*width, *t], *max_steps),
+        DynamicsError::NoProgress { function, t, step } => {
+            explain_no_progress(scene, *function, [*t, *step])
+        }
         DynamicsError::Chatters { source_index, t } => explain_chatter(scene, *source_index, *t),
         DynamicsError::SlidesOnSeveral { source_index, t } => {
             explain_several(scene, *source_index, *t)

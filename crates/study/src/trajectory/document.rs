@@ -1,5 +1,6 @@
 //! The text of a trajectory analysis: the printed summary, and the Markdown page with extrema, column meanings and figures.
 
+use crate::explain::couplings;
 use crate::number_format::{count, number};
 use crate::output::{indeterminate_note, provenance_line};
 use crate::ranges::extent;
@@ -9,7 +10,9 @@ use crate::trajectory::compute::{
 };
 use crate::trajectory::highlights::Movement;
 use dwell_findings::{Column, Record, RecordedExtrema};
+use dwell_geometry::Mechanism;
 use dwell_kinetostatics::{Distribution, Section};
+use dwell_laws::Law;
 use dwell_report::{Block, Document as Page, Figure};
 use dwell_scene::{Scene, SceneFile};
 
@@ -30,6 +33,14 @@ const MUCH: usize = 50_000;
 const LARGEST_OF_ROWS: &str =
     "these are the largest values of the rows: the motion has too many steps to look between them";
 
+/// The joints that couple two coordinates by a curve: not by a ratio, as teeth do, which push on either side.
+fn curves(mechanism: &Mechanism) -> Vec<String> {
+    let is_line = |law: &Law| matches!(law, Law::Polynomial(p) if p.coefficients.len() <= 2);
+    let all = couplings(mechanism).filter(|(_, law, _)| !is_line(law));
+    all.map(|(joint, ..)| mechanism.joints[joint.0].name.clone())
+        .collect()
+}
+
 /// The results of a trajectory analysis as text.
 pub(crate) struct Document<'a> {
     scene: &'a SceneFile,
@@ -37,6 +48,8 @@ pub(crate) struct Document<'a> {
     movement: Movement<'a>,
     /// The bodies that are not modelled.
     unmodelled: Vec<String>,
+    /// The joints of cams and other couplings by a curve.
+    curves: Vec<String>,
     results: &'a TrajectoryResults,
     trajectory: &'a Trajectory<'a>,
     extrema: Vec<ColumnExtrema>,
@@ -53,6 +66,7 @@ impl<'a> Document<'a> {
         let mut document = Self::of_file(&scene.file, scene.mechanism.size(), computed);
         document.movement.scene = Some(scene);
         document.unmodelled = computed.results.unmodelled_bodies(scene);
+        document.curves = curves(&scene.mechanism);
         document
     }
 
@@ -79,6 +93,7 @@ impl<'a> Document<'a> {
                 abscissa,
             },
             unmodelled: Vec::new(),
+            curves: Vec::new(),
             results,
             trajectory,
             extrema: sorted_extrema(results, &listed, abscissa, size),
@@ -318,9 +333,33 @@ impl<'a> Document<'a> {
         })
     }
 
-    /// The rounding error, what is shown as zero, the reactions that no table has, and the bodies that are not modelled; empty
-    /// where there is nothing to say.
-    fn remarks(&self) -> [String; 4] {
+    /// A line for each cam whose contact would have to pull: which of the two signs of its force pushes is not known, but one that only pushes
+    /// has one sign.
+    fn pulling_contacts(&self) -> String {
+        let is_of = |of: &ColumnExtrema, joint: &String| {
+            let component = of.name.strip_prefix(joint.as_str());
+            component.is_some_and(|component| [".force", ".moment"].contains(&component))
+        };
+        let contacts = self.extrema.iter();
+        let contacts = contacts.filter(|of| self.curves.iter().any(|joint| is_of(of, joint)));
+        let changes = contacts.filter(|of| {
+            let [low, high] = of.ends.map(|end| end.value);
+            let least = of.error.max(SAME_WITHIN * high.max(-low));
+            low < -least && high > least
+        });
+        let line = |of: &ColumnExtrema| {
+            let [[low, _], [high, _]] = of.ends.map(|end| of.texts(end));
+            format!(
+                "  {} changes its sign, from {low} to {high} {}: a cam that touches on one side only would have to pull there, and lifts off\n",
+                of.name, of.unit
+            )
+        };
+        changes.map(line).collect()
+    }
+
+    /// The rounding error, what is shown as zero, the reactions that no table has, the bodies that are not modelled, and the contacts that
+    /// would have to pull; empty where there is nothing to say.
+    fn remarks(&self) -> [String; 5] {
         // Rounded up to a power of ten.
         let rounding = match self.results.rounding_error {
             Some(error) if error > 0.0 => format!(
@@ -345,7 +384,8 @@ impl<'a> Document<'a> {
                 bodies.join(", ")
             ),
         };
-        [rounding, zero, indeterminate, unmodelled]
+        let contacts = self.pulling_contacts();
+        [rounding, zero, indeterminate, unmodelled, contacts]
     }
 
     fn power_balance_text(&self) -> String {

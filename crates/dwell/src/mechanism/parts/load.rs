@@ -20,8 +20,15 @@ pub struct Magnitude {
     function: Option<LoadFunction>,
 }
 
-/// A function with the names of its signals.
-pub(crate) type LoadFunction = (Vec<String>, MagnitudeFunction);
+/// A function of one's own program.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct LoadFunction {
+    /// The names of its signals.
+    pub(crate) signals: Vec<String>,
+    pub(crate) function: MagnitudeFunction,
+    /// By name of a signal: the values at which the function jumps or has a kink.
+    pub(crate) breakpoints: Vec<(String, Vec<f64>)>,
+}
 
 impl Magnitude {
     /// A smooth curve through points [x, magnitude], where x is `t`, a coordinate, or a velocity such as `phi.velocity`.
@@ -38,8 +45,9 @@ impl Magnitude {
     }
 
     /// A function of signals: `t` (s), coordinates (rad or m) and velocities such as `phi.velocity`, in the order in
-    /// which they are named. It must be smooth where the mechanism moves. A scene's text cannot hold it: there the
-    /// magnitude stands as an expression without a value.
+    /// which they are named. It must be smooth where the mechanism moves, but for [breakpoints](Self::breakpoints): nothing else
+    /// can tell where the program switches. A scene's text cannot hold it: there the magnitude stands as an expression without a
+    /// value.
     ///
     /// ```
     /// let drag = dwell::Magnitude::function(&["phi.velocity"], |s| -0.2 * s[0] * s[0].abs());
@@ -51,8 +59,34 @@ impl Magnitude {
         let signals = signals.iter().map(|&s| s.to_owned()).collect();
         Self {
             value: NO_VALUE.into(),
-            function: Some((signals, MagnitudeFunction::new(function))),
+            function: Some(LoadFunction {
+                signals,
+                function: MagnitudeFunction::new(function),
+                breakpoints: Vec::new(),
+            }),
         }
+    }
+
+    /// Its function, if it is one.
+    pub(crate) fn load_function(&self) -> Option<&LoadFunction> {
+        self.function.as_ref()
+    }
+
+    /// The same with values of one of the function's signals at which it jumps or has a kink, as `t` at which it is switched on. A motion
+    /// stops at each of them and is integrated on one side at a time, as where an expression switches. Without them a jump makes its steps so
+    /// short that it ends, and a short pulse may be missed. It changes nothing of other magnitudes.
+    ///
+    /// ```
+    /// let cutting = dwell::Magnitude::function(&["ram.velocity"], |s| if s[0] < -0.02 { 1500.0 } else { 0.0 })
+    ///     .breakpoints("ram.velocity", &[-0.02]);
+    /// ```
+    #[must_use]
+    pub fn breakpoints(mut self, signal: &str, values: &[f64]) -> Self {
+        if let Some(function) = &mut self.function {
+            let values = values.to_vec();
+            function.breakpoints.push((signal.to_owned(), values));
+        }
+        self
     }
 }
 

@@ -1,12 +1,13 @@
 //! A computed motion between its samples: at its steps, and at any time within a step.
 
-use crate::free_motion::compute::tables::sliding_at;
 use crate::free_motion::compute::within_steps::{MAX_STEPS, StatesWithinSteps, exact_state};
 use crate::free_motion::compute::{
-    FreeMotionProblem, MotionSolver, PlaceInMotion, SegmentedMotion,
+    FreeMotionProblem, MotionSolver, PlaceInMotion, SegmentedMotion, sides_of_step,
 };
 use crate::trajectory::compute::{SamplePrecision, TrajectorySample};
-use dwell_dynamics::{Machine, MachineOde, MachineWorkspace, Method, OdeState};
+use dwell_dynamics::{
+    EventSide, Machine, MachineOde, MachineWorkspace, Method, OdeState, Solution,
+};
 use dwell_geometry::body_states::CoordinateFunction;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -26,14 +27,16 @@ impl FreeMotionProblem<'_> {
             max_skipped,
             skipped: 0,
         };
-        let mut is_kept = |steps: &[OdeState], k: usize| thinning.keeps(steps, k);
-        self.evaluated(
-            motion,
-            |solution| &solution.steps,
-            &mut is_kept,
-            coordinates,
-        )
-        .ok()
+        let mut wanted = |solution: &Solution, k: usize| {
+            let is_kept = thinning.keeps(&solution.steps, k);
+            let sides = sides_of_step(solution, k);
+            match is_kept || sides.len() > 1 {
+                true => sides,
+                false => Vec::new(),
+            }
+        };
+        self.evaluated(motion, |solution| &solution.steps, &mut wanted, coordinates)
+            .ok()
     }
 
     /// Whether a time (s) is in a step that begins or ends within the window of a change point's fit.
@@ -175,10 +178,10 @@ impl<'m> MotionSampler<'m> {
         if machine.is_in_fit_window(&point.y) {
             return None;
         }
-        let sliding = sliding_at(place.solution, point.t);
+        let along = (&place.solution.modes, EventSide::Behind);
         let workspace = &mut self.machine_of(place)?.1;
         let mut sample = problem
-            .sample((place.chart, machine, &mut *workspace), point, sliding)
+            .sample((place.chart, machine, &mut *workspace), point, along)
             .ok()?;
         if let Some(steps) = motion.actuator_coordinates.steps.get(place.segment) {
             let mechanism = &problem.loaded_scene.mechanism;

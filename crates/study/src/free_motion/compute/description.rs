@@ -76,10 +76,6 @@ impl FreeMotionProblem<'_> {
             let name = &event.name;
             let own = times_of(&motion.segments, i);
             let others = second.map(|parts| times_of(parts, i));
-            record.add_count(format!("event.{name}.count"), own.len());
-            if let Some(others) = others.as_ref().filter(|others| others.len() != own.len()) {
-                record.add_count(format!("event.{name}.count_in_second_run"), others.len());
-            }
             let times = (&own[..], others.as_deref());
             let late = computed.delay.unwrap_or_default();
             text += &event_line((name, event.terminal), times, late, &mut record);

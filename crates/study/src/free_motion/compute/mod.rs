@@ -40,6 +40,6 @@ pub use simulation::{FreeMotion, MotionSolver, compute_free_motion};
 pub(crate) use summary_lines::{
     Energies, balance_line, class_line, cost_line, event_line, first_changes, times_of,
 };
-pub(crate) use tables::{free_trajectory, sample_of, since_start, sliding_at};
+pub(crate) use tables::{free_trajectory, sample_of, sides_of_step, since_start};
 pub(crate) use tried_motion::TriedMotion;
 pub(crate) use within_steps::{MAX_STEPS, StatesWithinSteps, exact_state};

@@ -169,7 +169,7 @@ impl<'a> FreeMotionProblem<'a> {
             format!("t = {} s: {what}", digits(change.t, 6))
         };
         let mut descriptions = first_changes(continued.changes.iter().map(describe).collect());
-        for fit in atlas.change_point_fits() {
+        for fit in atlas.change_points_of(continued) {
             let names = fit.indeterminate.iter();
             let names = names.map(|&r| self.loaded_scene.mechanism.reaction_name(r));
             let indeterminate = match names.collect::<Vec<_>>() {

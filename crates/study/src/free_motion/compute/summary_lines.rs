@@ -39,7 +39,9 @@ pub(crate) fn event_line(
     record: &mut Record,
 ) -> String {
     let mut text = format!("  {name}: {}", how_often(own.len()));
+    record.add_count(format!("event.{name}.count"), own.len());
     if let Some(others) = second.filter(|others| others.len() != own.len()) {
+        record.add_count(format!("event.{name}.count_in_second_run"), others.len());
         text += &format!(
             " ({} in a second run: within its error it is not certain)",
             how_often(others.len())
@@ -98,7 +100,8 @@ pub(crate) fn cost_line(cost: &Statistics, record: &mut Record) -> String {
 }
 
 /// The class of a conservative motion of one degree of freedom, from its energy, and its period; the turning points with their errors
-/// (rad or m), where these are known. The period is that of `parts`, unless these are not followed by its orbit.
+/// (rad or m), where these are known. The period is that of `parts`, unless these are not followed by its orbit. A motion that an event
+/// ended before it could turn back is no libration.
 pub(crate) fn class_line(
     problem: &impl MotionProblem,
     parts: &[(usize, Solution)],
@@ -121,6 +124,9 @@ pub(crate) fn class_line(
             format!("rotation; kinetic energy at the potential maximum {kinetic} J")
         }
         Ok(MotionClass::Libration { turning_points }) => {
+            if is_ended_before_it_turns(problem, parts) {
+                return String::new();
+            }
             let errors = turning_point_errors(turning_points);
             let ends = ["lower", "upper"].map(|end| format!("turning_point.{end}"));
             for (k, end) in ends.into_iter().enumerate() {
@@ -168,6 +174,16 @@ fn is_followed(orbit: &Orbit, parts: &[(usize, Solution)]) -> bool {
     }
     let missed = last.map_or(0.0, |(t, q)| (orbit.state_at(t).q - q).abs());
     missed <= MISSED * moved
+}
+
+/// Whether an event ended a motion within half its period.
+fn is_ended_before_it_turns(problem: &impl MotionProblem, parts: &[(usize, Solution)]) -> bool {
+    let ended = parts.last().filter(|(_, last)| last.terminated_by_event);
+    let end = ended.and_then(|(_, last)| last.steps.last());
+    end.is_some_and(|end| {
+        let orbit = problem.orbit(1.0);
+        orbit.is_ok_and(|orbit| end.t < 0.5 * orbit.period)
+    })
 }
 
 /// The period of a motion with its error, where it has one.

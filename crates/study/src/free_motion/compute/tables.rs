@@ -6,7 +6,7 @@ use crate::trajectory::compute::{
     FreeTrajectory, SamplePrecision, Trajectory, TrajectorySample, extra_columns,
 };
 use dwell_dynamics::{
-    ContactEvent, DynamicsError, Machine, MachineWorkspace, MovingModel, OdeState, Sliding,
+    DynamicsError, EventSide, Machine, MachineWorkspace, MotionModes, MovingModel, OdeState,
     Solution,
 };
 use dwell_findings::Table;
@@ -45,7 +45,7 @@ impl FreeMotionProblem<'_> {
         let evaluated = self.evaluated(
             motion,
             |solution| &solution.samples,
-            &mut |_, _| true,
+            &mut |solution, k| vec![(solution.samples[k].t, EventSide::Behind)],
             coordinates,
         )?;
         let samples: Vec<_> = evaluated.into_iter().map(|(_, sample)| sample).collect();
@@ -53,30 +53,30 @@ impl FreeMotionProblem<'_> {
         Ok(since_start(samples, self.balance_index(), initial))
     }
 
-    /// Those of a motion's picked states that are kept, each with its time, s, evaluated: without those within the window of a
+    /// A motion's picked states on the sides of events that are wanted, each under a time (s), evaluated: without those within the window of a
     /// change point's fit. `coordinates` are those of the actuator, by segment.
     pub(super) fn evaluated(
         &self,
         motion: &SegmentedMotion,
         picked: fn(&Solution) -> &[OdeState],
-        is_kept: &mut dyn FnMut(&[OdeState], usize) -> bool,
+        wanted: &mut dyn FnMut(&Solution, usize) -> Vec<(f64, EventSide)>,
         coordinates: &[Vec<[f64; 3]>],
     ) -> Result<Vec<(f64, TrajectorySample)>, DynamicsError> {
         let mut all = Vec::new();
         for (segment, (chart, solution)) in motion.segments.iter().enumerate() {
             let machine = self.machine_in(motion, *chart);
             let mut workspace = machine.workspace();
-            let points = picked(solution);
-            for (k, point) in points.iter().enumerate() {
-                if !is_kept(points, k) || machine.is_in_fit_window(&point.y) {
+            for (k, point) in picked(solution).iter().enumerate() {
+                if machine.is_in_fit_window(&point.y) {
                     continue;
                 }
-                let sliding = sliding_at(solution, point.t);
-                let place = (*chart, machine, &mut workspace);
-                let mut sample = self.sample(place, point, sliding)?;
-                let coordinates = coordinates.get(segment);
-                sample.actuator_coordinate = coordinates.and_then(|s| s.get(k)).copied();
-                all.push((point.t, sample));
+                for (t, side) in wanted(solution, k) {
+                    let place = (*chart, machine, &mut workspace);
+                    let mut sample = self.sample(place, point, (&solution.modes, side))?;
+                    let coordinates = coordinates.get(segment);
+                    sample.actuator_coordinate = coordinates.and_then(|s| s.get(k)).copied();
+                    all.push((t, sample));
+                }
             }
         }
         Ok(all)
@@ -127,10 +127,10 @@ impl FreeMotionProblem<'_> {
         &self,
         (chart, machine, workspace): (usize, &Machine, &mut MachineWorkspace),
         point: &OdeState,
-        sliding: Option<&Sliding>,
+        along: (&MotionModes, EventSide),
     ) -> Result<TrajectorySample, DynamicsError> {
         let machine = (machine, &self.loaded_scene.drives[..]);
-        let sample = sample_of(machine, point, sliding.map(|of| (of, 0)), workspace)?;
+        let sample = sample_of(machine, point, along, workspace)?;
         Ok(TrajectorySample { chart, ..sample })
     }
 
@@ -174,14 +174,15 @@ pub(crate) fn free_trajectory(
 }
 
 /// A state of a machine with its accelerations, drive magnitudes and energies, and with the balance of energies and works in place of
-/// its error. Where it slides along a switch, the magnitudes of switching loads from a number on are given as well.
+/// its error: of a motion in its modes, on a side of an event.
 pub(crate) fn sample_of<M: MovingModel>(
     (machine, drives): (&Machine<M>, &[Drive<M::Coordinate>]),
     point: &OdeState,
-    sliding: Option<(&Sliding, usize)>,
+    (modes, side): (&MotionModes, EventSide),
     workspace: &mut MachineWorkspace<f64, M>,
 ) -> Result<TrajectorySample, DynamicsError> {
-    let state = machine.evaluate(point.t, &point.y, workspace)?;
+    let point = &*modes.state_at(point, side);
+    let state = machine.evaluate_along((modes, side), point, workspace)?;
     let [kinetic, potential] = state.energy();
     let works = &point.y[machine.work_offset()..];
     let mut extra_values = vec![kinetic, potential];
@@ -189,24 +190,13 @@ pub(crate) fn sample_of<M: MovingModel>(
     extra_values.push(kinetic + potential - works.iter().sum::<f64>());
     extra_values.extend(&point.y[machine.drive_states()]);
     extra_values.extend(motor_values((machine, drives), &state, &point.y));
-    // Drives are the last loads.
-    let loads = machine.model().loads().len();
-    let given = (loads - machine.drives()..loads).chain(machine.contact_loads());
-    let mut given: Vec<usize> = given.collect();
-    let [q, q_dot, mut q_ddot] = [state.q(), state.q_dot(), state.q_ddot()].map(<[f64]>::to_vec);
-    let mut magnitudes = state.magnitudes().to_vec();
-    if let Some((sliding, first)) = sliding {
-        let forces = machine.sliding_forces(sliding, point, workspace)?;
-        let switching = machine.switching_loads().into_iter();
-        given.extend(switching.filter(|load| *load >= first));
-        (q_ddot, magnitudes) = (forces.q_ddot, forces.magnitudes);
-    }
-    let given = given.into_iter().map(|load| (load, magnitudes[load]));
+    let given = machine.given_loads();
+    let given = given.map(|load| (load, state.magnitudes()[load]));
     Ok(TrajectorySample {
         t: point.t,
-        q,
-        q_dot,
-        q_ddot,
+        q: state.q().to_vec(),
+        q_dot: state.q_dot().to_vec(),
+        q_ddot: state.q_ddot().to_vec(),
         drive_magnitudes: given.collect(),
         extra_values,
         ..TrajectorySample::default()
@@ -229,13 +219,12 @@ pub(crate) fn since_start(
     samples
 }
 
-/// The switch along which a motion slides at a time, s.
-pub(crate) fn sliding_at(solution: &Solution, t: f64) -> Option<&Sliding> {
-    let switches = solution.contact_events.iter().rev();
-    let last = switches.filter(|event| event.t() <= t);
-    last.filter_map(|event| match event {
-        ContactEvent::Switch { sliding, .. } => Some(sliding.as_ref()),
-        ContactEvent::Friction { .. } | ContactEvent::Stop { .. } => None,
-    })
-    .next()?
+/// As what a step's end is evaluated, each with the time (s) under which it is kept: where a mode of the motion begins, as the end of what leads up
+/// to it, a rounding earlier, and as the beginning of what follows.
+pub(crate) fn sides_of_step(solution: &Solution, k: usize) -> Vec<(f64, EventSide)> {
+    let t = solution.steps[k].t;
+    match k > 0 && solution.modes.begin_at(t) {
+        true => vec![(t.next_down(), EventSide::Before), (t, EventSide::Behind)],
+        false => vec![(t, EventSide::Before)],
+    }
 }

@@ -84,11 +84,12 @@ impl TriedMotion for FreeMotionProblem<'_> {
         let work = self.machine.largest_work(start.t, duration);
         let ode = table.ode(start.t, &start.y, work);
         let mut ode = ode.map_err(|e| self.explain(&e))?;
-        let outputs = ObservedMachine::new(&self.machine, &self.output_model);
+        let outputs = ObservedMachine::new(&self.machine, &self.output_model).in_modes(ode.modes());
         let events = self.events();
         let solution = solve_system(&mut ode, outputs, &start, Some(duration), options, &events);
         let mut solution = solution.map_err(|e| self.explain(&e))?;
         solution.add_contact_events(ode.take_contact_events());
+        solution.modes = ode.modes().take();
         let is_complete = solution.error.is_none();
         Ok(is_complete.then(|| SegmentedMotion::single_segment(solution)))
     }

@@ -2,9 +2,9 @@
 
 use super::problem::SpaceMotionProblem;
 use super::run::Run;
-use crate::free_motion::compute::{MAX_STEPS, StatesWithinSteps, exact_state, sliding_at};
+use crate::free_motion::compute::{MAX_STEPS, StatesWithinSteps, exact_state, sides_of_step};
 use crate::trajectory::compute::{SamplePrecision, TrajectorySample};
-use dwell_dynamics::{MachineOde, MachineWorkspace, OdeState, Solution};
+use dwell_dynamics::{EventSide, MachineOde, MachineWorkspace, OdeState, Solution};
 use dwell_kinetostatics::space::Model;
 
 impl SpaceMotionProblem<'_> {
@@ -14,10 +14,8 @@ impl SpaceMotionProblem<'_> {
         if steps.sum::<usize>() > MAX_STEPS {
             return None;
         }
-        let steps = self
-            .evaluated(&run.motion, |solution| &solution.steps)
-            .ok()?;
-        Some(steps.into_iter().map(|step| (step.t, step)).collect())
+        self.evaluated(&run.motion, |solution| &solution.steps, sides_of_step)
+            .ok()
     }
 }
 
@@ -108,8 +106,8 @@ impl<'m> PartSampler<'m> {
         if self.problem.machine.is_in_fit_window(&point.y) {
             return None;
         }
-        let sliding = sliding_at(solution, t);
-        let sample = self.problem.sample(&point, sliding, &mut self.workspace);
+        let along = (&solution.modes, EventSide::Behind);
+        let sample = self.problem.sample(&point, along, &mut self.workspace);
         sample.ok()
     }
 }

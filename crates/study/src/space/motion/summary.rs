@@ -31,7 +31,6 @@ impl SpaceMotionProblem<'_> {
         for (i, event) in self.spec.events.iter().enumerate() {
             let own = times_of(parts, i);
             let others = second.map(|parts| times_of(parts, i));
-            record.add_count(format!("event.{}.count", event.name), own.len());
             let named = (&event.name[..], event.terminal);
             text += &event_line(named, (&own, others.as_deref()), late, &mut record);
         }

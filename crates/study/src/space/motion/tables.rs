@@ -6,11 +6,11 @@ use super::problem::SpaceMotionProblem;
 use super::run::Run;
 #[cfg(feature = "output")]
 use crate::free_motion::compute::event_table;
-use crate::free_motion::compute::{MotionProblem as _, sample_of, since_start, sliding_at};
+use crate::free_motion::compute::{MotionProblem as _, sample_of, since_start};
 use crate::trajectory::compute::{SamplePrecision, TrajectorySample};
 use dwell_dynamics::{
-    DenseOutput, DynamicsError, MachineOde, MachineWorkspace, OdeState, Options, Sliding, Solution,
-    StepControl, integrate,
+    DenseOutput, DynamicsError, EventSide, MachineOde, MachineWorkspace, MotionModes, OdeState,
+    Options, Solution, StepControl, integrate,
 };
 #[cfg(feature = "output")]
 use dwell_findings::Table;
@@ -19,26 +19,32 @@ use dwell_kinetostatics::space::Model;
 impl SpaceMotionProblem<'_> {
     /// Every sample with its accelerations, drive magnitudes and energies.
     pub(super) fn samples(&self, motion: &Motion) -> Result<Vec<TrajectorySample>, DynamicsError> {
-        let all = self.evaluated(motion, |solution| &solution.samples)?;
+        let behind =
+            |solution: &Solution, k: usize| vec![(solution.samples[k].t, EventSide::Behind)];
+        let all = self.evaluated(motion, |solution| &solution.samples, behind)?;
+        let all: Vec<_> = all.into_iter().map(|(_, sample)| sample).collect();
         let index = self.balance_index();
         let initial = all.first().map_or(0.0, |s| s.extra_values[index]);
         Ok(since_start(all, index, initial))
     }
 
-    /// Some states of each part of a motion as samples.
+    /// Some states of each part of a motion on the sides of events that are wanted, each under a time (s), as samples.
     pub(super) fn evaluated(
         &self,
         motion: &Motion,
         picked: fn(&Solution) -> &[OdeState],
-    ) -> Result<Vec<TrajectorySample>, DynamicsError> {
+        wanted: fn(&Solution, usize) -> Vec<(f64, EventSide)>,
+    ) -> Result<Vec<(f64, TrajectorySample)>, DynamicsError> {
         let mut all = Vec::new();
         for (problem, solution) in motion.parts(self) {
             let mut workspace = problem.machine.workspace();
             // Within the window of a change point no reaction has a value.
-            let states = picked(solution).iter();
-            for state in states.filter(|state| !problem.machine.is_in_fit_window(&state.y)) {
-                let sliding = sliding_at(solution, state.t);
-                all.push(problem.sample(state, sliding, &mut workspace)?);
+            let states = picked(solution).iter().enumerate();
+            for (k, state) in states.filter(|(_, s)| !problem.machine.is_in_fit_window(&s.y)) {
+                for (t, side) in wanted(solution, k) {
+                    let along = (&solution.modes, side);
+                    all.push((t, problem.sample(state, along, &mut workspace)?));
+                }
             }
         }
         Ok(all)
@@ -59,7 +65,8 @@ impl SpaceMotionProblem<'_> {
             }
             _ => self.samples_within_steps(run, wanted)?,
         };
-        let initial = self.sample(&self.initial_state(), None, &mut workspace)?;
+        let at_start = (&MotionModes::default(), EventSide::Behind);
+        let initial = self.sample(&self.initial_state(), at_start, &mut workspace)?;
         let index = self.balance_index();
         Ok(since_start(samples, index, initial.extra_values[index]))
     }
@@ -97,8 +104,8 @@ impl SpaceMotionProblem<'_> {
         }
         states.retain(|state| !self.machine.is_in_fit_window(&state.y));
         let all = states.iter().map(|state| {
-            let sliding = sliding_at(solution, state.t);
-            self.sample(state, sliding, workspace)
+            let along = (&solution.modes, EventSide::Behind);
+            self.sample(state, along, workspace)
         });
         all.collect()
     }
@@ -122,13 +129,12 @@ impl SpaceMotionProblem<'_> {
     pub(super) fn sample(
         &self,
         point: &OdeState,
-        sliding: Option<&Sliding>,
+        along: (&MotionModes, EventSide),
         workspace: &mut MachineWorkspace<f64, Model>,
     ) -> Result<TrajectorySample, DynamicsError> {
         let scene = self.scene();
         let machine = (&self.machine, &scene.drives[..]);
-        let sliding = sliding.map(|of| (of, scene.loads.len()));
-        let mut sample = sample_of(machine, point, sliding, workspace)?;
+        let mut sample = sample_of(machine, point, along, workspace)?;
         if let Some(chart) = self.chart {
             sample.chart = chart.number;
             let at = [&sample.q[..], &sample.q_dot, &sample.q_ddot];
@@ -143,7 +149,8 @@ impl SpaceMotionProblem<'_> {
         event_table(self, &motion.parts, |event| {
             let problem = motion.problem(self, event.chart);
             let mut workspace = problem.machine.workspace();
-            let sample = problem.sample(&event.state, None, &mut workspace).ok()?;
+            let along = (&MotionModes::default(), EventSide::Behind);
+            let sample = problem.sample(&event.state, along, &mut workspace).ok()?;
             Some(match sample.actuator_coordinate {
                 Some([q, speed, _]) => vec![q, speed],
                 None => {

@@ -2,7 +2,7 @@
 //! one, and at a jump, as where friction changes its sign. Three points about such a place do not show it; the straight lines through
 //! the points before it and behind it do.
 
-use super::maximum::{Bracket, Point};
+use super::maximum::{Bracket, Point, between_events};
 
 /// A slope changes so many times more between two points than next to them where it has a corner there, and a value where it jumps. A smooth
 /// function's slope changes about twice as much.
@@ -31,7 +31,7 @@ pub(super) fn sharp_maxima(
     let slope = |[a, b]: [Point; 2]| sign * (b[1] - a[1]) / (b[0] - a[0]);
     let mut best: [Option<(f64, f64, Sharp)>; 2] = [None; 2];
     let wanted = largest + MIN_GAIN * scale;
-    for six in points.windows(6) {
+    for six in between_events(points).flat_map(|part| part.windows(6)) {
         let [low, high] = [six[2], six[3]];
         // Nearly all places are decided by differences alone: no corner without a rise before and a fall behind it, no jump that is
         // smaller than the changes next to it.

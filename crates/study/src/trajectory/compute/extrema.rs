@@ -350,7 +350,12 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         let ([u, value], at) = *first.min_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]))?;
         let at = match at {
             Some(at) => at,
-            None => self.evaluate([self.abscissa], (u, Exact))?[0],
+            None => {
+                // The limit before an event is known a rounding earlier.
+                let is_known = |u: f64| points.binary_search_by(|p| p[0].total_cmp(&u)).is_ok();
+                let u = Some(u.next_up()).filter(|u| is_known(*u)).unwrap_or(u);
+                self.evaluate([self.abscissa], (u, Exact))?[0]
+            }
         };
         Some(Extremum {
             value: sign * value,

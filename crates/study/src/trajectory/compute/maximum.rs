@@ -41,8 +41,32 @@ pub(super) fn promising(
     largest: f64,
     count: usize,
 ) -> Vec<(f64, Bracket)> {
+    let mut all = Vec::new();
+    for part in between_events(points) {
+        add_peaks(part, sign, largest, &mut all);
+    }
+    let first = all.first().copied();
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    all.truncate(count);
+    if let Some(first) = first.filter(|first| all.iter().all(|other| other.2 != first.2)) {
+        all.push(first);
+    }
+    let bracket = |(_, value, bracket)| (value, bracket);
+    all.into_iter().map(bracket).collect()
+}
+
+/// The parts of a function's points between the instants at which it may jump: there, both its limits are known, a rounding apart.
+pub(super) fn between_events(points: &[Point]) -> impl Iterator<Item = &[Point]> {
+    points.chunk_by(|a, b| b[0] > a[0].next_up())
+}
+
+/// The value that a local maximum may have, its largest point, and its bracket.
+type Peak = (f64, f64, Bracket);
+
+/// Adds the local maxima of `sign` times the values that may be above the largest.
+fn add_peaks(points: &[Point], sign: f64, largest: f64, all: &mut Vec<Peak>) {
     let Some(last) = points.len().checked_sub(1).filter(|last| *last > 0) else {
-        return Vec::new();
+        return;
     };
     let signed = |i: usize| [points[i][0], sign * points[i][1]];
     let end = |i: usize| {
@@ -50,7 +74,7 @@ pub(super) fn promising(
         let ends = (signed(i.max(1) - 1), signed((i + 1).min(last)));
         (value >= largest).then_some((value, value, (ends.0, None, ends.1)))
     };
-    let mut all: Vec<(f64, f64, Bracket)> = Vec::from_iter(end(0));
+    all.extend(end(0));
     for (i, around) in points.windows(3).enumerate() {
         // Not by `map`, which is a call where the program is optimised for size.
         let (low, value, high) = (
@@ -69,14 +93,6 @@ pub(super) fn promising(
         }
     }
     all.extend(end(last));
-    let first = all.first().copied();
-    all.sort_by(|a, b| b.0.total_cmp(&a.0));
-    all.truncate(count);
-    if let Some(first) = first.filter(|first| all.iter().all(|other| other.2 != first.2)) {
-        all.push(first);
-    }
-    let bracket = |(_, value, bracket)| (value, bracket);
-    all.into_iter().map(bracket).collect()
 }
 
 /// The maximum of the parabola through three points; none if it has none.
