@@ -378,10 +378,7 @@ class Motion:
             remainder = (abs(balls[g].mid[n + 1]) + balls[g].rad[n + 1]) * h ** (n + 1)
             if not remainder <= 1e-15 * size:
                 return None
-            root = first_root(series[g][leads[g] : n + 1], h)
-            if root is not None:
-                if root[1]:
-                    self.is_close = True
-                if first is None or root[0] < first:
-                    first = root[0]
+            root = first_root(series[g][leads[g] : n + 1], h, 1e-13 * size)
+            if root is not None and (first is None or root < first):
+                first = root
         return (first,)

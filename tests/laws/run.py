@@ -9,8 +9,9 @@ from if, step, sign, floor, ceilings, min, max, clamp, abs, tables, products, su
 a speed or all of them (`draw.py`). A law is
 
   right       the program agrees to 1e-9 of the largest value of each coordinate and speed
-  wrong       it does not, says nothing, panics, or refuses without naming the load
-  refused     it names the load and what is wrong, with status 1 or 2
+  wrong       it does not, says nothing, or panics
+  unnamed     it is refused, with the load not named
+  refused     the program names the load and what is wrong, with status 1 or 2
   slow        it computes for more than 10 s
   not judged  its motion is not unique, its switches accumulate, or it depends on what is below 1e-11: the reason is counted
 
@@ -37,14 +38,15 @@ import motion
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 AGREE = 1e-9
+# A motion that grazes a threshold at a slope below 1e-7 is not compared more closely than this.
+GRAZING = 1e-6
 LONGEST = 10
 LARGEST_MEMORY = 4 << 30
 MOST_REFUSED = 0.01
 # The motion again from a start this far away: where it ends elsewhere by as much as the program, it says nothing of the program.
 NEARBY = 1e-11
-# Each with a tolerance whose errors are below 1e-10 in smooth motions.
-METHODS = [("bdf", 1e-12), ("dop853", 1e-12), ("tsit45", 1e-12), ("esdirk34", 1e-11)]
-# What a motion under any of the methods says in Dwell of a load that it will not follow.
+# Method, tolerance, and how well its motions agree: ESDIRK34 has errors of 5e-8 in smooth motions at a tolerance that takes as long.
+METHODS = [("bdf", 1e-12, AGREE), ("dop853", 1e-12, AGREE), ("tsit45", 1e-12, AGREE), ("esdirk34", 1e-11, 1e-6)]
 
 
 def limit():
@@ -62,7 +64,7 @@ def reference(scene, shift=0.0, **options):
 def simulated(program, scene, method, folder):
     """Status, message and the last row of the program."""
     (folder / "law.toml").write_text(scene.text)
-    name, tolerance = method
+    name, tolerance, _ = method
     arguments = ["simulate", "law.toml", "--method", name, "--rtol", str(tolerance), "--atol", str(tolerance)]
     arguments += ["--pictures", "none", "--sample-interval", str(draw.DURATION), "--out", "out"]
     with open(folder / "out.txt", "wb") as out:
@@ -93,7 +95,7 @@ def difference(values, right, largest):
     return max(math.inf if math.isnan(p) else p for p in parts)
 
 
-def verdict(scene, found, run):
+def verdict(scene, found, run, agree):
     status, text, row = run
     if status in (-signal.SIGXCPU, -signal.SIGKILL):
         return "slow", f"more than {LONGEST} s"
@@ -102,15 +104,15 @@ def verdict(scene, found, run):
     time_column = row and float(row["t [s]"])
     if status != 0 or time_column is None or abs(time_column - draw.DURATION) > 1e-9:
         named = any(f"`{name}{i}`" in text for name in "fg" for i in range(2))
-        message = " ".join(line.strip() for line in text.splitlines() if "×" in line or "warning" in line or "ends" in line)
+        message = " ".join(line.strip() for line in text.splitlines() if line.lstrip().startswith(("×", "│")))
         if status == 0:
             return "wrong", f"status 0 at t = {time_column}"
-        return ("refused", message[:300] or text[:300]) if named else ("wrong", f"status {status} without a load's name: {text[:300]}")
+        return ("refused", message[:300] or text[:300]) if named else ("unnamed", message[:300] or text[:300])
     values = values_of(scene, row)
     gap = difference(values, found.point[1:], found.largest)
-    if gap <= AGREE:
+    if gap <= agree:
         return "right", gap
-    if is_sensitive(scene, found, gap):
+    if found.is_close and gap < GRAZING or is_sensitive(scene, found, gap):
         return "not judged", "depends on what is below 1e-11"
     return "wrong", f"differs by {gap:.1e}: {values}, right {found.point[1:]}"
 
@@ -146,7 +148,7 @@ def judged(task):
             is_lost = run[0] not in (0, 1, 2, -signal.SIGXCPU, -signal.SIGKILL) or "panicked" in run[1]
             outcome = ("wrong", run[1][:300]) if is_lost else ("not judged", reason)
         else:
-            outcome = verdict(scene, found, run)
+            outcome = verdict(scene, found, run, method[2])
         if keep:
             shutil.copytree(folder, pathlib.Path(keep) / f"{seed}-{number}", dirs_exist_ok=True)
         counts = (found.events, found.slides) if found else (0, 0)
@@ -188,7 +190,8 @@ def main():
     print(f"{options.laws} laws of seed {options.seed} in {seconds:.0f} s: " + ", ".join(f"{c} {k}" for k, c in sorted(totals.items())))
     considered = options.laws - totals["not judged"]
     unanswered = totals["refused"] + totals["slow"]
-    return 1 if totals["wrong"] or options.laws >= 100 and unanswered > MOST_REFUSED * considered else 0
+    is_wrong = totals["wrong"] + totals["unnamed"] > 0
+    return 1 if is_wrong or options.laws >= 100 and unanswered > MOST_REFUSED * considered else 0
 
 
 if __name__ == "__main__":

@@ -360,30 +360,29 @@ def horner(coefficients, tau):
     return value
 
 
-def first_root(coefficients, h):
-    """The first root of a polynomial in (0, h], and whether it could be touched without being crossed; None where there is none.
+def first_root(coefficients, h, noise):
+    """The first root in (0, h] that a polynomial crosses; None where there is none. The first coefficient gives its sign before.
 
-    By the signs of its Bernstein coefficients, which are halved until there is at most one change (Descartes)."""
+    By the signs of its Bernstein coefficients, which are halved until there is at most one change (Descartes). What is below
+    `noise` has no sign: a polynomial that touches zero does not cross it."""
     n = len(coefficients) - 1
     scaled = [c * h**k for k, c in enumerate(coefficients)]
-    bernstein = [
-        sum(math.comb(i, k) / math.comb(n, k) * scaled[k] for k in range(i + 1)) for i in range(n + 1)
-    ]
+    weights = WEIGHTS.setdefault(n, [[math.comb(i, k) / math.comb(n, k) for k in range(i + 1)] for i in range(n + 1)])
+    bernstein = [sum(map(mul, row, scaled)) for row in weights]
+    before = coefficients[0] > 0
     stack = [(0.0, 1.0, bernstein)]
     while stack:
         low, high, b = stack.pop()
-        signs = [x > 0 for x in b if x != 0]
+        signs = [x > 0 for x in b if abs(x) > noise]
         if not signs:
-            return (low if low > 0 else high) * h, True
+            continue
+        if signs[0] != before:
+            return low * h
         changes = sum(p != q for p, q in zip(signs, signs[1:]))
         if changes == 0:
-            if b[-1] == 0:
-                return high * h, False
             continue
-        if changes == 1 and b[0] != 0:
-            return bisected(coefficients, low * h, high * h, b[0] > 0), False
-        if high - low < 1e-14:
-            return high * h, True
+        if changes == 1 or high - low < 1e-15:
+            return bisected(coefficients, low * h, high * h, before)
         left, right, row = [], [], b
         while row:
             left.append(row[0])
@@ -393,6 +392,9 @@ def first_root(coefficients, h):
         stack.append((middle, high, right[::-1]))
         stack.append((low, middle, left))
     return None
+
+
+WEIGHTS = {}
 
 
 def bisected(coefficients, low, high, positive):
