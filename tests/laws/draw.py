@@ -6,6 +6,8 @@ from motion import Law
 
 MOST_DEPTH = 5
 DURATION = 2.0
+# Of pulses and windows, in the unit of their variable.
+WIDTHS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 
 
 class Term:
@@ -100,7 +102,6 @@ class Draw:
         # Which variables this scene's laws are of.
         mixed = [*self.times, *self.places, *self.speeds]
         self.variables = rng.choices([self.times, self.places, self.speeds, mixed], [2, 3, 2, 4])[0]
-        self.widths = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 
     def eighth(self, low=-2.0, high=2.0):
         if self.rng.random() < 0.15:
@@ -179,7 +180,7 @@ class Draw:
             return times(self.value(d), self.nested(d) if d > 0 else self.smooth())
         if kind == "sum":
             return plus(self.value(d), self.value(d))
-        width = rng.choice(self.widths)
+        width = rng.choice(WIDTHS)
         pulse = bell(self.variable(), self.eighth(-0.5, 1.5), width)
         # Of an impulse that does not vanish with the width, and not beyond 1000 N.
         height = number(min(1000.0, round(rng.uniform(0.1, 1.0) / width, 1)) * rng.choice([-1, 1]))

@@ -378,7 +378,8 @@ class Motion:
             remainder = (abs(balls[g].mid[n + 1]) + balls[g].rad[n + 1]) * h ** (n + 1)
             if not remainder <= 1e-15 * size:
                 return None
-            root = first_root(series[g][leads[g] : n + 1], h, 1e-13 * size)
+            root, touches = first_root(series[g][leads[g] : n + 1], h, 1e-13 * size)
+            self.is_close |= touches
             if root is not None and (first is None or root < first):
                 first = root
         return (first,)

@@ -361,7 +361,8 @@ def horner(coefficients, tau):
 
 
 def first_root(coefficients, h, noise):
-    """The first root in (0, h] that a polynomial crosses; None where there is none. The first coefficient gives its sign before.
+    """The first root in (0, h] that a polynomial crosses, or None; and whether it touches zero. The first coefficient gives its
+    sign before.
 
     By the signs of its Bernstein coefficients, which are halved until there is at most one change (Descartes). What is below
     `noise` has no sign: a polynomial that touches zero does not cross it."""
@@ -369,20 +370,21 @@ def first_root(coefficients, h, noise):
     scaled = [c * h**k for k, c in enumerate(coefficients)]
     weights = WEIGHTS.setdefault(n, [[math.comb(i, k) / math.comb(n, k) for k in range(i + 1)] for i in range(n + 1)])
     bernstein = [sum(map(mul, row, scaled)) for row in weights]
-    before = coefficients[0] > 0
+    before, touches = coefficients[0] > 0, False
     stack = [(0.0, 1.0, bernstein)]
     while stack:
         low, high, b = stack.pop()
         signs = [x > 0 for x in b if abs(x) > noise]
         if not signs:
+            touches = True
             continue
         if signs[0] != before:
-            return low * h
+            return low * h, touches
         changes = sum(p != q for p, q in zip(signs, signs[1:]))
         if changes == 0:
             continue
         if changes == 1 or high - low < 1e-15:
-            return bisected(coefficients, low * h, high * h, before)
+            return bisected(coefficients, low * h, high * h, before), touches
         left, right, row = [], [], b
         while row:
             left.append(row[0])
@@ -391,7 +393,7 @@ def first_root(coefficients, h, noise):
         middle = 0.5 * (low + high)
         stack.append((middle, high, right[::-1]))
         stack.append((low, middle, left))
-    return None
+    return None, touches
 
 
 WEIGHTS = {}
