@@ -10,13 +10,15 @@ Righthand Sides, 1988). Where several agree, the motion is not unique and `NotUn
 import itertools
 import math
 
-from series import Algebra, Unbounded, depends_on, enclosures, first_root, horner, numbers, ranges, value_and_size
+from series import Algebra, Unbounded, depends_on, enclosures, first_root, horner, least, numbers, ranges, value_and_size
 
 ORDER = 14
 # What is below this part of its terms is on its threshold.
 ON = 1e-11
 # A deciding coefficient below this many times that is too close to say.
 CLOSE = 1e4
+# What comes this near its threshold, as a part of its terms, may touch it.
+TOUCHES = 1e-4
 # Coefficients that decide.
 DECIDING = 6
 MOST_EVENTS = 3000
@@ -30,6 +32,10 @@ class Unjudged(Exception):
 
 
 class NotUnique(Unjudged):
+    pass
+
+
+class Grows(Unjudged):
     pass
 
 
@@ -342,7 +348,7 @@ class Motion:
             self.largest[i - 1] = max(self.largest[i - 1], abs(self.point[i]))
         self.point[0] += length
         if max(map(abs, self.point)) > LARGEST or not all(map(math.isfinite, self.point)):
-            raise Unjudged("grows beyond bounds")
+            raise Grows("grows beyond bounds")
         if root is not None:
             self.fresh = self.point[0]
         return length, max(grow * h, 1e-9), root is not None
@@ -378,8 +384,10 @@ class Motion:
             remainder = (abs(balls[g].mid[n + 1]) + balls[g].rad[n + 1]) * h ** (n + 1)
             if not remainder <= 1e-15 * size:
                 return None
-            root, touches = first_root(series[g][leads[g] : n + 1], h, 1e-13 * size)
-            self.is_close |= touches
+            deflated = series[g][leads[g] : n + 1]
+            root = first_root(deflated, h, 1e-13 * size)
+            # A threshold that is touched, to what its neighbours on a grid say of it.
+            self.is_close |= leads[g] == 0 and least(deflated, h if root is None else root) < TOUCHES * size
             if root is not None and (first is None or root < first):
                 first = root
         return (first,)

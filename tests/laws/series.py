@@ -361,8 +361,7 @@ def horner(coefficients, tau):
 
 
 def first_root(coefficients, h, noise):
-    """The first root in (0, h] that a polynomial crosses, or None; and whether it touches zero. The first coefficient gives its
-    sign before.
+    """The first root in (0, h] that a polynomial crosses, or None. The first coefficient gives its sign before.
 
     By the signs of its Bernstein coefficients, which are halved until there is at most one change (Descartes). What is below
     `noise` has no sign: a polynomial that touches zero does not cross it."""
@@ -370,21 +369,20 @@ def first_root(coefficients, h, noise):
     scaled = [c * h**k for k, c in enumerate(coefficients)]
     weights = WEIGHTS.setdefault(n, [[math.comb(i, k) / math.comb(n, k) for k in range(i + 1)] for i in range(n + 1)])
     bernstein = [sum(map(mul, row, scaled)) for row in weights]
-    before, touches = coefficients[0] > 0, False
+    before = coefficients[0] > 0
     stack = [(0.0, 1.0, bernstein)]
     while stack:
         low, high, b = stack.pop()
         signs = [x > 0 for x in b if abs(x) > noise]
         if not signs:
-            touches = True
             continue
         if signs[0] != before:
-            return low * h, touches
+            return low * h
         changes = sum(p != q for p, q in zip(signs, signs[1:]))
         if changes == 0:
             continue
         if changes == 1 or high - low < 1e-15:
-            return bisected(coefficients, low * h, high * h, before), touches
+            return bisected(coefficients, low * h, high * h, before)
         left, right, row = [], [], b
         while row:
             left.append(row[0])
@@ -393,10 +391,21 @@ def first_root(coefficients, h, noise):
         middle = 0.5 * (low + high)
         stack.append((middle, high, right[::-1]))
         stack.append((low, middle, left))
-    return None, touches
+    return None
 
 
 WEIGHTS = {}
+
+
+def least(coefficients, h, points=24):
+    """The least magnitude of a polynomial in [0, h], nearly: at an inner minimum, or infinity where there is none."""
+    values = [abs(horner(coefficients, k * h / points)) for k in range(points + 1)]
+    found = math.inf
+    for before, value, after in zip(values, values[1:], values[2:]):
+        bend = before - 2 * value + after
+        if before >= value <= after and bend > 0:
+            found = min(found, abs(value - (after - before) ** 2 / (8 * bend)))
+    return found
 
 
 def bisected(coefficients, low, high, positive):
