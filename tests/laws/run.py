@@ -151,8 +151,9 @@ def judged(task):
         seconds = time.monotonic() - begin
         if found is None:
             # Nothing to compare with, but the program must end, and not panic.
-            is_lost = run[0] not in (0, 1, 2, -signal.SIGXCPU, -signal.SIGKILL) or "panicked" in run[1]
-            outcome = ("wrong", run[1][:300]) if is_lost else ("not judged", reason)
+            is_slow = run[0] in (-signal.SIGXCPU, -signal.SIGKILL)
+            is_lost = not is_slow and run[0] not in (0, 1, 2) or "panicked" in run[1]
+            outcome = ("wrong", run[1][:300]) if is_lost else ("slow", f"more than {LONGEST} s") if is_slow else ("not judged", reason)
         else:
             outcome = verdict(scene, found, run, method[2])
         if keep:

@@ -47,6 +47,8 @@ def closed_forms():
     t1 = (math.sqrt(9 + 20) - 3) / 10
     x1 = t1 - 2.5 * t1 * t1
     yield "sliding surface", surface, (0, 1), 3, (x1 * math.exp(-2 * (3 - t1)), -2 * x1 * math.exp(-2 * (3 - t1)))
+    moving = times(number(-5), call("sign", minus(V, call("sin", T))))
+    yield "moving surface", moving, (0, 0), 3, (1 - math.cos(3), math.sin(3))
     pulse = bell(X, half, 1e-3)
     area = math.sqrt(math.pi) * 1e-3
     yield "narrow pulse", times(number(500), pulse), (0, 1), 2, (None, math.sqrt(1 + 1000 * area))
