@@ -27,9 +27,9 @@ mutations:
 alias validate-long := validate-slow
 alias faults := mutations
 
-# All tests, every number of docs/theory.md, and 2000 mutated scenes with random commands
+# All tests, every number of docs/theory.md, 2000 mutated scenes with random commands, and 200 motions under nested laws
 [group('main')]
-test: && fuzz
+test: && fuzz laws
     python3 tests/handout/theory_numbers.py
     cargo test --release --workspace
 
@@ -38,6 +38,13 @@ test: && fuzz
 fuzz pairs="2000" seed="1":
     cargo build --release --workspace --bins
     python3 tests/fuzz/run.py {{ pairs }} {{ seed }}
+
+# Motions under nested laws (if, step, sign, floor, min, max, clamp, abs, tables, pulses), against an independent program
+[group('main')]
+laws count="200" seed="1":
+    cargo build --release --workspace --bins
+    python3 tests/laws/selftest.py 20 {{ seed }}
+    python3 tests/laws/run.py {{ count }} {{ seed }}
 
 # Format, lints with warnings denied, no circle of imports between folders, no long file or function without a reason, and a place for every named fault
 [group('care')]
@@ -148,25 +155,29 @@ designs points="10000000":
 reference *cases:
     python3 validation/reference/run.py {{ cases }}
 
-# What takes too long for each change, as a whole in a night: its parts are the four recipes below
+# What takes too long for each change, as a whole in a night: its parts are the five recipes below
 [group('care')]
-nightly: nightly-validation nightly-tests && nightly-others
+nightly: nightly-validation nightly-tests && nightly-laws nightly-others
     seed=$(date +%j); for part in 0 1 2 3 4; do just nightly-fuzz $part $seed || exit 1; done
 
 # Of `nightly`: 1e5 revolutions, 1000 pulses, 200 random machines, all deliberate faults, and the computing half by itself
 [group('care')]
 nightly-validation: validate-slow mutations computing
 
-# Of `nightly`: 2000 new random draws in every property
+# Of `nightly`: 2000 new random draws in every property, of the second's seed or another
 [group('care')]
-nightly-tests:
-    PROPTEST_CASES=2000 cargo test --release --workspace
+nightly-tests seed=`date +%s`:
+    PROPTEST_RNG_SEED={{ seed }} PROPTEST_CASES=2000 cargo test --release --workspace
 
 # Of `nightly`: one of five parts (0 to 4) of 100 000 mutated scenes, of the day's seed or another
 [group('care')]
 nightly-fuzz part="0" seed=`date +%j`:
     cargo build --release --workspace --bins
     python3 tests/fuzz/run.py 20000 {{ seed }} --first $(({{ part }} * 20000))
+
+# Of `nightly`: 20 000 motions under nested laws, of the day's seed or another
+[group('care')]
+nightly-laws seed=`date +%j`: (laws "20000" seed)
 
 # Of `nightly`: ten million designs, other programs, the reference values, the dependencies' advisories. Installs what these need
 [group('care')]

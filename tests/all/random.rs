@@ -253,6 +253,15 @@ impl BuiltMechanism {
     }
 }
 
+/// The condition of the dense rows at the start; none where they are singular to rounding. There a mechanism may be refused, and where
+/// it is not, its branch is that of a rounding.
+fn condition(described: &DescribedMechanism) -> Result<Option<f64>, String> {
+    let ranks = rank(&described.mechanism, &described.start_poses).map_err(|e| e.to_string())?;
+    let values = &ranks.with_actuators.singular_values;
+    let [largest, smallest] = [values.first(), values.last()].map(|v| v.copied().unwrap_or(0.0));
+    Ok((smallest >= SINGULAR * largest).then_some(largest / smallest))
+}
+
 /// Holds one mechanism against everything.
 ///
 /// Tolerances are parts of the condition, which is that of the dense rows at the start (up to 1e3
@@ -263,15 +272,13 @@ fn check(seed: &Seed, tally: &mut Tally) -> Result<(), String> {
     let placed = seed.mechanism();
     let views = seed.views.map(|seed| Description::of(&placed, seed));
     let described = placed.describe(&views[0]);
-    let ranks = rank(&described.mechanism, &described.start_poses).map_err(|e| e.to_string())?;
-    let values = &ranks.with_actuators.singular_values;
-    let [largest, smallest] = [values.first(), values.last()].map(|v| v.copied().unwrap_or(0.0));
+    let condition = condition(&described)?;
     tally.bodies += placed.bodies.len();
     let mut compiled = Vec::new();
     for view in &views {
         match BuiltMechanism::new(&placed, view) {
             Ok(one) => compiled.push(one),
-            Err(_) if smallest < SINGULAR * largest => {}
+            Err(_) if condition.is_none() => {}
             Err(error) => return Err(format!("{error}, but it is regular: {error:?}")),
         }
     }
@@ -279,12 +286,11 @@ fn check(seed: &Seed, tally: &mut Tally) -> Result<(), String> {
         tally.refused += 1;
         return Ok(());
     };
-    if smallest < SINGULAR * largest {
+    let Some(condition) = condition else {
         // Solved none the less, but with no digit to judge.
         tally.refused += 1;
         return Ok(());
-    }
-    let condition = largest / smallest;
+    };
     let steps = steps(one, &placed, &views[0], 1.0 / condition);
     let outputs = one.evaluate(&placed, &views[0], &steps)?;
     let other = two.evaluate(&placed, &views[1], &steps)?;

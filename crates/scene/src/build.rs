@@ -39,7 +39,7 @@ impl Scene {
             return Err(planar_only(source, point));
         }
         rename_former_keys(root.get_mut(), table("scene"), log);
-        read_root(root.get_ref(), log, |fields| read(name, source, fields))
+        read_root(root.get_ref(), log, |fields| read(name, source, fields)).map(Self::with_doubts)
     }
 }
 

@@ -45,7 +45,8 @@
 //! - `[motion]`: none; its `initial-coordinate`: that at assembly; its `initial-velocity`: 0 where loads,
 //!   drives or motion laws can move the mechanism; its `prescribed` and `events`: none.
 //!
-//! Former names of keys are still read, with a warning in [`Scene::warnings`] that names the current one.
+//! Former names of keys are still read, with a warning in [`Scene::warnings`] that names the current one. Numbers that look like slips
+//! of units are warned of there, too.
 //!
 //! Names are made of letters and digits of any script, `_`, `-`, primes and inner spaces. They
 //! hold no dot, so that `body.point` and `joint.component` are unambiguous. Bodies,
@@ -94,6 +95,7 @@ mod sections;
 mod space;
 mod spans;
 mod stops;
+mod suspicious_numbers;
 mod table_reader;
 mod unit_reader;
 mod units;

@@ -7,7 +7,6 @@ use crate::models::{loaded_model, requested_reaction_bodies};
 use crate::number_format::{coordinate_unit, count, digits, number};
 #[cfg(feature = "output")]
 use crate::output::Outcome;
-use crate::suspicious_units::describe_suspicious_units;
 use crate::trajectory::compute::{check_variables, requested_bodies};
 use dwell_findings::Record;
 use dwell_geometry::mobility::mobility;
@@ -52,7 +51,6 @@ fn description(scene: &Scene, record: &mut Record) -> Result<String, StudyError>
     text += &describe_groups(mechanism, plan, record);
     text += &(describe_branch(scene, plan, record) + &branch_note(scene, plan));
     text += &describe_contents(scene, plan, record);
-    text += &describe_suspicious_units(scene);
     text += &describe_pruning(scene, &model);
     text += &describe_teeth(scene);
     text += &describe_requests(scene);

@@ -52,7 +52,6 @@ pub mod linearise;
 pub mod machines;
 pub mod reduce;
 mod space;
-mod suspicious_units;
 pub mod sweep;
 mod symbolic;
 mod symbols;

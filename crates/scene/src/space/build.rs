@@ -36,7 +36,7 @@ impl SpaceScene {
     pub(crate) fn build(name: String, source: &Source) -> Result<Self, SceneError> {
         let root = crate::read::syntax(source)?;
         let log = &Diagnostics::new(source);
-        read_root(root.get_ref(), log, |fields| read(name, source, fields))
+        read_root(root.get_ref(), log, |fields| read(name, source, fields)).map(Self::with_doubts)
     }
 }
 

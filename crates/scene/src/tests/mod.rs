@@ -9,6 +9,7 @@ mod free_motion;
 mod machine;
 mod mutations;
 mod space;
+mod suspicious_numbers;
 mod values;
 
 use crate::{AnyScene, Scene, SceneError};

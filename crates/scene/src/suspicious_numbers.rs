@@ -1,0 +1,367 @@
+//! Numbers that look like slips of units: what no machine has by a factor that no machine explains. Each sign leaves several
+//! powers of ten to anything real, so that it is silent about every case. They are warnings of the scene, which every command shows.
+
+use crate::error::SceneWarning;
+use crate::file::SceneFile;
+use crate::scene::Scene;
+use crate::space::SpaceScene;
+use crate::spans::SceneLocation;
+use crate::wording::{list, short, shorten};
+use dwell_geometry::{ActuatorId, BodyId};
+use dwell_kinetostatics::{LoadKind, Magnitude, space};
+use std::f64::consts::TAU;
+
+/// Acceleration of free fall, m/s², and how much another may differ to be a thousand times it: a hundredth.
+const FREE_FALL: f64 = 9.81;
+const SAME: f64 = 0.01;
+/// Revolutions of an angle at the start that is given in radians: 30 is nearly five.
+const REVOLUTIONS: f64 = 3.0;
+/// Mass over the cube of a mechanism's size, kg/m³, beyond which it is no machine: a boom of 30 m and 100 kg has 4e-3,
+/// solid steel 8e3. Below a size (m) that a thing of light bars has, or above one, nothing is said.
+const DENSITIES: [f64; 2] = [1e-4, 1e7];
+const LARGE: f64 = 30.0;
+const SMALL: f64 = 0.01;
+/// Radii of gyration beyond which an inertia is doubted: above so many sizes of the mechanism (0.02 to 1.9 in all cases), below such
+/// a part of it, and below such a part of the body (0.02 to 14 there). An inertia a million times off changes them by a thousand.
+const WIDEST: f64 = 20.0;
+const NARROWEST: [f64; 2] = [2e-4, 2e-3];
+/// Radius of gyration of a usual body as a part of its size, and how far an inertia in another unit may be from it, by a factor.
+const USUAL: f64 = 0.3;
+const NEAR: f64 = 100.0;
+/// Units of inertia that a number may be meant in, in SI.
+const INERTIAS: [(&str, f64); 4] = [
+    ("kg m2", 1.0),
+    ("kg cm2", 1e-4),
+    ("kg mm2", 1e-6),
+    ("g mm2", 1e-9),
+];
+
+/// What is looked at of a scene, in the plane or in space.
+struct Figures<'s> {
+    file: &'s SceneFile,
+    /// Largest distance of two joints on a body, m.
+    size: f64,
+    bodies: Vec<BodyFigures<'s>>,
+    /// The constant magnitudes of gravity, m/s², by the numbers of their loads.
+    gravities: Vec<(usize, f64)>,
+    /// Angles at the start, rad, with what they are of.
+    angles: Vec<(SceneLocation, &'s str, f64)>,
+}
+
+struct BodyFigures<'s> {
+    id: BodyId,
+    name: &'s str,
+    mass: f64,
+    /// The largest moment of inertia, kg m².
+    inertia: f64,
+    /// Diagonal of the box around its points and its centre of mass, m.
+    size: f64,
+    /// Whether a joint connects it with the ground.
+    is_held: bool,
+}
+
+impl Scene {
+    /// The scene with a warning for each number that looks like a slip of units.
+    pub(crate) fn with_doubts(mut self) -> Self {
+        let mechanism = &self.mechanism;
+        let joints = mechanism.joints.iter().map(|joint| joint.bodies);
+        let held: Vec<_> = joined_to(BodyId(mechanism.ground), joints).collect();
+        let bodies = mechanism.bodies.iter().zip(&self.masses).enumerate();
+        let bodies = bodies.filter(|(b, _)| *b != mechanism.ground);
+        let bodies = bodies.map(|(b, (body, mass))| {
+            let points = self.points[b].iter().map(|(_, p)| [p.x, p.y, 0.0]);
+            let center = (mass.mass > 0.0).then_some([mass.center.x, mass.center.y, 0.0]);
+            BodyFigures {
+                id: BodyId(b),
+                name: &body.name,
+                mass: mass.mass,
+                inertia: mass.inertia,
+                size: diagonal(points.chain(center)),
+                is_held: held.contains(&BodyId(b)),
+            }
+        });
+        let is_gravity = |kind: &LoadKind| matches!(kind, LoadKind::Gravity { .. });
+        let loads = self
+            .loads
+            .iter()
+            .map(|l| (is_gravity(&l.kind), &l.magnitude));
+        let guesses = self.assembly.initial_guess.iter().enumerate();
+        let of_bodies = guesses.filter_map(|(b, angle)| {
+            let location = SceneLocation::InitialGuess(BodyId(b));
+            Some((location, mechanism.bodies[b].name.as_str(), (*angle)?))
+        });
+        let actuators = mechanism
+            .actuators
+            .iter()
+            .map(|a| (a.name.as_str(), a.coordinate().is_angle()));
+        let figures = Figures {
+            file: &self.file,
+            size: mechanism.size(),
+            bodies: bodies.collect(),
+            gravities: constant(loads),
+            angles: of_bodies
+                .chain(starting_angles(actuators, &self.assembly.coordinates))
+                .collect(),
+        };
+        let warnings = figures.warnings();
+        self.file.warnings.extend(warnings);
+        self
+    }
+}
+
+impl SpaceScene {
+    /// The scene with a warning for each number that looks like a slip of units.
+    pub(crate) fn with_doubts(mut self) -> Self {
+        let mechanism = &self.mechanism;
+        let joints = mechanism.joints.iter().map(|joint| joint.bodies);
+        let held: Vec<_> = joined_to(BodyId(mechanism.ground), joints).collect();
+        let bodies = mechanism.bodies.iter().zip(&self.masses).enumerate();
+        let bodies = bodies.filter(|(b, _)| *b != mechanism.ground);
+        let bodies = bodies.map(|(b, (body, mass))| {
+            let points = self.points[b].iter().map(|(_, p)| [p.x, p.y, p.z]);
+            let center = (mass.mass > 0.0).then_some([mass.center.x, mass.center.y, mass.center.z]);
+            BodyFigures {
+                id: BodyId(b),
+                name: &body.name,
+                mass: mass.mass,
+                inertia: mass.inertia[..3].iter().copied().fold(0.0, f64::max),
+                size: diagonal(points.chain(center)),
+                is_held: held.contains(&BodyId(b)),
+            }
+        });
+        let is_gravity = |kind: &space::LoadKind| matches!(kind, space::LoadKind::Gravity(_));
+        let loads = self
+            .loads
+            .iter()
+            .map(|l| (is_gravity(&l.kind), &l.magnitude));
+        let actuators = mechanism.actuators.iter().map(|actuator| {
+            let joint = &mechanism.joints[actuator.kind.joint().0];
+            (
+                actuator.name.as_str(),
+                actuator.kind.coordinate(joint).is_angle(),
+            )
+        });
+        let figures = Figures {
+            file: &self.file,
+            size: mechanism.size(),
+            bodies: bodies.collect(),
+            gravities: constant(loads),
+            angles: starting_angles(actuators, &self.assembly.q).collect(),
+        };
+        let warnings = figures.warnings();
+        self.file.warnings.extend(warnings);
+        self
+    }
+}
+
+/// The bodies that a joint connects with another.
+fn joined_to(
+    ground: BodyId,
+    joints: impl Iterator<Item = [BodyId; 2]>,
+) -> impl Iterator<Item = BodyId> {
+    joints.filter(move |pair| pair.contains(&ground)).flatten()
+}
+
+/// Diagonal of the box around some points, m.
+fn diagonal(points: impl Iterator<Item = [f64; 3]>) -> f64 {
+    let empty = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    let [low, high] = points.fold(empty, |[mut low, mut high], point| {
+        for k in 0..3 {
+            (low[k], high[k]) = (low[k].min(point[k]), high[k].max(point[k]));
+        }
+        [low, high]
+    });
+    let sides = low
+        .iter()
+        .zip(high)
+        .map(|(low, high)| (high - low).max(0.0));
+    sides.map(|side| side * side).sum::<f64>().sqrt()
+}
+
+/// The constant magnitudes of loads that are gravity, with the numbers of the loads.
+fn constant<'m, C: 'm>(loads: impl Iterator<Item = (bool, &'m Magnitude<C>)>) -> Vec<(usize, f64)> {
+    let one = |(k, (is_gravity, magnitude)): (usize, (bool, &Magnitude<C>))| match magnitude {
+        Magnitude::Constant(value) if is_gravity => Some((k, *value)),
+        _ => None,
+    };
+    loads.enumerate().filter_map(one).collect()
+}
+
+/// The coordinates of actuators that are angles.
+fn starting_angles<'s>(
+    actuators: impl Iterator<Item = (&'s str, bool)>,
+    coordinates: &[f64],
+) -> impl Iterator<Item = (SceneLocation, &'s str, f64)> {
+    let one = |(a, ((name, is_angle), q)): (usize, ((&'s str, bool), &f64))| {
+        is_angle.then_some((SceneLocation::AssemblyCoordinate(ActuatorId(a)), name, *q))
+    };
+    actuators.zip(coordinates).enumerate().filter_map(one)
+}
+
+impl Figures<'_> {
+    fn warnings(&self) -> Vec<SceneWarning> {
+        let size = self.size();
+        // Lengths in another unit make every inertia look wrong, too.
+        let inertias = match size {
+            Some(_) => [None, None],
+            None => [self.inertias(false), self.inertias(true)],
+        };
+        let gravities = self
+            .gravities
+            .iter()
+            .filter_map(|&(k, value)| self.gravity(k, value));
+        let angles = self.angles.iter().filter_map(|angle| self.angle(angle));
+        let all = gravities
+            .chain(angles)
+            .chain(size)
+            .chain(inertias.into_iter().flatten());
+        all.chain(
+            self.bodies
+                .iter()
+                .filter_map(|body| self.without_mass(body)),
+        )
+        .collect()
+    }
+
+    fn warning(&self, message: String, label: &str, at: SceneLocation) -> SceneWarning {
+        SceneWarning::at(&self.file.source, message, label, self.file.span(at))
+    }
+
+    /// Gravity of 9810 m/s²: meant in mm/s².
+    fn gravity(&self, load: usize, value: f64) -> Option<SceneWarning> {
+        let is = |factor: f64| (value.abs() / (factor * FREE_FALL) - 1.0).abs() < SAME;
+        let message = format!(
+            "is a unit meant otherwise? gravity is in m/s²: {} m/s², not {FREE_FALL}",
+            short(value.abs())
+        );
+        let at = SceneLocation::Load(load);
+        (is(1e3) || is(1e-3)).then(|| self.warning(message, "an acceleration of gravity", at))
+    }
+
+    /// An angle at the start of many revolutions in radians: meant in degrees.
+    fn angle(&self, (at, name, angle): &(SceneLocation, &str, f64)) -> Option<SceneWarning> {
+        let is_suspicious =
+            self.file.to_scene_unit(1.0, true).0 == 1.0 && angle.abs() > REVOLUTIONS * TAU;
+        let message = format!(
+            "is a unit meant otherwise? `{}` is at {} rad at the start, {} revolutions; [units] angle = \"deg\" gives degrees",
+            shorten(name),
+            short(*angle),
+            short(angle / TAU)
+        );
+        is_suspicious.then(|| self.warning(message, "an angle in rad", *at))
+    }
+
+    /// A size that the masses contradict: metres for millimetres, or the reverse.
+    fn size(&self) -> Option<SceneWarning> {
+        let heaviest = self.bodies.iter().map(|body| body.mass).fold(0.0, f64::max);
+        let density = heaviest / self.size.powi(3);
+        let [least, most] = DENSITIES;
+        let is_large = self.size > LARGE && density < least;
+        let is_small = self.size > 0.0 && self.size < SMALL && density > most;
+        if heaviest == 0.0 || !(is_large || is_small) {
+            return None;
+        }
+        let (size, unit) = self.file.to_scene_unit(self.size, false);
+        let meant = if is_large { "mm" } else { "m" };
+        let message = format!(
+            "is a unit meant otherwise? links are up to {} {unit} long, and the heaviest body has {} kg; [units] length = \"{meant}\" gives {meant}",
+            short(size),
+            short(heaviest)
+        );
+        Some(self.warning(message, "the unit of length", SceneLocation::Units))
+    }
+
+    /// Inertias that no body of its mass and size has: one warning for all bodies.
+    fn inertias(&self, is_large: bool) -> Option<SceneWarning> {
+        let is_suspicious = |body: &&BodyFigures<'_>| {
+            let radius = body.radius_of_gyration();
+            let size = self.size.max(body.size);
+            match is_large {
+                true => size > 0.0 && radius > WIDEST * size,
+                false => {
+                    radius > 0.0
+                        && (radius < NARROWEST[0] * size || radius < NARROWEST[1] * body.size)
+                }
+            }
+        };
+        let suspicious = || self.bodies.iter().filter(is_suspicious);
+        let body = suspicious().next()?;
+        let names = list(suspicious().map(|body| body.name)).unwrap_or_default();
+        let size = self.size.max(body.size);
+        let (radius, unit) = self.file.to_scene_unit(body.radius_of_gyration(), false);
+        let message = format!(
+            "is a unit meant otherwise? By its inertia and mass `{}` has a radius of gyration of {} {unit}, but {} {} {unit}: {}. In doubt: {names}",
+            shorten(body.name),
+            short(radius),
+            if body.size > 0.0 {
+                "its points are within"
+            } else {
+                "links are up to"
+            },
+            short(
+                self.file
+                    .to_scene_unit(if body.size > 0.0 { body.size } else { size }, false)
+                    .0
+            ),
+            self.meant(body, size),
+        );
+        Some(self.warning(message, "an inertia", SceneLocation::Inertia(body.id)))
+    }
+
+    /// What an inertia is read in, and what it is likely to be meant in: its own unit, or that of the lengths.
+    fn meant(&self, body: &BodyFigures<'_>, size: f64) -> String {
+        let (inertia, length) = (&self.file.units.inertia, &self.file.units.length);
+        let usual = body.mass * (USUAL * size).powi(2);
+        let written = inertia.to_scene_unit(body.inertia);
+        let misfit = |factor: f64| (written * factor / usual).ln().abs();
+        let nearest = INERTIAS
+            .iter()
+            .min_by(|a, b| misfit(a.1).total_cmp(&misfit(b.1)));
+        let is_read = format!(
+            "the inertia is read in {}, lengths in {}",
+            inertia.name, length.name
+        );
+        match (nearest, body.inertia > usual) {
+            (Some((name, factor)), _) if misfit(*factor) < NEAR.ln() => {
+                format!("{is_read}; was the inertia meant in {name}?")
+            }
+            (_, true) => format!("{is_read}; were the lengths meant in a larger unit, such as m?"),
+            (_, false) => {
+                format!("{is_read}; were the lengths meant in a smaller unit, such as mm?")
+            }
+        }
+    }
+
+    /// A centre of mass without a mass, or an inertia where the missing mass has an effect.
+    fn without_mass(&self, body: &BodyFigures<'_>) -> Option<SceneWarning> {
+        let gives = |at: SceneLocation| self.file.spans.contains_key(&at);
+        if gives(SceneLocation::Mass(body.id)) {
+            return None;
+        }
+        let [center, inertia] = [
+            SceneLocation::Center(body.id),
+            SceneLocation::Inertia(body.id),
+        ];
+        let (what, at) = match (gives(center), gives(inertia) && !body.is_held) {
+            (true, _) => ("a centre of mass", center),
+            (false, true) => ("an inertia", inertia),
+            (false, false) => return None,
+        };
+        let message = format!(
+            "body `{}` has {what} but no mass: it counts as 0 kg",
+            shorten(body.name)
+        );
+        Some(self.warning(message, "without a mass", at))
+    }
+}
+
+impl BodyFigures<'_> {
+    /// √(inertia/mass), m; 0 where there is no mass.
+    fn radius_of_gyration(&self) -> f64 {
+        if self.mass > 0.0 {
+            (self.inertia / self.mass).sqrt()
+        } else {
+            0.0
+        }
+    }
+}
