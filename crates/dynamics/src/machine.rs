@@ -460,7 +460,7 @@ fn time_features<M: MovingModel>(
         Magnitude::Function(function, signals) => {
             for (i, at) in function.breakpoints() {
                 if matches!(signals.get(i), Some(Signal::Time)) {
-                    features.add_instants(at);
+                    features.add_knots(at, true);
                 }
             }
         }

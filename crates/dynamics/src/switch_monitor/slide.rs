@@ -173,6 +173,7 @@ impl SwitchMonitor {
                 let switch = &mut self.switches[k];
                 switch.piece = sliding.sides[usize::from(upward)][k];
                 (switch.switched, switch.chatter) = (None, None);
+                switch.is_leaving = true;
             }
             system.record_sliding(at, sliding.switches[0], None);
         }
