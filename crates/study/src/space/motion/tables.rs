@@ -19,8 +19,7 @@ use dwell_kinetostatics::space::Model;
 impl SpaceMotionProblem<'_> {
     /// Every sample with its accelerations, drive magnitudes and energies.
     pub(super) fn samples(&self, motion: &Motion) -> Result<Vec<TrajectorySample>, DynamicsError> {
-        let behind =
-            |solution: &Solution, k: usize| vec![(solution.samples[k].t, EventSide::After)];
+        let after = |solution: &Solution, k: usize| vec![(solution.samples[k].t, EventSide::After)];
         let all = self.evaluated(motion, |solution| &solution.samples, after)?;
         let all: Vec<_> = all.into_iter().map(|(_, sample)| sample).collect();
         let index = self.balance_index();
