@@ -7,6 +7,9 @@ use dwell::{
 };
 use std::time::{Duration, Instant};
 
+/// A run that does not end is noticed by this time, also on a machine that does much else: each takes less than 5 s of one processor.
+const GUARD: Duration = Duration::from_secs(60);
+
 /// A shaper: a crank with its pin in the slot of a rocker, which a link joins to the ram; the load acts on the forward stroke.
 fn shaper(cut: impl Into<Magnitude>, duration: f64) -> Result<Mechanism, Error> {
     let mut m = Mechanism::builder("Shaper");
@@ -58,11 +61,7 @@ fn a_jump_that_is_named_is_the_switch_of_the_expression() {
     let begin = Instant::now();
     let named = cut().breakpoints("x.velocity", &[-0.02]);
     let found = shaper(named, 3.0).unwrap().simulate(&solver).unwrap();
-    assert!(
-        begin.elapsed() < Duration::from_secs(5),
-        "{:?}",
-        begin.elapsed()
-    );
+    assert!(begin.elapsed() < GUARD, "{:?}", begin.elapsed());
     assert!(found.early_stop.is_none(), "{:?}", found.early_stop);
     for column in ["phi", "phi.velocity", "x", "O.magnitude", "cut.load_force"] {
         let error = difference(&expected, &found, column);
@@ -78,7 +77,7 @@ fn a_jump_that_is_not_named_ends_the_motion_with_the_name_of_the_load() {
         let motion = shaper(cut(), 3.0).unwrap().simulate(&solver).unwrap();
         let (time, error) = (begin.elapsed(), motion.early_stop);
         println!("{solver:?}: {time:?} {error:?}");
-        assert!(time < Duration::from_secs(5), "{solver:?} {time:?}");
+        assert!(time < GUARD, "{solver:?} {time:?}");
         if let Some(error) = error {
             assert!(
                 error.to_string().contains("load `cut`"),

@@ -304,7 +304,7 @@ spring = {spring}
 [motion]
 initial-velocity = {velocity:?}
 duration = 2.0
-events.travel = {{ coordinate = "x", value = {at:?} }}
+events.travel = {{ reaches = "x", value = {at:?} }}
 "#
     )
 }
