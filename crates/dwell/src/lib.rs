@@ -53,7 +53,7 @@
 //! a function cannot be: between its [breakpoints](Magnitude::breakpoints) it must be smooth in the signals that it is called with, and
 //! depend on nothing else. A breakpoint is a value of one signal at which the function jumps or has a kink. A motion stops there, goes on with
 //! the other side, or slides along it where both sides lead back; it is then the motion of the same expression. Next to a breakpoint the
-//! function is called on one side of it at a time, and is continued in a straight line beyond.
+//! function is called on one side of it at a time; beyond it keeps the value that it has there.
 //!
 //! A jump that is not named makes the steps of every method too short to go on: [`MotionResults::early_stop`] then names the load. A kink costs accuracy and
 //! steps, and a pulse shorter than a step may be missed. Switches that depend on several signals at once (`x > y`) need a coordinate of

@@ -182,8 +182,8 @@ pub enum DynamicsError {
         /// The time reached, s.
         t: f64,
     },
-    /// The integrator's steps are so short, and stay so, that they do not lead on.
-    #[error("the integrator's steps of {step:.1e} s do not lead on at t = {t} s")]
+    /// The integrator's steps are so short, and stay so, that the motion makes no progress.
+    #[error("the motion makes no progress at t = {t} s, in steps of {step:.1e} s")]
     NoProgress {
         /// The first load that a program computes, which may jump there: by its index, if there is one.
         function: Option<usize>,

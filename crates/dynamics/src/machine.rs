@@ -179,8 +179,7 @@ impl<M: MovingModel> Machine<M> {
     }
 
     /// The works that the loads can do over the size of the mechanism, or a turn of one radian, from one time to another
-    /// (s), in sum: J. Of magnitudes that depend on the motion only what is a function of time counts; dampers do
-    /// not.
+    /// (s), in sum: J. Of magnitudes that depend on the motion only functions of time count; dampers do not.
     pub fn largest_work(&self, from: f64, to: f64) -> f64 {
         let drives = self.drives.iter().map(|drive| {
             // A voltage or a wanted speed is no force, but of the order of what it makes.
@@ -442,8 +441,7 @@ impl<M: MovingModel> Machine<M> {
     }
 }
 
-/// The functions of time among loads, inputs of drives and prescribed motions, numbered in this order; the drives are
-/// the last of the loads. Of a program's own function the breakpoints in time are known, and nothing else.
+/// The functions of time among loads (those of the drives last), inputs of drives and prescribed motions; of a program's own the breakpoints.
 fn time_features<M: MovingModel>(
     model: &M,
     drives: &[CompiledDrive<M>],
@@ -460,7 +458,7 @@ fn time_features<M: MovingModel>(
         Magnitude::Function(function, signals) => {
             for (i, at) in function.breakpoints() {
                 if matches!(signals.get(i), Some(Signal::Time)) {
-                    features.add_instants(at);
+                    features.add_knots(at, true);
                 }
             }
         }

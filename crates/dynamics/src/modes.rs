@@ -13,21 +13,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// The modes of a motion, in order of time: none where nothing switches and no surfaces or end stops touch.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MotionModes {
-    begins: Vec<ModeBegin>,
-    /// The pieces of the last one.
-    last: Vec<Option<f64>>,
-    /// All pieces behind so many modes: there, as many have changed since the last time as there are.
-    snapshots: Vec<(usize, Vec<Option<f64>>)>,
-    changed: usize,
-}
-
-/// Where a mode begins.
-#[derive(Debug, Clone, PartialEq)]
-struct ModeBegin {
-    state: OdeState,
-    /// By switch whose piece changes: its piece from there on.
-    pieces: Vec<(usize, Option<f64>)>,
-    sliding: Option<Sliding>,
+    /// The state with which each begins, and along which switch it slides.
+    begins: Vec<(OdeState, Option<Sliding>)>,
+    /// By switch: the numbers of the modes from which on it has another piece, and that piece.
+    pieces: Vec<Vec<(usize, Option<f64>)>>,
 }
 
 /// A mode of a motion.
@@ -45,7 +34,7 @@ pub enum EventSide {
     /// As the end of what leads up to it.
     Before,
     /// As the beginning of what follows.
-    Behind,
+    After,
 }
 
 impl MotionModes {
@@ -56,84 +45,62 @@ impl MotionModes {
         pieces: &[Option<f64>],
         sliding: Option<&Sliding>,
     ) {
-        self.last.resize(pieces.len(), None);
-        let both = pieces.iter().zip(&mut self.last).enumerate();
-        let changed = both.filter(|(_, (now, last))| *now != *last);
-        let changed = changed.map(|(k, (now, last))| {
-            *last = *now;
-            (k, *now)
-        });
-        let pieces: Vec<_> = changed.collect();
-        self.changed += pieces.len() + 1;
-        self.begins.push(ModeBegin {
-            state: state.clone(),
-            pieces,
-            sliding: sliding.cloned(),
-        });
-        if self.changed >= self.last.len() {
-            self.snapshots.push((self.begins.len(), self.last.clone()));
-            self.changed = 0;
+        self.pieces.resize(pieces.len(), Vec::new());
+        for (changes, &piece) in self.pieces.iter_mut().zip(pieces) {
+            if changes.last().is_none_or(|(_, last)| *last != piece) {
+                changes.push((self.begins.len(), piece));
+            }
         }
+        self.begins.push((state.clone(), sliding.cloned()));
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.begins.is_empty()
     }
 
     /// Whether a mode begins at a time, s.
     pub fn begin_at(&self, t: f64) -> bool {
-        let found = self.begins.binary_search_by(|b| b.state.t.total_cmp(&t));
+        let found = self.begins.binary_search_by(|(b, _)| b.t.total_cmp(&t));
         found.is_ok()
     }
 
-    /// How many modes have begun at a time, s; at least the first.
-    fn count_at(&self, t: f64, side: EventSide) -> usize {
-        let is_behind = |at: f64| match side {
+    /// The number of the mode at a time (s) on a side of an event; none where there are no modes.
+    fn number_at(&self, t: f64, side: EventSide) -> Option<usize> {
+        let has_begun = |at: f64| match side {
             EventSide::Before => at < t,
-            EventSide::Behind => at <= t || are_together(at, t),
+            EventSide::After => at <= t || are_together(at, t),
         };
-        let count = self.begins.partition_point(|b| is_behind(b.state.t));
-        count.max(1).min(self.begins.len())
+        let begun = self.begins.partition_point(|(begin, _)| has_begun(begin.t));
+        let last = self.begins.len().checked_sub(1)?;
+        Some(begun.saturating_sub(1).min(last))
     }
 
     /// A state of the motion with the speeds and the contacts of its side of an event.
     pub fn state_at<'s>(&self, state: &'s OdeState, side: EventSide) -> Cow<'s, OdeState> {
-        let count = self.count_at(state.t, side);
-        let begin = self.begins[..count].last().map(|begin| &begin.state);
-        let begins_there =
-            |begin: &&OdeState| side == EventSide::Behind && are_together(begin.t, state.t);
-        let owned = |begin: &OdeState| {
-            Cow::Owned(OdeState {
-                t: state.t,
-                y: begin.y.clone(),
-            })
-        };
-        begin
-            .filter(begins_there)
-            .map_or(Cow::Borrowed(state), owned)
+        let begin = self.number_at(state.t, side).map(|k| &self.begins[k].0);
+        match begin {
+            Some(begin) if side == EventSide::After && are_together(begin.t, state.t) => {
+                Cow::Owned(OdeState {
+                    t: state.t,
+                    y: begin.y.clone(),
+                })
+            }
+            _ => Cow::Borrowed(state),
+        }
     }
 
     /// The mode at a time (s) on a side of an event; none where there are no modes.
     pub(crate) fn mode_at(&self, t: f64, side: EventSide) -> Option<Mode<'_>> {
-        let count = self.count_at(t, side);
-        let begin = self.begins[..count].last()?;
+        let number = self.number_at(t, side)?;
+        let pieces = self.pieces.iter().map(|changes| {
+            let count = changes.partition_point(|(first, _)| *first <= number);
+            changes[..count].last().and_then(|(_, piece)| *piece)
+        });
         Some(Mode {
-            pieces: self.pieces_behind(count),
-            sliding: begin.sliding.as_ref(),
+            pieces: pieces.collect(),
+            sliding: self.begins[number].1.as_ref(),
         })
-    }
-
-    /// The pieces behind so many changes.
-    fn pieces_behind(&self, count: usize) -> Vec<Option<f64>> {
-        let earlier = self
-            .snapshots
-            .partition_point(|(behind, _)| *behind <= count);
-        let snapshot = earlier.checked_sub(1).and_then(|k| self.snapshots.get(k));
-        let (from, mut pieces) = snapshot
-            .cloned()
-            .unwrap_or_else(|| (0, vec![None; self.last.len()]));
-        for begin in &self.begins[from..count] {
-            for &(k, piece) in &begin.pieces {
-                pieces[k] = piece;
-            }
-        }
-        pieces
     }
 }
 
@@ -184,11 +151,11 @@ mod tests {
                 y: vec![-1.0],
             };
             let pieces_at = |t: f64, side| modes.mode_at(t, side).expect("a mode").pieces;
-            assert_eq!(modes.state_at(&state, EventSide::Behind).y, [k as f64]);
+            assert_eq!(modes.state_at(&state, EventSide::After).y, [k as f64]);
             assert_eq!(modes.state_at(&state, EventSide::Before).y, [-1.0]);
-            assert_eq!(pieces_at(state.t, EventSide::Behind), all[k]);
+            assert_eq!(pieces_at(state.t, EventSide::After), all[k]);
             assert_eq!(pieces_at(state.t, EventSide::Before), all[k.max(1) - 1]);
-            assert_eq!(pieces_at(state.t + 0.5, EventSide::Behind), all[k]);
+            assert_eq!(pieces_at(state.t + 0.5, EventSide::After), all[k]);
         }
     }
 }

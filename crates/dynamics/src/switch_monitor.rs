@@ -28,6 +28,10 @@ const PATIENCE: u32 = 4;
 /// Steps after which a switch to which its own pieces lead back is given up: they are short.
 const CHATTER_STEPS: u32 = 10_000;
 
+/// A distance that grows so from one quarter of a step to the next, twice, is none of rounding: one that grows with the square or a higher power of
+/// time grows by 1.7 and more.
+const GROWTH: f64 = 1.5;
+
 /// Watches the switches of a system during its integration.
 pub(crate) struct SwitchMonitor {
     switches: Vec<MonitoredSwitch>,
@@ -50,6 +54,9 @@ struct MonitoredSwitch {
     piece: Option<f64>,
     /// Whether the piece has held since the integration began: at its start a switch may be within a rounding.
     is_inside: bool,
+    /// Whether the motion has just left it after sliding along it: its function grows from zero with a rate of zero, and below its
+    /// rounding the rate alone says to which side.
+    is_leaving: bool,
     /// When it switched last.
     switched: Option<f64>,
     /// Where it is not held: its piece, for how many steps, and for how many it must be.
@@ -102,6 +109,7 @@ impl SwitchMonitor {
             inner: system.switch_operands(k),
             piece: None,
             is_inside: false,
+            is_leaving: false,
             switched: None,
             observed: (None, 0),
             chatter: None,
@@ -223,7 +231,7 @@ impl SwitchMonitor {
         for (switch, &value) in self.switches.iter_mut().zip(&self.values) {
             let margin = switch.margin(value).unwrap_or(f64::NAN);
             switch.margins = [(start.t, margin), (f64::NAN, f64::NAN)];
-            switch.is_inside |= margin > 0.0;
+            switch.is_inside |= margin > 0.0 && !switch.is_leaving;
         }
         for (point, t) in step.root_subintervals().enumerate() {
             let state = step.state_at(t)?;
@@ -252,6 +260,11 @@ impl SwitchMonitor {
         step: &mut Step<'_>,
     ) -> Result<Option<(f64, (usize, bool))>> {
         let value = self.values[k];
+        if self.switches[k].is_leaving
+            && self.goes_on_leaving(k, value, system, &step.state_at(t)?)?
+        {
+            return Ok(None);
+        }
         let switch = &mut self.switches[k];
         let Some(margin) = switch.margin(value) else {
             return Ok(None);
@@ -283,6 +296,31 @@ impl SwitchMonitor {
             value
         });
         Ok(found.map(|at| (at, (k, upward))))
+    }
+
+    /// Whether the rates at a state lead away from a switch that the motion has left, until its distance has grown from point to point.
+    fn goes_on_leaving(
+        &mut self,
+        k: usize,
+        value: f64,
+        system: &mut dyn OdeSystem,
+        at: &OdeState,
+    ) -> Result<bool> {
+        let mut rates = vec![0.0; at.y.len()];
+        let mut functions = vec![[0.0; 2]; self.switches.len()];
+        system.rhs(at.t, &at.y, &mut rates)?;
+        let is_known = system.switch_rates(at.t, &at.y, &rates, &mut functions)?;
+        let switch = &mut self.switches[k];
+        let (margin, [_, rate]) = (switch.margin(value).unwrap_or(f64::NAN), functions[k]);
+        let leads_away = is_known && (rate < 0.0) == switch.is_above(value) && rate != 0.0;
+        let [last, before] = switch.margins;
+        let has_grown = before.1 > 0.0 && last.1 > GROWTH * before.1 && margin > GROWTH * last.1;
+        switch.is_leaving = leads_away && !has_grown;
+        if leads_away {
+            switch.margins = [(at.t, margin), last];
+            switch.is_inside = has_grown;
+        }
+        Ok(leads_away)
     }
 
     /// Holds the pieces beyond a crossing, unless the rates there lead back: then the motion slides, from the state that is

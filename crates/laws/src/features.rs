@@ -112,12 +112,8 @@ impl Features {
         }
     }
 
-    /// Adds instants (s) at which a function that is not known switches.
-    pub fn add_instants(&mut self, at: &[f64]) {
-        self.add_knots(at, true);
-    }
-
-    fn add_knots(&mut self, at: &[f64], restart: bool) {
+    /// Adds instants (s) at which pieces of a function meet, that is otherwise not known; whether an integration starts again there.
+    pub fn add_knots(&mut self, at: &[f64], restart: bool) {
         self.knots.extend(at.iter().map(|&x| Knot { x, restart }));
         self.knots.sort_by(|a, b| a.x.total_cmp(&b.x));
         self.knots.dedup_by(|b, a| {

@@ -9,6 +9,7 @@ mod lengths;
 mod long_motions;
 mod many_rows;
 mod messages;
+mod modes;
 mod near_branches;
 mod output;
 mod pictures;

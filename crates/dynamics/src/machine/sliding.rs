@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::modes::{EventSide, Mode, MotionModes};
 use crate::ode::OdeState;
 use crate::sliding::SideRates;
+use crate::state_switches::HeldSource;
 
 impl<M: MovingModel> Machine<M> {
     /// Evaluates a state of a motion in the mode that it is in on a side of an event. What is held then stays held in the workspace.
@@ -33,64 +34,60 @@ impl<M: MovingModel> Machine<M> {
         at: &OdeState,
         workspace: &'a mut MachineWorkspace<f64, M>,
     ) -> Result<MachineState<'a, f64, M>> {
-        let mut held = Vec::new();
-        let mut hold = |pieces: &[Option<f64>], workspace: &mut MachineWorkspace<f64, M>| {
-            let set = |load: usize, held: &_| self.hold_source(load, held, workspace);
-            self.state_switches.hold(pieces, &mut held, set);
-        };
         let Some(sliding) = mode.sliding else {
-            hold(&mode.pieces, workspace);
+            self.hold_pieces(&mode.pieces, workspace);
             return self.evaluate(at.t, &at.y, workspace);
         };
         let mut functions = vec![[0.0; 2]; self.state_switches.kinds().len()];
         let mut rates = vec![0.0; self.state_count()];
         let (mut first, mut lower) = ([[0.0; 2]; 2], None);
         for (pieces, first) in sliding.sides.iter().zip(&mut first) {
-            hold(pieces, workspace);
+            let held = self.hold_pieces(pieces, workspace);
             let state = self.evaluate(at.t, &at.y, workspace)?;
             state.derivative(&mut rates);
             lower.get_or_insert_with(|| (state.equation.clone(), state.magnitudes().to_vec()));
-            let mut held = Vec::new();
-            self.state_switches.hold(pieces, &mut held, |_, _| {});
             self.switch_rates((at.t, &at.y), &rates, workspace, &held, &mut functions)?;
             *first = functions[sliding.switches[0]];
         }
         let part = SideRates { sides: first }.upper_part();
         let mut state = self.evaluate(at.t, &at.y, workspace)?;
-        if let Some((equation, magnitudes)) = lower {
-            state.equation.mix_with(&equation, part);
-            let mut mixed = state.magnitudes().to_vec();
-            mix(&mut mixed, &magnitudes, part);
-            state.forces.set_magnitudes(mixed.into_iter().enumerate())?;
+        if let Some((lower, mut magnitudes)) = lower {
+            for (mixed, upper) in magnitudes.iter_mut().zip(state.magnitudes()) {
+                *mixed += part * (upper - *mixed);
+            }
+            let magnitudes = magnitudes.into_iter().enumerate();
+            state.forces.set_magnitudes(magnitudes)?;
+            state.equation.mix_with(&lower, part);
         }
         Ok(state)
+    }
+
+    /// Holds loads and drives on these pieces; what is held.
+    fn hold_pieces(
+        &self,
+        pieces: &[Option<f64>],
+        workspace: &mut MachineWorkspace<f64, M>,
+    ) -> Vec<HeldSource> {
+        let mut held = Vec::new();
+        let set = |load: usize, held: &_| self.hold_source(load, held, workspace);
+        self.state_switches.hold(pieces, &mut held, set);
+        held
     }
 }
 
 impl EquationWorkspace<f64> {
     /// Takes a part of the forces and accelerations, and the rest of those on the lower side of a switch.
     fn mix_with(&mut self, lower: &Self, part: f64) {
-        let both = [
+        let (result, of_lower) = (&mut self.inverse_dynamics, &lower.inverse_dynamics);
+        for (upper, lower) in [
             (&mut self.q_ddot, &lower.q_ddot),
             (&mut self.drive_forces, &lower.drive_forces),
-            (&mut self.drive_accelerations, &lower.drive_accelerations),
-            (&mut self.drive_state_rates, &lower.drive_state_rates),
-            (&mut self.stop_forces, &lower.stop_forces),
-            (&mut self.inverse_dynamics.tau, &lower.inverse_dynamics.tau),
-            (
-                &mut self.inverse_dynamics.reactions,
-                &lower.inverse_dynamics.reactions,
-            ),
-        ];
-        for (upper, lower) in both {
-            mix(upper, lower, part);
+            (&mut result.tau, &of_lower.tau),
+            (&mut result.reactions, &of_lower.reactions),
+        ] {
+            for (upper, lower) in upper.iter_mut().zip(lower) {
+                *upper = lower + part * (*upper - lower);
+            }
         }
-    }
-}
-
-/// A part of some numbers, and the rest of others.
-fn mix(upper: &mut [f64], lower: &[f64], part: f64) {
-    for (upper, lower) in upper.iter_mut().zip(lower) {
-        *upper = lower + part * (*upper - lower);
     }
 }

@@ -92,7 +92,7 @@ impl<M: MovingModel> Observed for ObservedMachine<'_, M> {
 
     fn reaction(&mut self, index: usize, at: &OdeState) -> Result<f64> {
         let modes = self.modes.get();
-        let along = (&*modes, EventSide::Behind);
+        let along = (&*modes, EventSide::After);
         let state = self
             .machine
             .evaluate_along(along, at, &mut self.workspace)?;

@@ -16,7 +16,7 @@ impl SwitchMonitor {
     pub(super) fn decide(&mut self, system: &mut dyn OdeSystem, at: &OdeState) -> Result<()> {
         self.sliding = None;
         for switch in &mut self.switches {
-            (switch.piece, switch.is_inside) = (None, false);
+            (switch.piece, switch.is_inside, switch.is_leaving) = (None, false, false);
         }
         self.hold(system);
         system.switch_values(at.t, &at.y, &mut self.values)?;

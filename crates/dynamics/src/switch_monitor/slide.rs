@@ -187,6 +187,7 @@ impl SwitchMonitor {
                 if sliding.decides(k) {
                     switch.piece = sliding.sides[usize::from(upward)][k];
                     (switch.switched, switch.chatter) = (None, None);
+                    switch.is_leaving = true;
                 }
             }
             system.record_sliding(at, sliding.switches[0], None);

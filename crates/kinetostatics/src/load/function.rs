@@ -62,67 +62,47 @@ impl MagnitudeFunction {
 
     /// The value in any kind of number, with derivatives by central differences.
     pub(super) fn eval<T: Scalar>(&self, numbers: &[T], values: &[f64]) -> T {
-        self.eval_by(|at| self.value(at), numbers, values)
+        eval_by(|at| self.value(at), numbers, values)
     }
 
-    /// The same between the bounds of the pieces that are held; beyond one it goes on by its slope there.
-    pub(super) fn eval_held<T: Scalar>(&self, numbers: &[T], values: &[f64], held: &[Held]) -> T {
-        self.eval_by(|at| self.value_held(at, held), numbers, values)
-    }
-
-    fn eval_by<T: Scalar>(
+    /// The same on pieces that are held, each by a signal's index and its bounds: beyond a bound it keeps the value that it has there.
+    pub(super) fn eval_held<T: Scalar>(
         &self,
-        value: impl Fn(&[f64]) -> f64,
         numbers: &[T],
         values: &[f64],
+        held: &[(usize, [f64; 2])],
     ) -> T {
-        let slope = |i: usize| {
-            let step = STEP * values[i].abs().max(1.0);
-            let at = |x: f64| with_signal(values, i, x, &value);
-            (at(values[i] + step) - at(values[i] - step)) / (2.0 * step)
+        let value = |at: &[f64]| {
+            let mut inside = [0.0; MAX_FUNCTION_SIGNALS];
+            let Some(inside) = inside.get_mut(..at.len()) else {
+                return f64::NAN;
+            };
+            inside.copy_from_slice(at);
+            for &(i, [low, high]) in held {
+                inside[i] = at[i].max(low.next_up()).min(high.next_down());
+            }
+            self.value(inside)
         };
-        first_order(value(values), slope, numbers, values)
-    }
-
-    fn value_held(&self, values: &[f64], held: &[Held]) -> f64 {
-        let is_inside = |&(i, [low, high]): &Held| low < values[i] && values[i] < high;
-        if held.iter().all(is_inside) {
-            return self.value(values);
-        }
-        let mut inside = [0.0; MAX_FUNCTION_SIGNALS];
-        let Some(inside) = inside.get_mut(..values.len()) else {
-            return f64::NAN;
-        };
-        inside.copy_from_slice(values);
-        for &(i, [low, high]) in held {
-            inside[i] = values[i].max(low.next_up()).min(high.next_down());
-        }
-        let value = |at: &[f64]| self.value(at);
-        let beyond = held.iter().filter(|held| !is_inside(held));
-        let beyond = beyond.map(|&(i, [low, high])| {
-            // Into the piece, from its bound.
-            let step = (STEP * inside[i].abs().max(1.0)).min(0.25 * (high - low));
-            let step = if values[i] <= low { step } else { -step };
-            let at = |k: f64| with_signal(inside, i, inside[i] + k * step, &value);
-            let [first, second] = [at(1.0) - at(0.0), at(2.0) - at(1.0)];
-            (first + 0.5 * (first - second)) / step * (values[i] - inside[i])
-        });
-        self.value(inside) + beyond.sum::<f64>()
+        eval_by(value, numbers, values)
     }
 }
 
-/// The index of a signal, and the bounds of the piece on which it is held.
-pub(super) type Held = (usize, [f64; 2]);
-
-/// A function of signals where one of them has another value.
-fn with_signal(values: &[f64], i: usize, x: f64, function: &impl Fn(&[f64]) -> f64) -> f64 {
-    let mut near = [0.0; MAX_FUNCTION_SIGNALS];
-    let Some(near) = near.get_mut(..values.len()) else {
-        return f64::NAN;
+/// A function in any kind of number, with derivatives by central differences.
+fn eval_by<T: Scalar>(value: impl Fn(&[f64]) -> f64, numbers: &[T], values: &[f64]) -> T {
+    let slope = |i: usize| {
+        let mut near = [0.0; MAX_FUNCTION_SIGNALS];
+        let Some(near) = near.get_mut(..values.len()) else {
+            return f64::NAN;
+        };
+        let step = STEP * values[i].abs().max(1.0);
+        let mut at = |x: f64| {
+            near.copy_from_slice(values);
+            near[i] = x;
+            value(near)
+        };
+        (at(values[i] + step) - at(values[i] - step)) / (2.0 * step)
     };
-    near.copy_from_slice(values);
-    near[i] = x;
-    function(near)
+    first_order(value(values), slope, numbers, values)
 }
 
 /// A function in any kind of number: its value, plus its slopes times what each variable holds beside its plain

@@ -1,6 +1,6 @@
 //! The signals that magnitudes depend on, and magnitudes as laws and expressions of them.
 
-use super::function::{Held, MagnitudeFunction, first_order};
+use super::function::{MagnitudeFunction, first_order};
 use super::{CompiledLoads, CompiledSignal, MAX_FUNCTION_SIGNALS, Magnitude, Signal};
 use crate::error::{KinetostaticsError, Result};
 use dwell_geometry::Mechanism;
@@ -185,7 +185,7 @@ fn bounds_held<C>(
     function: &MagnitudeFunction,
     signals: &[Signal<C>],
     held: &HeldPieces,
-) -> Vec<Held> {
+) -> Vec<(usize, [f64; 2])> {
     let all = state_breakpoints(function, signals).zip(held.pieces());
     let bounds = |((i, values), piece): ((usize, &[f64]), Option<f64>)| {
         Some((i, SwitchKind::Knots(values.to_vec()).bounds(piece?)))

@@ -28,32 +28,29 @@ pub(super) fn explain_sticking(scene: &impl NamedScene, load: usize, what: &str)
     scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
 }
 
-/// Explains steps that are so short that they do not lead on: by a load that the program computes, where there is one.
+/// Explains steps that are so short that the motion makes no progress: by a load that the program computes, where there is one.
 pub(super) fn explain_no_progress(
     scene: &impl NamedScene,
     function: Option<usize>,
     [t, step]: [f64; 2],
 ) -> StudyError {
     let [at, step] = [digits(t, 6), digits(step, 2)];
-    let message =
-        format!("the motion does not go on at t = {at} s: its steps of {step} s get no longer");
+    let mut message = format!("the motion makes no progress at t = {at} s, in steps of {step} s");
     let name = function.and_then(|load| Some((load, scene.load_name(load)?)));
-    let Some((load, name)) = name else {
-        let help = "a limit position or a change point may be near, or a load varies without end: end the motion earlier, or use a larger \
-                    tolerance";
-        return scene_error(
-            scene,
-            message,
-            help,
-            [(SceneLocation::Duration, "beyond that time")],
-        );
+    let (help, place) = match name {
+        Some((load, name)) => {
+            message += &format!(
+                "; load `{name}` is a function of your program, which may jump or have a kink there"
+            );
+            let help = "name the values of its signals at which it does so as its breakpoints, or write it as an expression, whose switches are found";
+            (help, (SceneLocation::Load(load), "its function jumps"))
+        }
+        None => {
+            let help = "a limit position or a change point may be near, or a load varies without end: end the motion earlier, or use a larger tolerance";
+            (help, (SceneLocation::Duration, "beyond that time"))
+        }
     };
-    let message = format!(
-        "{message}; load `{name}` is a function of your program, which may jump or have a kink there"
-    );
-    let help = "name the values of its signals at which it does so as its breakpoints, or write it as an expression, whose switches are found";
-    let label = "its function has a jump that is not named";
-    scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
+    scene_error(scene, message, help, [place])
 }
 
 /// The motion starts beyond an end stop.

@@ -33,11 +33,13 @@ const MUCH: usize = 50_000;
 const LARGEST_OF_ROWS: &str =
     "these are the largest values of the rows: the motion has too many steps to look between them";
 
-/// The joints that couple two coordinates by a curve: not by a ratio, as teeth do, which push on either side.
-fn curves(mechanism: &Mechanism) -> Vec<String> {
+/// The reactions of joints that couple two coordinates by a curve: not by a ratio, as teeth do, which push on either side.
+fn contacts(mechanism: &Mechanism) -> Vec<String> {
     let is_line = |law: &Law| matches!(law, Law::Polynomial(p) if p.coefficients.len() <= 2);
     let all = couplings(mechanism).filter(|(_, law, _)| !is_line(law));
-    all.map(|(joint, ..)| mechanism.joints[joint.0].name.clone())
+    let names = all.map(|(joint, ..)| &mechanism.joints[joint.0].name);
+    names
+        .flat_map(|name| ["force", "moment"].map(|component| format!("{name}.{component}")))
         .collect()
 }
 
@@ -48,8 +50,8 @@ pub(crate) struct Document<'a> {
     movement: Movement<'a>,
     /// The bodies that are not modelled.
     unmodelled: Vec<String>,
-    /// The joints of cams and other couplings by a curve.
-    curves: Vec<String>,
+    /// The reactions of cams and other couplings by a curve.
+    contacts: Vec<String>,
     results: &'a TrajectoryResults,
     trajectory: &'a Trajectory<'a>,
     extrema: Vec<ColumnExtrema>,
@@ -66,7 +68,7 @@ impl<'a> Document<'a> {
         let mut document = Self::of_file(&scene.file, scene.mechanism.size(), computed);
         document.movement.scene = Some(scene);
         document.unmodelled = computed.results.unmodelled_bodies(scene);
-        document.curves = curves(&scene.mechanism);
+        document.contacts = contacts(&scene.mechanism);
         document
     }
 
@@ -93,7 +95,7 @@ impl<'a> Document<'a> {
                 abscissa,
             },
             unmodelled: Vec::new(),
-            curves: Vec::new(),
+            contacts: Vec::new(),
             results,
             trajectory,
             extrema: sorted_extrema(results, &listed, abscissa, size),
@@ -336,16 +338,12 @@ impl<'a> Document<'a> {
     /// A line for each cam whose contact would have to pull: which of the two signs of its force pushes is not known, but one that only pushes
     /// has one sign.
     fn pulling_contacts(&self) -> String {
-        let is_of = |of: &ColumnExtrema, joint: &String| {
-            let component = of.name.strip_prefix(joint.as_str());
-            component.is_some_and(|component| [".force", ".moment"].contains(&component))
-        };
         let contacts = self.extrema.iter();
-        let contacts = contacts.filter(|of| self.curves.iter().any(|joint| is_of(of, joint)));
+        let contacts = contacts.filter(|of| self.contacts.contains(&of.name));
         let changes = contacts.filter(|of| {
             let [low, high] = of.ends.map(|end| end.value);
-            let least = of.error.max(SAME_WITHIN * high.max(-low));
-            low < -least && high > least
+            let rounding = of.error.max(SAME_WITHIN * high.max(-low));
+            low < -rounding && high > rounding
         });
         let line = |of: &ColumnExtrema| {
             let [[low, _], [high, _]] = of.ends.map(|end| of.texts(end));

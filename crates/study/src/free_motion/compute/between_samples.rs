@@ -125,7 +125,8 @@ impl<'m> MotionSampler<'m> {
     ) -> Option<TrajectorySample> {
         let place = self.motion.place_of(t)?;
         let (key, steps) = ((place.segment, place.step), place.steps());
-        let (begin, next) = (&steps[place.step], steps.get(place.step + 1));
+        let (modes, next) = (&place.solution.modes, steps.get(place.step + 1));
+        let begin = &*modes.state_at(&steps[place.step], EventSide::After);
         let point = match (precision, next, &self.motion.orbit) {
             (SamplePrecision::Interpolated, Some(next), None) if begin.t < t => {
                 let mut states = std::mem::take(&mut self.within_steps);
@@ -178,7 +179,7 @@ impl<'m> MotionSampler<'m> {
         if machine.is_in_fit_window(&point.y) {
             return None;
         }
-        let along = (&place.solution.modes, EventSide::Behind);
+        let along = (&place.solution.modes, EventSide::After);
         let workspace = &mut self.machine_of(place)?.1;
         let mut sample = problem
             .sample((place.chart, machine, &mut *workspace), point, along)

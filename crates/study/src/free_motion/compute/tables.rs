@@ -45,7 +45,7 @@ impl FreeMotionProblem<'_> {
         let evaluated = self.evaluated(
             motion,
             |solution| &solution.samples,
-            &mut |solution, k| vec![(solution.samples[k].t, EventSide::Behind)],
+            &mut |solution, k| vec![(solution.samples[k].t, EventSide::After)],
             coordinates,
         )?;
         let samples: Vec<_> = evaluated.into_iter().map(|(_, sample)| sample).collect();
@@ -224,7 +224,7 @@ pub(crate) fn since_start(
 pub(crate) fn sides_of_step(solution: &Solution, k: usize) -> Vec<(f64, EventSide)> {
     let t = solution.steps[k].t;
     match k > 0 && solution.modes.begin_at(t) {
-        true => vec![(t.next_down(), EventSide::Before), (t, EventSide::Behind)],
+        true => vec![(t.next_down(), EventSide::Before), (t, EventSide::After)],
         false => vec![(t, EventSide::Before)],
     }
 }

@@ -85,7 +85,7 @@ impl<'m> PartSampler<'m> {
         let solution = self.solution;
         let steps = &solution.steps;
         let step = steps.partition_point(|step| step.t <= t).checked_sub(1)?;
-        let begin = &steps[step];
+        let begin = &*solution.modes.state_at(&steps[step], EventSide::After);
         let point = match &run.orbit {
             _ if begin.t == t => begin.clone(),
             Some((orbit, _)) => OdeState::from(orbit.state_at(t)),
@@ -106,7 +106,7 @@ impl<'m> PartSampler<'m> {
         if self.problem.machine.is_in_fit_window(&point.y) {
             return None;
         }
-        let along = (&solution.modes, EventSide::Behind);
+        let along = (&solution.modes, EventSide::After);
         let sample = self.problem.sample(&point, along, &mut self.workspace);
         sample.ok()
     }

@@ -19,9 +19,8 @@ use dwell_kinetostatics::space::Model;
 impl SpaceMotionProblem<'_> {
     /// Every sample with its accelerations, drive magnitudes and energies.
     pub(super) fn samples(&self, motion: &Motion) -> Result<Vec<TrajectorySample>, DynamicsError> {
-        let behind =
-            |solution: &Solution, k: usize| vec![(solution.samples[k].t, EventSide::Behind)];
-        let all = self.evaluated(motion, |solution| &solution.samples, behind)?;
+        let after = |solution: &Solution, k: usize| vec![(solution.samples[k].t, EventSide::After)];
+        let all = self.evaluated(motion, |solution| &solution.samples, after)?;
         let all: Vec<_> = all.into_iter().map(|(_, sample)| sample).collect();
         let index = self.balance_index();
         let initial = all.first().map_or(0.0, |s| s.extra_values[index]);
@@ -60,21 +59,21 @@ impl SpaceMotionProblem<'_> {
         let wanted = times.iter().copied().filter(|&t| t < end).chain([end]);
         let mut workspace = self.machine.workspace();
         let samples = match &run.motion.parts[..] {
-            [(_, solution)] if !self.machine.has_contacts() => {
-                self.samples_from_start((run, solution), wanted, &mut workspace)?
+            [(_, solution)] if solution.modes.is_empty() => {
+                self.samples_from_start(run, wanted, &mut workspace)?
             }
             _ => self.samples_within_steps(run, wanted)?,
         };
-        let at_start = (&MotionModes::default(), EventSide::Behind);
+        let at_start = (&MotionModes::default(), EventSide::After);
         let initial = self.sample(&self.initial_state(), at_start, &mut workspace)?;
         let index = self.balance_index();
         Ok(since_start(samples, index, initial.extra_values[index]))
     }
 
-    /// Those of a motion without change of its coordinate or of contacts: integrated from one to the next.
+    /// Those of a motion without change of its coordinate or of its mode: integrated from one to the next.
     fn samples_from_start(
         &self,
-        (run, solution): (&Run, &Solution),
+        run: &Run,
         wanted: impl Iterator<Item = f64>,
         workspace: &mut MachineWorkspace<f64, Model>,
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
@@ -103,14 +102,13 @@ impl SpaceMotionProblem<'_> {
             states.push(state.clone());
         }
         states.retain(|state| !self.machine.is_in_fit_window(&state.y));
-        let all = states.iter().map(|state| {
-            let along = (&solution.modes, EventSide::Behind);
-            self.sample(state, along, workspace)
-        });
-        all.collect()
+        let along = (&MotionModes::default(), EventSide::After);
+        let all = states.iter();
+        all.map(|state| self.sample(state, along, workspace))
+            .collect()
     }
 
-    /// Those of a motion with surfaces that come to rest, end stops or several coordinates: from the step before each time.
+    /// Those of a motion with modes or several coordinates: from the step before each time.
     fn samples_within_steps(
         &self,
         run: &Run,
@@ -149,7 +147,7 @@ impl SpaceMotionProblem<'_> {
         event_table(self, &motion.parts, |event| {
             let problem = motion.problem(self, event.chart);
             let mut workspace = problem.machine.workspace();
-            let along = (&MotionModes::default(), EventSide::Behind);
+            let along = (&MotionModes::default(), EventSide::After);
             let sample = problem.sample(&event.state, along, &mut workspace).ok()?;
             Some(match sample.actuator_coordinate {
                 Some([q, speed, _]) => vec![q, speed],

@@ -350,18 +350,19 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         let ([u, value], at) = *first.min_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]))?;
         let at = match at {
             Some(at) => at,
-            None => {
-                // The limit before an event is known a rounding earlier.
-                let is_known = |u: f64| points.binary_search_by(|p| p[0].total_cmp(&u)).is_ok();
-                let u = Some(u.next_up()).filter(|u| is_known(*u)).unwrap_or(u);
-                self.evaluate([self.abscissa], (u, Exact))?[0]
-            }
+            None => self.evaluate([self.abscissa], (event_at(u, points), Exact))?[0],
         };
         Some(Extremum {
             value: sign * value,
             at,
         })
     }
+}
+
+/// The event before which a limit is known, a rounding earlier; else the parameter itself.
+fn event_at(u: f64, points: &[Point]) -> f64 {
+    let is_known = |u: &f64| points.binary_search_by(|p| p[0].total_cmp(u)).is_ok();
+    Some(u.next_up()).filter(is_known).unwrap_or(u)
 }
 
 /// Only some of all columns are evaluated.
