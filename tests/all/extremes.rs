@@ -138,3 +138,24 @@ fn a_refusal_without_need_is_seen() {
     // Where the condition is above 1e8 it would be an answer: ½m′ at 1e-3, but not m at 1e-2.
     assert!(failed.contains(&"flat-parallelogram-digits"), "{failed:?}");
 }
+
+/// A linkage 1e9 crank lengths away is the linkage at the origin, in double and in single precision.
+#[test]
+fn places_in_space_do_not_matter() {
+    let all = all_series(false).into_iter();
+    let results = evaluate(
+        all.filter(|s| s.key.starts_with("place-in-space"))
+            .collect(),
+    );
+    let digits = |result: &SeriesResult| {
+        let digits = result.cells.iter().filter_map(|cell| cell.digits());
+        digits.fold(f64::INFINITY, f64::min)
+    };
+    let fewest: Vec<f64> = results.iter().map(digits).collect();
+    println!("fewest digits: {fewest:?}");
+    assert_eq!(failed(&check(&results)), Vec::<&str>::new(), "{fewest:?}");
+    let [double, single] = fewest[..] else {
+        panic!("{fewest:?}");
+    };
+    assert!(double > 13.0 && single > 4.0, "{fewest:?}");
+}

@@ -12,8 +12,8 @@ fn every_fault_of_an_operation_in_space_is_detected_by_two_checks() {
     let scenes = study::scenes();
     let study = study::run_operations(&scenes);
     assert_eq!(study.gaps(), Vec::<String>::new());
-    let ignored = study.ignored.iter().map(|(name, ..)| name.as_str());
-    assert_eq!(ignored.collect::<Vec<_>>(), ["screw"]);
+    let mut ignored = study.ignored.iter().map(|(name, ..)| name.as_str());
+    assert_eq!(ignored.next(), None);
     // Every function in which an operation was changed belongs to a step.
     let operations = study.operation_results.iter().map(|r| r.operation);
     let source = SourceFiles::read(&repository_root(), operations);

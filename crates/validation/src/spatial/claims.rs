@@ -105,7 +105,8 @@ impl<'a> SpaceClaims<'a> {
         };
         let rotation = rotation.after(&own.rotation.inverse());
         Placement {
-            position: plain(frame.position) - rotation.apply(own.position),
+            position: self.model.plan().origin() + plain(frame.position)
+                - rotation.apply(own.position),
             rotation,
         }
     }

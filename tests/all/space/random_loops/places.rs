@@ -308,7 +308,7 @@ fn the_place_the_orientation_and_the_size_of_a_scene_do_not_matter() {
 /// Where coordinates are exact, far away too, so are their differences: nothing is lost.
 #[test]
 fn random_loops_do_not_depend_on_their_place_orientation_and_size() {
-    let mut compared = 0;
+    let (mut compared, mut largest) = (0, 0.0_f64);
     for number in 0..60 {
         let setup = Setup::random(number);
         let Ok(model) = setup.model() else { continue };
@@ -322,12 +322,14 @@ fn random_loops_do_not_depend_on_their_place_orientation_and_size() {
             let bound = if is_exact { 1e-9 } else { 1e-7 };
             assert!(found < bound, "{number}, {what}: {found:.1e}");
             compared += 1;
+            largest = largest.max(if is_exact { found } else { 0.0 });
         }
     }
+    println!("{compared} compared, exact ones to {largest:.1e}");
     assert!(compared > 100, "{compared}");
 }
 
-/// In single precision every scene closes, and loses no more than its condition.
+/// In single precision every scene closes, and loses no more than its condition: ten roundings at most, in the RSUR of Haug.
 #[test]
 fn single_precision_closes_in_space() {
     for (name, setup) in scenes() {
@@ -351,7 +353,7 @@ fn single_precision_closes_in_space() {
         }
         let places = worst / largest / f64::from(f32::EPSILON);
         println!("{name:24} loses {places:.1} places of single precision");
-        assert!(places < 1000.0, "{name}: {places:.0}");
+        assert!(places < 40.0, "{name}: {places:.0}");
     }
 }
 

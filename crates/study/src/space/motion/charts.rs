@@ -310,7 +310,7 @@ impl SpaceMotionProblem<'_> {
             let found = plan.placement(&pose, b);
             let turned = place.rotation.inverse().after(&found.rotation).vector();
             let off = (found.position - place.position).norm() / size + turned.norm();
-            off < SAME
+            off < SAME + 8.0 * f64::EPSILON * place.position.norm() / size
         };
         let mechanism = &self.scene().mechanism;
         let agrees = |of: &Coordinate| {
