@@ -10,7 +10,7 @@ Righthand Sides, 1988). Where several agree, the motion is not unique and `NotUn
 import itertools
 import math
 
-from series import Algebra, Unbounded, depends_on, enclosures, first_root, horner, least, numbers, ranges, value_and_size
+from series import Algebra, Unbounded, depends_on, enclosures, first_root, horner, in_order, least, numbers, ranges, value_and_size
 
 ORDER = 14
 # What is below this part of its terms is on its threshold.
@@ -22,7 +22,8 @@ TOUCHES = 1e-4
 # Coefficients that decide.
 DECIDING = 6
 MOST_EVENTS = 3000
-MOST_STEPS = 20000
+# Steps that are tried, also in vain.
+MOST_STEPS = 6000
 # Beyond these a motion is not compared.
 LARGEST = 1e4
 
@@ -196,6 +197,8 @@ class Motion:
             for _, argument, sign in mode.choices.values():
                 if argument is not None and sign == 0:
                     mode.signs.pop(argument, None)
+                    if any(part.op == "exp" for part in in_order([argument])):
+                        raise Unjudged("an exponential that is zero by rounding decides")
             return mode
         return self.slide()
 
@@ -306,9 +309,6 @@ class Motion:
     def run(self, end):
         mode, h, crowd = self.decide(), end / 8, []
         while self.point[0] < end:
-            self.steps += 1
-            if self.steps > MOST_STEPS:
-                raise Unjudged("too many steps")
             taken, h, is_event = self.step(mode, min(h, end - self.point[0]))
             if self.point[0] + 1e-15 * end >= end:
                 break
@@ -335,6 +335,9 @@ class Motion:
             leads[g] = lead[0]
         grow = 2.0
         while True:
+            self.steps += 1
+            if self.steps > MOST_STEPS:
+                raise Unjudged("too many steps")
             if h < 1e-15:
                 raise Unjudged("a step without length")
             outcome = self.try_step(mode, h, variables, series, leads)
