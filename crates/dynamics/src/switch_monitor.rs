@@ -341,6 +341,7 @@ impl SwitchMonitor {
             return Ok(());
         }
         let before: Vec<Option<f64>> = self.pieces();
+        self.add_operands(crossing, system)?;
         for &(k, upward) in &crossing.passed {
             let switch = &mut self.switches[k];
             switch.piece = switch.piece.map(|piece| switch.kind.next(piece, upward));

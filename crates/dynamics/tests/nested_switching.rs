@@ -66,6 +66,7 @@ fn a_decision_that_rests_on_its_threshold_is_taken_anew() {
         "10*sign(abs(0.5 - q) + (0.5 - q))",
         "if(max(step(q - 0.5), 0) <= 0, 10, 0)",
         "10*min(1, -floor(-max(0, 0.5 - q)))",
+        "if(clamp(sin(9*q), 0, 2) >= 0, if(q < 0.5, 10, 0), 70)",
         "if(step(t - 0.25)*(q - q) < 1, if(step(q - 0.5) < 1, 10, 0), 7)",
     ] {
         check(text, 1.0, 2.0, behind(10.0, 1.0, 2.0), 30.0);

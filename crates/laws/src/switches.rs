@@ -220,7 +220,8 @@ impl Switches {
                 * ends
                     .into_iter()
                     .fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
-            let bounds = [low - rounding, high + rounding];
+            // Where the motion begins anew it is beyond its bound by rounding.
+            let bounds = [low.min(ends[0]) - rounding, high.max(ends[0]) + rounding];
             let at = (low < high).then(|| first_outside(bounds, value, enclose))?;
             at.map(|at| (k, at))
         });

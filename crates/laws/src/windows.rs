@@ -19,6 +19,8 @@ const SEEN_DEGREE: u32 = 2;
 const NEGLIGIBLE: f64 = 1e-9;
 /// A pulse that is higher than what the step's ends show by this part of their difference is looked at.
 const UNSEEN: f64 = 0.5;
+/// Where a pulse begins, as a part of its height: what lies before is lost.
+const BEGINS: f64 = 1e-12;
 /// The part of a step over which a feature that the method has seen extends at least, to either side of its top.
 const RESOLVED: f64 = 0.25;
 
@@ -210,7 +212,7 @@ impl NarrowTerm {
             return None;
         }
         let mut width = MIN_WIDTH;
-        while width < at && excess(at - width) > 1e-3 * top {
+        while width < at && excess(at - width) > BEGINS * top {
             width *= 2.0;
         }
         Some(Pulse { at, width })

@@ -3,7 +3,7 @@
 //! A function that is zero is decided by the side on which its own rates lead further into it. One that rests on zero, as
 //! `step(x - 0.5) - 1` beyond 0.5, is held on zero itself: there `<` differs from `<=`.
 
-use super::{PROBE, SwitchMonitor};
+use super::{Crossing, PROBE, SwitchMonitor};
 use crate::error::Result;
 use crate::ode::{OdeState, OdeSystem};
 use dwell_laws::SwitchKind;
@@ -71,6 +71,30 @@ impl SwitchMonitor {
                 let before = self.switches[k].piece;
                 self.decide_anew(k, changed[k], system, at)?;
                 changed[k] = self.switches[k].piece != before;
+            }
+        }
+        Ok(())
+    }
+
+    /// Passes with a switch those of its operands that are passed within a rounding of the same time: what they decide comes first.
+    ///
+    /// # Errors
+    /// Where the state cannot be evaluated.
+    pub(super) fn add_operands(
+        &mut self,
+        crossing: &mut Crossing,
+        system: &mut dyn OdeSystem,
+    ) -> Result<()> {
+        let near = ON_BOUND * self.step.max(crossing.state.t.abs());
+        let inner = |(k, _): &(usize, bool)| self.switches[*k].inner.clone();
+        for j in crossing.passed.iter().flat_map(inner).collect::<Vec<_>>() {
+            let [value, rate] = self.motion_of(j, system, &crossing.state)?;
+            let soon = value + near * rate;
+            let is_beyond = self.switches[j]
+                .margin(soon)
+                .is_some_and(|margin| margin < 0.0);
+            if is_beyond && crossing.passed.iter().all(|(k, _)| *k != j) {
+                crossing.passed.push((j, self.switches[j].is_above(soon)));
             }
         }
         Ok(())

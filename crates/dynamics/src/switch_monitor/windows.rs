@@ -1,7 +1,7 @@
 //! What loads do between the points of a step at which they are looked at: conditions that change in a window, and pulses.
 
 use super::{Crossing, SwitchMonitor};
-use crate::crossings::are_together;
+use crate::crossings::{are_together, first_inside};
 use crate::error::Result;
 use crate::ode::{OdeState, OdeSystem, Step};
 use crate::state_switches::Hidden;
@@ -119,10 +119,18 @@ impl SwitchMonitor {
             let value = value_at(t)?;
             let switch = &self.switches[k];
             if switch.margin(value).is_some_and(|margin| margin < 0.0) {
-                let margin_at =
+                let mut margin_at =
                     |t: f64| -> Result<f64> { Ok(switch.margin(value_at(t)?).unwrap_or(f64::NAN)) };
                 let upward = switch.is_above(value);
-                let at = root::find(margin_at, start, t)?.unwrap_or(t);
+                let found = if margin_at(start)? > 0.0 {
+                    root::find(margin_at, start, t)?
+                } else {
+                    match first_inside([start, t], &mut margin_at)? {
+                        Some([inside, until]) => root::find(margin_at, inside, until)?,
+                        None => Some(start),
+                    }
+                };
+                let at = found.unwrap_or(t);
                 return Ok(Some(Crossing {
                     state: step.state_from_start(at)?,
                     passed: vec![(k, upward)],

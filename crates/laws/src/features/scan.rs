@@ -375,13 +375,14 @@ fn decide(pieces: &Pieces, switch: &Switch, over: Interval, sides: &[Sides]) -> 
         }
         0.0
     };
+    let rests = || !switch.at_integers && pieces.is_zero(switch, over, sides);
+    let undecided = || match touching(pieces, switch, (over, sides), (value, level)) {
+        Some(side) => Decision::Side(side),
+        None if rests() => Decision::Side(0.0),
+        None => Decision::Unknown,
+    };
     if slope.contains(0.0) {
-        let rests = !switch.at_integers && pieces.is_zero(switch, over, sides);
-        return if rests {
-            Decision::Side(0.0)
-        } else {
-            Decision::Unknown
-        };
+        return undecided();
     }
     let values = [over.lo, over.hi].map(|x| pieces.switch_value(switch, x) - level);
     if values[0] * values[1] < 0.0 {
@@ -390,23 +391,44 @@ fn decide(pieces: &Pieces, switch: &Switch, over: Interval, sides: &[Sides]) -> 
     // A zero at an end, or beyond it by rounding, is outside: it grows or falls throughout.
     let sum = values[0] + values[1];
     match (sum == 0.0 || sum.is_nan(), switch.at_integers) {
-        (true, _) => Decision::Unknown,
+        (true, _) => undecided(),
         (false, true) => Decision::Side(if sum > 0.0 { level } else { level - 1.0 }),
         (false, false) => Decision::Side(sum.signum()),
     }
 }
 
-/// The side of a switch in an interval of a few roundings. What touches its level, within a rounding of its value, stays on its side.
+/// The side of a switch in an interval of a few roundings.
 fn side_within(pieces: &Pieces, switch: &Switch, over: Interval) -> f64 {
-    let middle = 0.5 * (over.lo + over.hi);
-    let apart = TOUCH * over.magnitude();
     let side_at = |x: f64| switch.side(pieces.switch_value(switch, x));
-    let [before, behind] = [middle - apart, middle + apart].map(side_at);
-    if before == behind {
-        before
-    } else {
-        side_at(middle)
+    match sides_around(pieces, switch, over) {
+        [before, behind] if before == behind => before,
+        _ => side_at(0.5 * (over.lo + over.hi)),
     }
+}
+
+/// The sides of a switch before and behind a short interval.
+fn sides_around(pieces: &Pieces, switch: &Switch, over: Interval) -> [f64; 2] {
+    let apart = TOUCH * over.magnitude();
+    let ends = [over.lo - apart, over.hi + apart];
+    ends.map(|x| switch.side(pieces.switch_value(switch, x)))
+}
+
+/// The side of what touches its level in an interval, within a rounding of its value, and does not pass it.
+fn touching(
+    pieces: &Pieces,
+    switch: &Switch,
+    (over, sides): (Interval, &[Sides]),
+    (value, level): (Interval, f64),
+) -> Option<f64> {
+    /// Roundings of a function.
+    const ROUNDING: f64 = 64.0 * f64::EPSILON;
+    if over.width() > TOUCH * over.magnitude() {
+        return None;
+    }
+    let [scale, _] = pieces.largest_parts(switch, over, sides);
+    let farthest = (value.lo - level).abs().max((value.hi - level).abs());
+    let [before, behind] = sides_around(pieces, switch, over);
+    (before == behind && farthest <= ROUNDING * scale).then_some(before)
 }
 
 /// The last instant before a switch, and the first behind it, at which its function has the sign of that end.

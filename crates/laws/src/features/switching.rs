@@ -169,11 +169,24 @@ impl Pieces {
         {
             return false;
         }
+        let [_, scale] = self.largest_parts(switch, over, sides);
+        let [_, own, _] = self.enclose_switch(switch, over, sides).0;
+        own.magnitude() <= ROUNDING * scale
+    }
+
+    /// The largest value and the largest slope of all parts of a switch's function.
+    pub(super) fn largest_parts(
+        &self,
+        switch: &Switch,
+        over: Interval,
+        sides: &[Sides],
+    ) -> [f64; 2] {
         let parts = std::iter::once(switch.left).chain(switch.right);
         let parts = parts.flat_map(|last| self.starts[last]..=last);
-        let slope = |last: usize| self.enclose(last, over, sides).0[1].magnitude();
-        let [_, own, _] = self.enclose_switch(switch, over, sides).0;
-        own.magnitude() <= ROUNDING * parts.map(slope).fold(0.0, f64::max)
+        parts.fold([0.0; 2], |[value, slope], last| {
+            let [v, s, _] = self.enclose(last, over, sides).0;
+            [value.max(v.magnitude()), slope.max(s.magnitude())]
+        })
     }
 
     /// The value of a switch's function.
