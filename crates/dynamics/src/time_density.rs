@@ -71,12 +71,16 @@ pub(crate) fn hides_turns<'s>(
     hidden > 0.0
 }
 
-/// dt/ds on panels, in each of which the rates account for all turns; `rate` is dq/ds by phase.
+/// dt/ds on panels, in each of which the rates account for all turns, where these are known; `rate` is dq/ds by phase. What follows
+/// functions of the scene may be less smooth than rounding.
 pub(crate) fn watched_panels(
     system: &mut dyn ConservativeSystem,
     density: impl Fn(&mut dyn ConservativeSystem, f64) -> Result<f64>,
     rate: impl Fn(f64) -> f64,
 ) -> Result<Panels> {
+    if system.follows_functions() || system.turns().is_empty() {
+        return Panels::new(|phase| density(system, phase));
+    }
     let points = RefCell::new(Vec::new());
     let of = |phase| {
         let value = density(system, phase)?;

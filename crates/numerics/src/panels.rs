@@ -18,6 +18,14 @@ const FLATNESS: f64 = 0.25;
 /// So many times the last coefficients of a panel, or this part of its largest value, may separate its series from the function at its ends.
 const END_TAILS: f64 = 100.0;
 const END_ERROR: f64 = 1e-6;
+/// Last coefficients below this part of the largest value need no proof that they are rounding.
+const SURELY_NOISE: f64 = 1e-12;
+/// Nor do those of narrower panels: roundings of positions are alike at neighbouring points there. Else the largest difference
+/// between neighbours at so many places, at this part of the panel from each other, must be this part of them.
+const PROVEN_WIDTH: f64 = 1e-4;
+const NOISE_POINTS: usize = 8;
+const NEIGHBOUR: f64 = 1e-9;
+const NOISE_PART: f64 = 0.1;
 
 /// A function that the highest number of panels does not resolve.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,17 +67,25 @@ impl Panels {
     /// # Errors
     /// [`NotResolved`], or the first error of the function.
     pub fn new<E: From<NotResolved>>(of: impl FnMut(f64) -> Result<f64, E>) -> Result<Self, E> {
-        Self::checked(of, || true)
+        Self::build(of, None)
     }
 
-    /// The same, where a panel whose series is resolved is halved all the same unless a check of the points that were evaluated
-    /// since the check before accepts it.
+    /// The same of a function that is smooth but for rounding. A panel whose series is resolved is halved all the same where the function
+    /// differs at its ends, where what looks like rounding is the same at neighbouring points, or where a check of the points that
+    /// were evaluated since the check before does not accept it.
     ///
     /// # Errors
     /// As [`Panels::new`].
     pub fn checked<E: From<NotResolved>>(
-        mut of: impl FnMut(f64) -> Result<f64, E>,
+        of: impl FnMut(f64) -> Result<f64, E>,
         mut check: impl FnMut() -> bool,
+    ) -> Result<Self, E> {
+        Self::build(of, Some(&mut check))
+    }
+
+    fn build<E: From<NotResolved>>(
+        mut of: impl FnMut(f64) -> Result<f64, E>,
+        mut check: Option<&mut dyn FnMut() -> bool>,
     ) -> Result<Self, E> {
         let mut found = Self::default();
         // The last is next: the panels come in order.
@@ -79,8 +95,13 @@ impl Panels {
         while let Some((from, to, halvings)) = open.pop() {
             let panel = Panel::new(from, to, sum, &mut of)?;
             found.points += PANEL_POINTS;
-            let is_resolved = panel.is_resolved() && panel.holds_at_ends(&mut of)?;
-            let done = check() && is_resolved;
+            let mut done = panel.is_resolved();
+            if let Some(check) = &mut check {
+                let holds = done && panel.holds_at_ends(&mut of)?;
+                done = check() && holds && panel.is_noise(&mut of)?;
+                // The points of the search for noise belong to no rule.
+                check();
+            }
             if !done && (halvings >= MAX_HALVINGS || found.panels.len() + open.len() >= MAX_PANELS)
             {
                 return Err(E::from(NotResolved {
@@ -188,11 +209,31 @@ impl Panel {
         let largest = self.coefficients.iter().map(|c| c.abs()).sum::<f64>();
         let allowed = (END_TAILS * self.tail).max(END_ERROR * largest);
         for end in [self.from, self.to] {
-            if !((of(end)? - self.eval(end)[0]).abs() <= allowed) {
+            let error = (of(end)? - self.eval(end)[0]).abs();
+            if error > allowed || error.is_nan() {
                 return Ok(false);
             }
         }
         Ok(true)
+    }
+
+    /// Whether its last coefficients are rounding: then so large a part of them is between neighbouring points, too. The tails of a peak
+    /// that no point shows are smooth.
+    fn is_noise<E>(&self, of: &mut impl FnMut(f64) -> Result<f64, E>) -> Result<bool, E> {
+        let largest = self.coefficients.iter().map(|c| c.abs()).sum::<f64>();
+        let width = self.to - self.from;
+        if self.tail <= SURELY_NOISE * largest || width < PROVEN_WIDTH {
+            return Ok(true);
+        }
+        let mut left_out = |phase| of(phase).map(|value| value - self.eval(phase)[0]);
+        let (mut noise, mut missed) = (0.0_f64, 0.0_f64);
+        for k in 1..NOISE_POINTS {
+            let phase = self.from + width * k as f64 / NOISE_POINTS as f64;
+            let [here, there] = [left_out(phase)?, left_out(phase + NEIGHBOUR * width)?];
+            noise = noise.max((there - here).abs());
+            missed = missed.max(here.abs());
+        }
+        Ok(noise >= NOISE_PART * self.tail && missed <= END_TAILS * self.tail)
     }
 
     fn eval(&self, phase: f64) -> [f64; 2] {

@@ -30,6 +30,10 @@ impl ConservativeSystem for Hill {
         true
     }
 
+    fn turns(&self) -> Vec<[f64; 2]> {
+        Vec::new()
+    }
+
     fn follows_functions(&self) -> bool {
         self.follows_functions
     }

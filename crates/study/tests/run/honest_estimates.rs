@@ -4,7 +4,8 @@ use crate::table::scene;
 use dwell_dynamics::Method;
 use dwell_findings::Record;
 use dwell_scene::Scene;
-use dwell_study::{FreeMotion, MotionSolver, SolverSettings, compute_free_motion};
+use dwell_study::free_motion::compute::FreeMotion;
+use dwell_study::{MotionSolver, SolverSettings, compute_free_motion};
 
 const SCENES: [&str; 3] = [
     include_str!("four-bar-near-limit.toml"),
