@@ -89,6 +89,20 @@ pub enum DynamicsError {
         /// The number of steps allowed.
         max_steps: usize,
     },
+    /// The number of steps allowed is far too small for the pace of the last ones.
+    #[error(
+        "after {steps} steps the motion is at t = {t} s: at this pace its end would take {needed:.0e} more, and {max_steps} are allowed"
+    )]
+    TooSlow {
+        /// The time reached, s.
+        t: f64,
+        /// The steps taken.
+        steps: usize,
+        /// How many more its end would take.
+        needed: f64,
+        /// The number of steps allowed.
+        max_steps: usize,
+    },
     /// More events happen than are kept.
     #[error("more than {max_occurrences} events happen: up to t = {t} s these are all")]
     TooManyEvents {

@@ -233,7 +233,7 @@ fn integrate_smooth(
 ) -> Result<Termination> {
     let options = &whole.options;
     let weights = (0..system.size()).map(|i| options.atol * system.error_weight(i));
-    let mut impasse = Impasse::new(whole.start.t, options.rtol, weights.collect());
+    let mut impasse = Impasse::new(&whole, weights.collect());
     let mut parts = Parts::new(whole);
     loop {
         let pieces = pieces.as_deref_mut();

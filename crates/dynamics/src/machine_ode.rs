@@ -7,6 +7,7 @@ use crate::interruption;
 use crate::machine::{Machine, MachineState, MachineWorkspace, MovingModel};
 use crate::ode::{DualWorkspace, OdeState, OdeSystem};
 use crate::sliding::Sliding;
+use crate::solve::{MAX_OCCURRENCES, too_many_events};
 use crate::state_switches::{HeldSource, signal_value};
 use dwell_kinetostatics::Model;
 use dwell_laws::{Features, SwitchKind};
@@ -47,7 +48,27 @@ impl<'m, M: MovingModel> MachineOde<'m, M> {
         for weight in &mut ode.error_weights[machine.work_offset()..] {
             *weight = with_later_works(*weight, work);
         }
+        let span = end.unwrap_or(t) - t;
+        if SLOW * span > 1.0 {
+            ode.scale_speeds((t, y), span)?;
+        }
         Ok(ode)
+    }
+
+    /// Speeds of a motion that is slow all the time are accurate by its own measure: its speeds, what its accelerations become over
+    /// its span (s), or one unit of its coordinates in it.
+    fn scale_speeds(&mut self, (t, y): (f64, &[f64]), span: f64) -> Result<()> {
+        let machine = self.machine;
+        let state = machine.evaluate(t, y, &mut self.workspace)?;
+        let free = || machine.free().iter();
+        let largest = |of: &[f64]| free().map(|&i| of[i].abs()).fold(0.0, f64::max);
+        let accelerated = largest(state.q_ddot()) * span;
+        let speed = largest(state.q_dot()).max(accelerated).max(1.0 / span);
+        if speed < SLOW {
+            let n = free().count();
+            self.error_weights[n..2 * n].fill(speed);
+        }
+        Ok(())
     }
 
     /// A machine whose works have no scale, where none is integrated.
@@ -68,6 +89,8 @@ impl<'m, M: MovingModel> MachineOde<'m, M> {
     }
 }
 
+/// Below this speed, rad/s or m/s, a motion is not one of seconds.
+const SLOW: f64 = 1e-3;
 /// The part of the largest work below which a work does not count.
 const SMALL_WORK: f64 = 1e-6;
 
@@ -235,6 +258,9 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
     fn pass_contacts(&mut self, t: f64, y: &mut [f64], step: &ContactStep<'_>) -> Result<()> {
         let changes = pass(self.machine, &mut self.workspace, (t, y), step)?;
         self.contact_events.extend(changes);
+        if self.contact_events.len() > MAX_OCCURRENCES {
+            return Err(too_many_events(t));
+        }
         Ok(())
     }
 

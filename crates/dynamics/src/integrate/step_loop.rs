@@ -115,6 +115,7 @@ impl StepLoop<'_, '_> {
             } else {
                 self.impasse.step_taken([at, &now]);
             }
+            self.impasse.pace.step_taken(now.t)?;
             // It cannot step to an end that is within its rounding of time: it is there.
             let rounding = INTEGRATOR_ROUNDING * (now.t.abs() + state.h.abs());
             let reached = state.t;

@@ -49,10 +49,10 @@ pub struct EventOccurrence {
 }
 
 /// Occurrences that are kept.
-pub(super) const MAX_OCCURRENCES: usize = 100_000;
+pub(crate) const MAX_OCCURRENCES: usize = 100_000;
 
 /// The error of a motion in which more events happen than are kept; they are known up to a time, s.
-pub(super) fn too_many_events(t: f64) -> DynamicsError {
+pub(crate) fn too_many_events(t: f64) -> DynamicsError {
     DynamicsError::TooManyEvents {
         t,
         max_occurrences: MAX_OCCURRENCES,

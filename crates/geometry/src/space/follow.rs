@@ -238,42 +238,4 @@ impl Plan {
             .map(|(a, b)| a.inverse().after(b).vector().norm());
         scalar.chain(turned).fold(0.0, f64::max)
     }
-
-    /// The pose of several coordinates: along the straight line from those of the assembly.
-    pub(super) fn continue_to<T: Scalar>(
-        &self,
-        q: &[T],
-        pose: &mut Pose<T>,
-    ) -> Result<(), PositionError> {
-        let from = &self.assembly_q;
-        let mut real = self.pose::<f64>();
-        self.start_from(&self.start, 0.0, &mut real);
-        if self.groups.is_empty() {
-            // Nothing has to be followed.
-            self.start_from(&self.start, 0.0, pose);
-            return self.close(q, None, pose);
-        }
-        let span = q
-            .iter()
-            .zip(from)
-            .map(|(q, a)| (q.value() - a).abs())
-            .fold(0.0, f64::max);
-        let count = (span / 0.05).ceil().clamp(1.0, 1e4);
-        for k in 1..=count as usize {
-            let part = k as f64 / count;
-            let at: Vec<f64> = q
-                .iter()
-                .zip(from)
-                .map(|(q, a)| a + part * (q.value() - a))
-                .collect();
-            self.close(&at, None, &mut real)?;
-        }
-        for (to, from) in pose.coordinates.iter_mut().zip(&real.coordinates) {
-            *to = T::from_f64(*from);
-        }
-        for (to, from) in pose.balls.iter_mut().zip(&real.balls) {
-            *to = from.cast();
-        }
-        self.close(q, None, pose)
-    }
 }
