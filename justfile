@@ -38,6 +38,7 @@ test: && fuzz
 fuzz pairs="2000" seed="1":
     cargo build --release --workspace --bins
     python3 tests/fuzz/run.py {{ pairs }} {{ seed }}
+    python3 tests/fuzz/motions.py 30 {{ seed }}
 
 # Format, lints with warnings denied, no circle of imports between folders, no long file or function without a reason, and a place for every named fault
 [group('care')]
@@ -167,6 +168,7 @@ nightly-tests:
 nightly-fuzz part="0" seed=`date +%j`:
     cargo build --release --workspace --bins
     python3 tests/fuzz/run.py 20000 {{ seed }} --first $(({{ part }} * 20000))
+    python3 tests/fuzz/motions.py 300 {{ seed }} --first $(({{ part }} * 300))
 
 # Of `nightly`: ten million designs, other programs, the reference values, the dependencies' advisories. Installs what these need
 [group('care')]

@@ -323,6 +323,7 @@ fn integrate_part(
         failure: &failure,
         pieces,
         impasse,
+        balance: &|at: &OdeState| system.borrow_mut().balance(at),
         fault: &|at: &OdeState| {
             let mut rates = vec![0.0; n];
             evaluations.set(evaluations.get() + 1);

@@ -55,18 +55,17 @@ impl<'m, M: MovingModel> MachineOde<'m, M> {
         Ok(ode)
     }
 
-    /// Speeds of a motion that is slow all the time are accurate by its own measure: its speeds, what its accelerations become over
-    /// its span (s), or one unit of its coordinates in it.
+    /// The speeds of a motion that is slow are accurate by its own measure: one unit of its coordinates over its span, s. It is slow by
+    /// its speeds, and by what its accelerations become over the span.
     fn scale_speeds(&mut self, (t, y): (f64, &[f64]), span: f64) -> Result<()> {
         let machine = self.machine;
         let state = machine.evaluate(t, y, &mut self.workspace)?;
         let free = || machine.free().iter();
         let largest = |of: &[f64]| free().map(|&i| of[i].abs()).fold(0.0, f64::max);
         let accelerated = largest(state.q_ddot()) * span;
-        let speed = largest(state.q_dot()).max(accelerated).max(1.0 / span);
-        if speed < SLOW {
+        if largest(state.q_dot()).max(accelerated) < SLOW {
             let n = free().count();
-            self.error_weights[n..2 * n].fill(speed);
+            self.error_weights[n..2 * n].fill(1.0 / span);
         }
         Ok(())
     }
@@ -262,6 +261,17 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
             return Err(too_many_events(t));
         }
         Ok(())
+    }
+
+    fn balance(&mut self, at: &OdeState) -> Option<[f64; 2]> {
+        if self.machine.has_contacts() {
+            // Impacts lose energy that is no work.
+            return None;
+        }
+        let energy = self.machine.energy(at.t, &at.y, &mut self.workspace);
+        let [kinetic, potential] = energy.ok()?;
+        let works: f64 = at.y[self.machine.work_offset()..].iter().sum();
+        Some([kinetic, kinetic + potential - works])
     }
 
     fn error_weight(&self, state: usize) -> f64 {

@@ -6,9 +6,10 @@
 use crate::error::{DynamicsError, Result};
 use crate::integration_parts::Part;
 
-/// The steps allowed are so many windows, each of so many steps at least.
+/// The steps allowed are so many windows.
 const WINDOWS: usize = 40;
-const MIN_WINDOW: usize = 25;
+/// The pace of fewer steps shows nothing.
+const MIN_WINDOW: usize = 5;
 /// A pace at which the rest takes so many times the steps allowed is too slow: what only begins slowly becomes faster by less.
 const TOO_MANY: f64 = 20.0;
 
@@ -38,9 +39,9 @@ impl Pace {
         self.steps
     }
 
-    /// Whether the rest, from a time (s), takes too many steps if as many lead on by `advance`, s.
-    pub(crate) fn is_too_slow(&self, steps: usize, t: f64, advance: f64) -> bool {
-        (self.end - t) * steps as f64 > advance * TOO_MANY * self.max_steps as f64
+    /// Whether the rest, from a time (s), takes more than so many times the steps allowed if some steps lead on by `advance`, s.
+    pub(crate) fn is_too_slow(&self, (t, times): (f64, f64), steps: usize, advance: f64) -> bool {
+        (self.end - t) * steps as f64 > advance * times * self.max_steps as f64
     }
 
     /// After a step that has ended at a time, s. The first window does not count: a method begins with short steps.
@@ -50,12 +51,12 @@ impl Pace {
     #[inline]
     pub(crate) fn step_taken(&mut self, t: f64) -> Result<()> {
         self.steps += 1;
-        let window = (self.max_steps / WINDOWS).max(MIN_WINDOW);
-        if self.steps % window != 0 {
+        let window = self.max_steps / WINDOWS;
+        if window < MIN_WINDOW || self.steps % window != 0 {
             return Ok(());
         }
         let advance = t - std::mem::replace(&mut self.from, t);
-        if self.steps == window || !self.is_too_slow(window, t, advance) {
+        if self.steps == window || !self.is_too_slow((t, TOO_MANY), window, advance) {
             return Ok(());
         }
         Err(DynamicsError::TooSlow {

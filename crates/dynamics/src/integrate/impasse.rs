@@ -16,6 +16,11 @@ const IMMATERIAL: f64 = 1e-3;
 const MAX_FAILED: usize = 20;
 /// After so many steps that failed, not in a row, their pace is looked at.
 const FAILED_AT_A_PACE: usize = 20;
+/// Steps that fail belong together where no more lie between them.
+const RECENT: usize = 1000;
+/// A balance that changes by so large a part of the kinetic energy while steps fail is broken: next to singular positions it was seen to
+/// change by 0.3 to 10 times that, otherwise by the tolerance.
+const BROKEN: f64 = 0.01;
 
 /// Counts the steps that fail, or change nothing because longer ones do.
 pub(super) struct Impasse {
@@ -28,6 +33,8 @@ pub(super) struct Impasse {
     /// Of the steps that failed since they were looked at last: how many, and how many steps and which time, s, there were then.
     slow: (usize, usize, f64),
     is_slow: bool,
+    /// The kinetic energy and the balance, J, before the first of the steps that fail, and after how many steps one has failed last.
+    before: Option<([f64; 2], usize)>,
     /// The length of a step that could not be evaluated and was not shortened, s; none where it is below the rounding of time.
     pub(super) failed_step: Option<f64>,
 }
@@ -43,6 +50,7 @@ impl Impasse {
             pace: Pace::new(of),
             slow: (0, 0, of.start.t),
             is_slow: false,
+            before: None,
             failed_step: None,
         }
     }
@@ -62,7 +70,9 @@ impl Impasse {
         if self.slow.0 == FAILED_AT_A_PACE {
             let (t, steps) = (ends[1].t, self.pace.steps());
             let (_, before, from) = std::mem::replace(&mut self.slow, (0, steps, t));
-            self.is_slow = self.pace.is_too_slow(steps + 1 - before, t, t - from);
+            self.is_slow = self
+                .pace
+                .is_too_slow((t, 1.0), steps + 1 - before, t - from);
         }
     }
 
@@ -70,6 +80,23 @@ impl Impasse {
     pub(super) fn step_failed(&mut self, is_evaluation: bool, length: f64) {
         self.failed += 1;
         self.failed_step = Some(length).filter(|length| is_evaluation && *length > 0.0);
+    }
+
+    /// After a step before which longer ones have failed: whether the energies less the works have changed. Next to a singular position
+    /// steps lead on that are none of the motion: rounding decides their speeds.
+    pub(super) fn breaks_balance(
+        &mut self,
+        [from, to]: [&OdeState; 2],
+        balance: &dyn Fn(&OdeState) -> Option<[f64; 2]>,
+    ) -> bool {
+        let steps = self.pace.steps();
+        let before = match self.before {
+            Some((before, last)) if steps - last < RECENT => Some(before),
+            _ => balance(from),
+        };
+        self.before = before.map(|before| (before, steps));
+        let both = before.zip(balance(to));
+        both.is_some_and(|([kinetic, before], [_, now])| (now - before).abs() > BROKEN * kinetic)
     }
 
     /// Whether nothing leads on.

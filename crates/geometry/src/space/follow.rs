@@ -34,7 +34,7 @@ const SMALLEST: f64 = 1e-9;
 /// Revolutions after which a pose that has not come back is taken not to, and sizes after which a stroke has no end.
 const MAX_REVOLUTIONS: u32 = 8;
 /// Two poses are the same: rad, or parts of the size.
-const SAME: f64 = 1e-7;
+pub(super) const SAME: f64 = 1e-7;
 
 impl Plan {
     /// Sets the coordinates to the prediction from a stored pose at so much more of the coordinate.
@@ -121,6 +121,8 @@ impl Plan {
         self.start = first.clone();
         let (true, Some(kind)) = (self.actuators() == 1, kind) else {
             self.range = Range::Unbounded;
+            let all = 0..self.actuators();
+            self.revolutions = all.map(|i| self.revolution(i, &pose)).collect();
             return Ok(());
         };
         let is_angle = matches!(kind, ActuatorKind::Angle(_));
@@ -148,7 +150,7 @@ impl Plan {
 
     /// How far bodies are from where they were, rad or parts of the size; how a body that turns idly stands about its line
     /// does not count.
-    fn moved_by(&self, before: &[Frame<f64>], after: &[Frame<f64>]) -> f64 {
+    pub(super) fn moved_by(&self, before: &[Frame<f64>], after: &[Frame<f64>]) -> f64 {
         let moved = |body: usize| {
             let (a, b) = (&before[body], &after[body]);
             let idle = self.mobility.idle.iter().find(|idle| idle.body.0 == body);

@@ -10,7 +10,7 @@ use super::lower::Lowered;
 use super::mechanism::{Assembly, Mechanism, Placement};
 use super::prediction::Predictions;
 use super::rank::Mobility;
-use super::stations::Stations;
+use super::stations::{Revolution, Stations};
 use super::tree::{Driver, Tree};
 use super::vector::{Rotation, Vec3};
 use super::wrench::Wrench;
@@ -70,6 +70,8 @@ pub struct Plan {
     pub(super) closure_angles: Vec<StoredAngles>,
     /// By freedom: what it gains in a period of the only coordinate.
     pub(super) freedom_gains: Vec<f64>,
+    /// By each of several coordinates.
+    pub(super) revolutions: Vec<Option<Revolution>>,
     /// The freedoms that teeth turn, which keep count of all periods.
     pub(super) geared: Vec<usize>,
     /// In the range of the only coordinate.

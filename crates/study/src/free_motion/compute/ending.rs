@@ -7,6 +7,9 @@
 use super::LARGE_ERROR;
 use dwell_dynamics::{DynamicsError, Machine, MachineWorkspace, MovingModel, OdeState, Solution};
 
+/// A step behind the last good sample keeps its balance within this part of the largest kinetic energy: where speeds err by it,
+/// accelerations err by a hundredth at a tolerance of 1e-10.
+const KEPT: f64 = 1e-5;
 /// How far around a state a position that does not exist is looked for, as parts of its coordinates or of a unit.
 const NEAR: [f64; 2] = [1e-7, 1e-5];
 
@@ -18,26 +21,32 @@ pub(crate) fn end_where_impossible<M: MovingModel>(machine: &Machine<M>, solutio
         workspace: machine.workspace(),
         good: None,
     };
-    let end = solution.steps.last().cloned();
-    let mut states = solution.samples.iter().chain(&end);
-    let fault = states.find_map(|at| Some((at.t, watch.fault(at, &solution.steps)?)));
-    let Some((t, error)) = fault else {
-        return watch.name_cause(solution);
-    };
-    solution.samples.retain(|s| s.t < t);
-    solution.event_occurrences.retain(|o| o.state.t < t);
-    solution.steps.retain(|s| s.t < t);
-    while let Some(last) = solution.steps.last().cloned()
-        && solution.steps.len() > 1
-        && watch.is_false(&last)
-    {
-        solution.steps.pop();
+    let mut samples = solution.samples.iter();
+    let fault = samples.find_map(|at| Some((at.t, watch.fault(at, &solution.steps)?)));
+    let is_found = fault.is_some();
+    match fault {
+        Some((t, error)) => {
+            solution.samples.retain(|s| s.t < t);
+            solution.steps.retain(|s| s.t < t);
+            solution.error = Some(error);
+        }
+        None => watch.name_cause(solution),
     }
+    if !is_found && !matches!(solution.error, Some(DynamicsError::Position(_))) {
+        return;
+    }
+    // Behind the last good sample, up to the first step that is none.
+    let good = watch.good.map_or(f64::NEG_INFINITY, |(t, _)| t);
+    let begun = solution.steps.partition_point(|step| step.t <= good);
+    let further = solution.steps[begun..].iter();
+    let true_ones = further.take_while(|step| watch.is_true(step)).count();
+    solution.steps.truncate(begun + true_ones);
     // The last sample may be in a step whose end is impossible: the motion ends with it.
     let last_step = solution.steps.last().map_or(f64::NEG_INFINITY, |s| s.t);
-    let end = solution.samples.last().filter(|last| last.t > last_step);
-    solution.steps.extend(end.cloned());
-    solution.error = Some(error);
+    let sample = solution.samples.last().filter(|last| last.t > last_step);
+    solution.steps.extend(sample.cloned());
+    let end = solution.steps.last().map_or(f64::NEG_INFINITY, |s| s.t);
+    solution.event_occurrences.retain(|o| o.state.t <= end);
 }
 
 /// What is known of the states so far.
@@ -57,19 +66,19 @@ impl<M: MovingModel> Watch<'_, M> {
         Ok([kinetic, kinetic + potential - works])
     }
 
-    /// Whether a balance differs from that of the last good state.
-    fn is_broken(&self, balance: f64) -> bool {
+    /// Whether a balance differs from that of the last good state by more than a part of the largest kinetic energy.
+    fn is_broken(&self, balance: f64, part: f64) -> bool {
         // Impacts lose energy that is no work.
         !self.machine.has_contacts()
-            && self.good.is_some_and(|(_, [largest, before])| {
-                (balance - before).abs() > LARGE_ERROR * largest
-            })
+            && self
+                .good
+                .is_some_and(|(_, [largest, before])| (balance - before).abs() > part * largest)
     }
 
-    /// Whether a state cannot be evaluated, or its balance is broken.
-    fn is_false(&mut self, at: &OdeState) -> bool {
+    /// Whether a state can be evaluated, and keeps its balance.
+    fn is_true(&mut self, at: &OdeState) -> bool {
         let found = self.energies(at);
-        found.map_or(true, |[_, balance]| self.is_broken(balance))
+        found.is_ok_and(|[_, balance]| !self.is_broken(balance, KEPT))
     }
 
     /// Why a state cannot be one of the motion, whose steps lead to it.
@@ -81,7 +90,7 @@ impl<M: MovingModel> Watch<'_, M> {
         let (from, largest) = self
             .good
             .map_or((at.t, 0.0), |(t, [largest, _])| (t, largest));
-        if self.is_broken(balance) {
+        if self.is_broken(balance, LARGE_ERROR) {
             let begun = steps.partition_point(|step| step.t < from);
             let between = steps[begun..].iter().take_while(|step| step.t <= at.t);
             if let Some(error) = between.chain([at]).find_map(|step| self.missing_near(step)) {

@@ -14,7 +14,7 @@ use dwell_dynamics::atlas::{
     Atlas, AtlasError, ChartChange, ChartChangeReason, ContinuedMotion, CoordinateHistory,
     MachineDescription,
 };
-use dwell_dynamics::{DynamicsError, Event, Machine, OdeState, Options, Solution, solve};
+use dwell_dynamics::{DynamicsError, Event, Machine, Options, solve};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Coordinate, Reaction};
 use dwell_kinetostatics::Model;
