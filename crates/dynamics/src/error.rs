@@ -8,6 +8,17 @@ use thiserror::Error;
 /// A result that fails with a [`DynamicsError`] unless another error is named.
 pub type Result<T, E = DynamicsError> = std::result::Result<T, E>;
 
+/// Occurrences of events that are kept.
+pub(crate) const MAX_OCCURRENCES: usize = 100_000;
+
+/// The error of a motion in which more events happen than are kept; they are known up to a time, s.
+pub(crate) fn too_many_events(t: f64) -> DynamicsError {
+    DynamicsError::TooManyEvents {
+        t,
+        max_occurrences: MAX_OCCURRENCES,
+    }
+}
+
 impl From<KinetostaticsError> for DynamicsError {
     fn from(error: KinetostaticsError) -> Self {
         match error {

@@ -2,12 +2,11 @@
 
 use crate::contact::{ContactEvent, ContactMode, ContactStep};
 use crate::contact_events::pass;
-use crate::error::{DynamicsError, Result};
+use crate::error::{DynamicsError, MAX_OCCURRENCES, Result, too_many_events};
 use crate::interruption;
 use crate::machine::{Machine, MachineState, MachineWorkspace, MovingModel};
 use crate::ode::{DualWorkspace, OdeState, OdeSystem};
 use crate::sliding::Sliding;
-use crate::solve::{MAX_OCCURRENCES, too_many_events};
 use crate::state_switches::{HeldSource, signal_value};
 use dwell_kinetostatics::Model;
 use dwell_laws::{Features, SwitchKind};

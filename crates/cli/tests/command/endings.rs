@@ -85,7 +85,8 @@ fn singular_positions_end_motions_by_every_method() {
             let balance = column(&dir, "energy.balance_error [");
             let off = balance.iter().fold(0.0, |max: f64, b| max.max(b.abs()));
             assert!(off < 1e-4 * largest, "{place}: {off:e} of {largest}");
-            assert!(steps(&run) < 20_000, "{place}: {}", steps(&run));
+            // TR-BDF2 takes 27 757 to the dead position of the slot; BDF took 2 000 000.
+            assert!(steps(&run) < 50_000, "{place}: {}", steps(&run));
         }
     }
 }
@@ -112,8 +113,8 @@ fn accuracies_and_extrema_know_no_false_row() {
 /// Two coordinates with a loop in space: the same at any number of revolutions, and as before far from them.
 #[test]
 fn a_loop_in_space_turns_on() {
-    let text = include_str!("endings/rssr-pendulum.toml").replace("duration = 1", "duration = 0.5");
-    let (dir, run) = simulate(&text, &[]);
+    let text = include_str!("endings/rssr-pendulum.toml");
+    let (dir, run) = simulate(text, &[]);
     assert_eq!(run.status, Some(0), "{}", run.err);
     let [kinetic, balance] =
         ["energy.kinetic [", "energy.balance_error ["].map(|c| column(&dir, c));
