@@ -29,7 +29,7 @@ LAST = 5
 # a singular position closed to 1e-5; false ones missed by 0.3 and more.
 SAME, BALANCED = 1e-9, 1e-3
 # Steps, as a multiple of the median, and what is never too many.
-MOST, ALLOWED = 20, 5000
+MOST, ALLOWED = 20, 30000
 # Computing, s.
 LONGEST = 60
 
