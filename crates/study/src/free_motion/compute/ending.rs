@@ -24,14 +24,12 @@ pub(crate) fn end_where_impossible<M: MovingModel>(machine: &Machine<M>, solutio
     let mut samples = solution.samples.iter();
     let fault = samples.find_map(|at| Some((at.t, watch.fault(at, &solution.steps)?)));
     let is_found = fault.is_some();
-    match fault {
-        Some((t, error)) => {
-            solution.samples.retain(|s| s.t < t);
-            solution.steps.retain(|s| s.t < t);
-            solution.error = Some(error);
-        }
-        None => watch.name_cause(solution),
+    if let Some((t, error)) = fault {
+        solution.samples.retain(|s| s.t < t);
+        solution.steps.retain(|s| s.t < t);
+        solution.error = Some(error);
     }
+    watch.name_cause(solution);
     if !is_found && !matches!(solution.error, Some(DynamicsError::Position(_))) {
         return;
     }
@@ -121,10 +119,17 @@ impl<M: MovingModel> Watch<'_, M> {
 
     /// A motion that became slow without end next to a position that does not exist ends because of that.
     fn name_cause(&mut self, solution: &mut Solution) {
-        use DynamicsError::{MaxStepsReached, StepTooSmall, TooSlow};
+        use DynamicsError::{MaxStepsReached, NoInertia, NotFinite, StepTooSmall, TooSlow};
         let unnamed = matches!(
             solution.error,
-            Some(MaxStepsReached { .. } | StepTooSmall { .. } | TooSlow { .. })
+            Some(
+                MaxStepsReached { .. }
+                    | StepTooSmall { .. }
+                    | TooSlow { .. }
+                    // The inertia of several coordinates has no rank there.
+                    | NoInertia { .. }
+                    | NotFinite { .. }
+            )
         );
         let last = solution.steps.last().cloned().filter(|_| unnamed);
         if let Some(error) = last.and_then(|last| self.missing_near(&last)) {
