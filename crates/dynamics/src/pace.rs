@@ -52,7 +52,7 @@ impl Pace {
     pub(crate) fn step_taken(&mut self, t: f64) -> Result<()> {
         self.steps += 1;
         let window = self.max_steps / WINDOWS;
-        if window < MIN_WINDOW || self.steps % window != 0 {
+        if window < MIN_WINDOW || !self.steps.is_multiple_of(window) {
             return Ok(());
         }
         let advance = t - std::mem::replace(&mut self.from, t);
