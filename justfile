@@ -38,6 +38,7 @@ test: && fuzz laws
 fuzz pairs="2000" seed="1":
     cargo build --release --workspace --bins
     python3 tests/fuzz/run.py {{ pairs }} {{ seed }}
+    python3 tests/fuzz/motions.py 30 {{ seed }}
 
 # Motions under nested laws (if, step, sign, floor, min, max, clamp, abs, tables, pulses), against an independent program
 [group('main')]
@@ -174,6 +175,7 @@ nightly-tests seed=`date +%s`:
 nightly-fuzz part="0" seed=`date +%j`:
     cargo build --release --workspace --bins
     python3 tests/fuzz/run.py 20000 {{ seed }} --first $(({{ part }} * 20000))
+    python3 tests/fuzz/motions.py 300 {{ seed }} --first $(({{ part }} * 300))
 
 # Of `nightly`: 20 000 motions under nested laws, of the day's seed or another
 [group('care')]

@@ -261,7 +261,11 @@ impl<'s> Atlas<'s> {
             if let Some(last) = solution.steps.last() {
                 at.clone_from(last);
             }
-            if let Some(DynamicsError::MaxStepsReached { max_steps, .. }) = &mut solution.error {
+            if let Some(
+                DynamicsError::MaxStepsReached { max_steps, .. }
+                | DynamicsError::TooSlow { max_steps, .. },
+            ) = &mut solution.error
+            {
                 // Those of the whole motion.
                 *max_steps = requested.max_steps;
             }

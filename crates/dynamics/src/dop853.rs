@@ -17,6 +17,7 @@ use crate::error::{DynamicsError, Result};
 use crate::integration_parts::Part;
 use crate::ode::{OdeState, OdeSystem, StepControl, StepObserver, Termination};
 use crate::options::Statistics;
+use crate::pace::Pace;
 use crate::time_pieces::TimePieces;
 use coefficients::{ERRORS, NODES, Row, STAGES, WEIGHTS};
 use interpolation::Interpolant;
@@ -112,8 +113,10 @@ impl Stepper<'_> {
             Some(step) => step.min(first),
             None => self.initial_step(first),
         };
+        let mut pace = Pace::new(part);
         for _ in 0..options.max_steps {
             h = self.step(h.min(longest(self.from.t)?), end)?;
+            pace.step_taken(self.to.t)?;
             let (stages, from, to) = (&mut self.stages, &self.from, &self.to);
             let (interpolant, stiffness) = (&mut self.interpolant, self.stiffness);
             let mut ready = false;

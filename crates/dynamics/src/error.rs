@@ -8,6 +8,17 @@ use thiserror::Error;
 /// A result that fails with a [`DynamicsError`] unless another error is named.
 pub type Result<T, E = DynamicsError> = std::result::Result<T, E>;
 
+/// Occurrences of events that are kept.
+pub(crate) const MAX_OCCURRENCES: usize = 100_000;
+
+/// The error of a motion in which more events happen than are kept; they are known up to a time, s.
+pub(crate) fn too_many_events(t: f64) -> DynamicsError {
+    DynamicsError::TooManyEvents {
+        t,
+        max_occurrences: MAX_OCCURRENCES,
+    }
+}
+
 impl From<KinetostaticsError> for DynamicsError {
     fn from(error: KinetostaticsError) -> Self {
         match error {
@@ -86,6 +97,20 @@ pub enum DynamicsError {
     MaxStepsReached {
         /// The time reached, s.
         t: f64,
+        /// The number of steps allowed.
+        max_steps: usize,
+    },
+    /// The number of steps allowed is far too small for the pace of the last ones.
+    #[error(
+        "after {steps} steps the motion is at t = {t} s: at this pace its end would take {needed:.0e} more, and {max_steps} are allowed"
+    )]
+    TooSlow {
+        /// The time reached, s.
+        t: f64,
+        /// The steps taken.
+        steps: usize,
+        /// How many more its end would take.
+        needed: f64,
         /// The number of steps allowed.
         max_steps: usize,
     },

@@ -244,7 +244,7 @@ fn integrate_smooth(
 ) -> Result<Termination> {
     let options = &whole.options;
     let weights = (0..system.size()).map(|i| options.atol * system.error_weight(i));
-    let mut impasse = Impasse::new(whole.start.t, options.rtol, weights.collect());
+    let mut impasse = Impasse::new(&whole, weights.collect());
     let mut progress = Progress::new(&whole, system.own_function());
     let mut parts = Parts::new(whole);
     let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
@@ -339,6 +339,7 @@ fn integrate_part(
         failure: &failure,
         pieces,
         impasse,
+        balance: &|at: &OdeState| system.borrow_mut().balance(at),
         fault: &|at: &OdeState| {
             let mut rates = vec![0.0; n];
             evaluations.set(evaluations.get() + 1);

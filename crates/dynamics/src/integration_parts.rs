@@ -67,7 +67,11 @@ impl Parts {
             statistics: before.plus(part.statistics),
             ..part
         });
-        if let Some(DynamicsError::MaxStepsReached { max_steps, .. }) = &mut last.error {
+        if let Some(
+            DynamicsError::MaxStepsReached { max_steps, .. }
+            | DynamicsError::TooSlow { max_steps, .. },
+        ) = &mut last.error
+        {
             // Those of the whole motion.
             *max_steps = self.max_steps;
         }

@@ -66,6 +66,7 @@ pub mod motion_class;
 pub mod ode;
 pub mod options;
 pub mod orbit;
+mod pace;
 pub mod reduced_ode;
 mod repetition;
 mod rotation;

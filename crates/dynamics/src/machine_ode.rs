@@ -2,7 +2,7 @@
 
 use crate::contact::{ContactEvent, ContactMode, ContactStep};
 use crate::contact_events::pass;
-use crate::error::{DynamicsError, Result};
+use crate::error::{DynamicsError, MAX_OCCURRENCES, Result, too_many_events};
 use crate::interruption;
 use crate::machine::{Machine, MachineState, MachineWorkspace, MovingModel};
 use crate::modes::SharedModes;
@@ -51,7 +51,26 @@ impl<'m, M: MovingModel> MachineOde<'m, M> {
         for weight in &mut ode.error_weights[machine.work_offset()..] {
             *weight = with_later_works(*weight, work);
         }
+        let span = end.unwrap_or(t) - t;
+        if SLOW * span > 1.0 {
+            ode.scale_speeds((t, y), span)?;
+        }
         Ok(ode)
+    }
+
+    /// The speeds of a motion that is slow are accurate by its own measure: one unit of its coordinates over its span, s. It is slow by
+    /// its speeds, and by what its accelerations become over the span.
+    fn scale_speeds(&mut self, (t, y): (f64, &[f64]), span: f64) -> Result<()> {
+        let machine = self.machine;
+        let state = machine.evaluate(t, y, &mut self.workspace)?;
+        let free = || machine.free().iter();
+        let largest = |of: &[f64]| free().map(|&i| of[i].abs()).fold(0.0, f64::max);
+        let accelerated = largest(state.q_ddot()) * span;
+        if largest(state.q_dot()).max(accelerated) < SLOW {
+            let n = free().count();
+            self.error_weights[n..2 * n].fill(1.0 / span);
+        }
+        Ok(())
     }
 
     /// A machine whose works have no scale, where none is integrated.
@@ -85,6 +104,8 @@ impl<'m, M: MovingModel> MachineOde<'m, M> {
     }
 }
 
+/// Below this speed, rad/s or m/s, a motion is not one of seconds.
+const SLOW: f64 = 1e-3;
 /// The part of the largest work below which a work does not count.
 const SMALL_WORK: f64 = 1e-6;
 
@@ -278,7 +299,21 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
     fn pass_contacts(&mut self, t: f64, y: &mut [f64], step: &ContactStep<'_>) -> Result<()> {
         let changes = pass(self.machine, &mut self.workspace, (t, y), step)?;
         self.contact_events.extend(changes);
+        if self.contact_events.len() > MAX_OCCURRENCES {
+            return Err(too_many_events(t));
+        }
         Ok(())
+    }
+
+    fn balance(&mut self, at: &OdeState) -> Option<[f64; 2]> {
+        if self.machine.has_contacts() {
+            // Impacts lose energy that is no work.
+            return None;
+        }
+        let energy = self.machine.energy(at.t, &at.y, &mut self.workspace);
+        let [kinetic, potential] = energy.ok()?;
+        let works: f64 = at.y[self.machine.work_offset()..].iter().sum();
+        Some([kinetic, kinetic + potential - works])
     }
 
     fn error_weight(&self, state: usize) -> f64 {

@@ -170,6 +170,11 @@ pub trait OdeSystem {
         Ok(())
     }
 
+    /// The kinetic energy, and the energies less the works, J, where they are known and nothing but works changes them.
+    fn balance(&mut self, _at: &OdeState) -> Option<[f64; 2]> {
+        None
+    }
+
     /// The factor of a state in the absolute tolerance.
     fn error_weight(&self, _state: usize) -> f64 {
         1.0

@@ -257,6 +257,10 @@ impl OdeSystem for SlidingSystem<'_, '_> {
         self.shared.inner_for_event().pass_contacts(t, y, step)
     }
 
+    fn balance(&mut self, at: &OdeState) -> Option<[f64; 2]> {
+        self.shared.inner().balance(at)
+    }
+
     fn error_weight(&self, state: usize) -> f64 {
         self.shared.inner().error_weight(state)
     }

@@ -12,7 +12,7 @@ mod orbit_solution;
 mod tracker;
 
 use crate::contact::ContactEvent;
-use crate::error::{DynamicsError, Result};
+use crate::error::{DynamicsError, MAX_OCCURRENCES, Result, too_many_events};
 use crate::integrate::integrate;
 use crate::machine::{Machine, MovingModel};
 use crate::machine_ode::MachineOde;
@@ -21,7 +21,7 @@ use crate::ode::{DenseOutput, OdeState, OdeSystem, Step, StepControl};
 use crate::options::{Options, Statistics};
 use dwell_geometry::body_states::CoordinateFunction;
 pub use event::{Event, EventKind, EventOccurrence};
-use event::{FoundEvent, MAX_OCCURRENCES, TouchTolerance, too_many_events};
+use event::{FoundEvent, TouchTolerance};
 pub use observed::{Observed, ObservedMachine, ObservedValue};
 pub use orbit_solution::solve_orbit;
 use tracker::EventTracker;

@@ -57,6 +57,7 @@ mod positions;
 mod prediction;
 mod rank;
 mod rod;
+mod stations;
 mod tree;
 mod vector;
 mod wrench;

@@ -4,7 +4,9 @@
 //! become shorter than the rounding of time or of the state, go nowhere and never end: 2 000 000 steps of ESDIRK34 for a screw jack that
 //! comes to the end of its range, where now it takes 67.
 
+use crate::integration_parts::Part;
 use crate::ode::OdeState;
+use crate::pace::Pace;
 
 /// A change of the state below this part of its tolerance is none, and so is a step below this part of the time that has passed: next to a
 /// large coordinate that moves slowly, much time passes in steps below the rounding of the coordinate.
@@ -12,6 +14,13 @@ const IMMATERIAL: f64 = 1e-3;
 /// So many steps in a row that changed nothing where longer ones failed are the end. Each is at most three tenths of one that failed: together
 /// they would lead 1e10 times as near to a place that is not the end.
 const MAX_FAILED: usize = 20;
+/// After so many steps that failed, not in a row, their pace is looked at.
+const FAILED_AT_A_PACE: usize = 20;
+/// Steps that fail belong together where no more lie between them.
+const RECENT: usize = 1000;
+/// A balance that changes by so large a part of the kinetic energy while steps fail is broken: next to singular positions it was seen to
+/// change by 0.3 to 10 times that, otherwise by the tolerance.
+const BROKEN: f64 = 0.01;
 
 /// Counts the steps that fail, or change nothing because longer ones do.
 pub(super) struct Impasse {
@@ -20,18 +29,28 @@ pub(super) struct Impasse {
     /// By state.
     pub(super) absolute: Vec<f64>,
     failed: usize,
+    pub(super) pace: Pace,
+    /// Of the steps that failed since they were looked at last: how many, and how many steps and which time, s, there were then.
+    slow: (usize, usize, f64),
+    is_slow: bool,
+    /// The kinetic energy and the balance, J, before the first of the steps that fail, and after how many steps one has failed last.
+    before: Option<([f64; 2], usize)>,
     /// The length of a step that could not be evaluated and was not shortened, s; none where it is below the rounding of time.
     pub(super) failed_step: Option<f64>,
 }
 
 impl Impasse {
-    /// Of an integration from a time, s, to a relative tolerance and an absolute one by state.
-    pub(super) fn new(start: f64, relative: f64, absolute: Vec<f64>) -> Self {
+    /// Of an integration, to an absolute tolerance by state.
+    pub(super) fn new(of: &Part, absolute: Vec<f64>) -> Self {
         Self {
-            start,
-            relative,
+            start: of.start.t,
+            relative: of.options.rtol,
             absolute,
             failed: 0,
+            pace: Pace::new(of),
+            slow: (0, 0, of.start.t),
+            is_slow: false,
+            before: None,
             failed_step: None,
         }
     }
@@ -47,6 +66,14 @@ impl Impasse {
     pub(super) fn step_shortened(&mut self, ends: [&OdeState; 2]) {
         self.failed += 1;
         self.step_taken(ends);
+        self.slow.0 += 1;
+        if self.slow.0 == FAILED_AT_A_PACE {
+            let (t, steps) = (ends[1].t, self.pace.steps());
+            let (_, before, from) = std::mem::replace(&mut self.slow, (0, steps, t));
+            self.is_slow = self
+                .pace
+                .is_too_slow((t, 1.0), steps + 1 - before, t - from);
+        }
     }
 
     /// After a step of a length, s, that could not be taken, because an evaluation failed or for another reason.
@@ -55,9 +82,26 @@ impl Impasse {
         self.failed_step = Some(length).filter(|length| is_evaluation && *length > 0.0);
     }
 
+    /// After a step before which longer ones have failed: whether the energies less the works have changed. Next to a singular position
+    /// steps lead on that are none of the motion: rounding decides their speeds.
+    pub(super) fn breaks_balance(
+        &mut self,
+        [from, to]: [&OdeState; 2],
+        balance: &dyn Fn(&OdeState) -> Option<[f64; 2]>,
+    ) -> bool {
+        let steps = self.pace.steps();
+        let before = match self.before {
+            Some((before, last)) if steps - last < RECENT => Some(before),
+            _ => balance(from),
+        };
+        self.before = before.map(|before| (before, steps));
+        let both = before.zip(balance(to));
+        both.is_some_and(|([kinetic, before], [_, now])| (now - before).abs() > BROKEN * kinetic)
+    }
+
     /// Whether nothing leads on.
     pub(super) fn is_reached(&self) -> bool {
-        self.failed >= MAX_FAILED
+        self.failed >= MAX_FAILED || self.is_slow
     }
 
     fn is_material(&self, [from, to]: [&OdeState; 2]) -> bool {

@@ -37,6 +37,8 @@ pub(super) struct StepLoop<'g, 'f> {
     pub(super) failure: &'g RefCell<Option<DynamicsError>>,
     pub(super) pieces: Option<&'g mut TimePieces<'f>>,
     pub(super) impasse: &'g mut Impasse,
+    /// As [`OdeSystem::balance`](crate::OdeSystem::balance).
+    pub(super) balance: &'g dyn Fn(&OdeState) -> Option<[f64; 2]>,
     /// Why a state cannot be evaluated, if it cannot.
     pub(super) fault: &'g dyn Fn(&OdeState) -> Option<DynamicsError>,
 }
@@ -109,12 +111,15 @@ impl StepLoop<'_, '_> {
                     return Err(fault);
                 }
                 self.impasse.step_shortened([at, &now]);
-                if self.impasse.is_reached() {
+                let ends = [&*at, &now];
+                let is_false = self.impasse.breaks_balance(ends, self.balance);
+                if is_false || self.impasse.is_reached() {
                     return Err(error);
                 }
             } else {
                 self.impasse.step_taken([at, &now]);
             }
+            self.impasse.pace.step_taken(now.t)?;
             // It cannot step to an end that is within its rounding of time: it is there.
             let rounding = INTEGRATOR_ROUNDING * (now.t.abs() + state.h.abs());
             let reached = state.t;

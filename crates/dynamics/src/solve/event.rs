@@ -6,7 +6,7 @@
 //! method computes its return.
 
 use super::observed::{Observed, ObservedValue};
-use crate::error::{DynamicsError, Result};
+use crate::error::Result;
 use crate::ode::OdeState;
 use crate::options::Options;
 use dwell_geometry::body_states::CoordinateFunction;
@@ -46,17 +46,6 @@ pub struct EventOccurrence {
     pub state: OdeState,
     /// Whether the function increases through the value.
     pub rising: bool,
-}
-
-/// Occurrences that are kept.
-pub(super) const MAX_OCCURRENCES: usize = 100_000;
-
-/// The error of a motion in which more events happen than are kept; they are known up to a time, s.
-pub(super) fn too_many_events(t: f64) -> DynamicsError {
-    DynamicsError::TooManyEvents {
-        t,
-        max_occurrences: MAX_OCCURRENCES,
-    }
 }
 
 /// An occurrence found in a step, and whether it is the one that ends the motion.

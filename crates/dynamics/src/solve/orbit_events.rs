@@ -5,14 +5,12 @@
 //! less kD. It happens once, and is looked for only in the periods in which the coordinate can be there. A revolution
 //! is completed in every period, since D is a multiple of 2π.
 
-use super::event::{
-    Event, EventKind, EventOccurrence, FoundEvent, MAX_OCCURRENCES, TouchTolerance, too_many_events,
-};
+use super::event::{Event, EventKind, EventOccurrence, FoundEvent, TouchTolerance};
 use super::observed::Observed;
 use super::orbit_solution::point;
 use super::stop_at_terminal;
 use super::tracker::EventTracker;
-use crate::error::{DynamicsError, Result};
+use crate::error::{DynamicsError, MAX_OCCURRENCES, Result, too_many_events};
 use crate::ode::{OdeState, Step};
 use crate::options::Options;
 use crate::orbit::Orbit;

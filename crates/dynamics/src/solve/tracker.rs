@@ -5,12 +5,10 @@
 //! value and return, and only then its minimum is looked for. A passage counts when the function has gone beyond the
 //! value by more than a touch; its time is that of the zero.
 
-use super::event::{
-    Event, EventKind, EventOccurrence, FoundEvent, MAX_OCCURRENCES, TouchTolerance, too_many_events,
-};
+use super::event::{Event, EventKind, EventOccurrence, FoundEvent, TouchTolerance};
 use super::excursion::may_dip;
 use super::observed::{Observed, ObservedValue};
-use crate::error::{DynamicsError, Result};
+use crate::error::{DynamicsError, MAX_OCCURRENCES, Result, too_many_events};
 use crate::ode::{OdeState, Step};
 use dwell_numerics::{minimum, root};
 use std::f64::consts::{FRAC_PI_4, TAU};

@@ -50,6 +50,7 @@ impl Plan {
             drivers,
             start: Node::default(),
             predictions: Predictions::default(),
+            revolutions: Vec::new(),
             range: Range::Unbounded,
             repetition: None,
             range_ends: [false; 2],

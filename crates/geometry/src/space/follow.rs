@@ -38,7 +38,7 @@ const SMALLEST: f64 = 1e-9;
 /// Revolutions after which a pose that has not come back is taken not to, and sizes after which a stroke has no end.
 const MAX_REVOLUTIONS: u32 = 8;
 /// Two poses are the same: rad, or parts of the size.
-const SAME: f64 = 1e-7;
+pub(super) const SAME: f64 = 1e-7;
 /// Where a range ends with redundant rows open by this part of what is allowed, they end it: at limit positions they are closed to rounding.
 const DRIFTED: f64 = 0.5;
 /// Axes that differ by less are meant to be parallel, rad.
@@ -129,6 +129,8 @@ impl Plan {
         self.start = first.clone();
         let (true, Some(kind)) = (self.actuators() == 1, kind) else {
             self.range = Range::Unbounded;
+            let all = 0..self.actuators();
+            self.revolutions = all.map(|i| self.revolution(i, &pose)).collect();
             return Ok(());
         };
         let is_angle = matches!(kind, ActuatorKind::Angle(_));
@@ -235,7 +237,7 @@ impl Plan {
 
     /// How far bodies are from where they were, rad or parts of the size; how a body that turns idly stands about its line
     /// does not count.
-    fn moved_by(&self, before: &[Frame<f64>], after: &[Frame<f64>]) -> f64 {
+    pub(super) fn moved_by(&self, before: &[Frame<f64>], after: &[Frame<f64>]) -> f64 {
         let moved = |body: usize| {
             let (a, b) = (&before[body], &after[body]);
             let idle = self.mobility.idle.iter().find(|idle| idle.body.0 == body);
@@ -324,44 +326,6 @@ impl Plan {
             .zip(&pose.balls)
             .map(|(a, b)| a.inverse().after(b).vector().norm());
         scalar.chain(turned).fold(0.0, f64::max)
-    }
-
-    /// The pose of several coordinates: along the straight line from those of the assembly.
-    pub(super) fn continue_to<T: Scalar>(
-        &self,
-        q: &[T],
-        pose: &mut Pose<T>,
-    ) -> Result<(), PositionError> {
-        let from = &self.assembly_q;
-        let mut real = self.pose::<f64>();
-        self.start_from(&self.start, 0.0, &mut real);
-        if self.groups.is_empty() {
-            // Nothing has to be followed.
-            self.start_from(&self.start, 0.0, pose);
-            return self.close(q, None, pose);
-        }
-        let span = q
-            .iter()
-            .zip(from)
-            .map(|(q, a)| (q.value() - a).abs())
-            .fold(0.0, f64::max);
-        let count = (span / 0.05).ceil().clamp(1.0, 1e4);
-        for k in 1..=count as usize {
-            let part = k as f64 / count;
-            let at: Vec<f64> = q
-                .iter()
-                .zip(from)
-                .map(|(q, a)| a + part * (q.value() - a))
-                .collect();
-            self.close(&at, None, &mut real)?;
-        }
-        for (to, from) in pose.coordinates.iter_mut().zip(&real.coordinates) {
-            *to = T::from_f64(*from);
-        }
-        for (to, from) in pose.balls.iter_mut().zip(&real.balls) {
-            *to = from.cast();
-        }
-        self.close(q, None, pose)
     }
 }
 

@@ -10,6 +10,7 @@ use super::lower::Lowered;
 use super::mechanism::{Assembly, Mechanism, Placement};
 use super::prediction::Predictions;
 use super::rank::Mobility;
+use super::stations::{Revolution, Stations};
 use super::tree::{Driver, FreedomKind, Tree};
 use super::vector::{Rotation, Vec3};
 use super::wrench::Wrench;
@@ -71,6 +72,8 @@ pub struct Plan {
     pub(super) closure_angles: Vec<StoredAngles>,
     /// By freedom: what it gains in a period of the only coordinate.
     pub(super) freedom_gains: Vec<f64>,
+    /// By each of several coordinates.
+    pub(super) revolutions: Vec<Option<Revolution>>,
     /// The freedoms that keep count of all periods: those that teeth turn, and those that gain where the pose does not repeat.
     pub(super) geared: Vec<usize>,
     /// In the range of the only coordinate.
@@ -97,6 +100,7 @@ pub struct Pose<T = f64> {
     pub(super) motion: PoseMotion<T>,
     /// By body: what the accelerations of the freedoms add to those of its origin and of its rotation.
     pub(super) added: Vec<[Vec3<T>; 2]>,
+    pub(super) stations: Stations,
 }
 
 /// The velocities and accelerations of a pose, for one thread.
@@ -267,6 +271,7 @@ impl Plan {
             scratch: vec![zero; self.groups.iter().map(|g| g.rows.len()).max().unwrap_or(0)],
             motion: self.pose_motion(),
             added: vec![[Vec3::zero(); 2]; self.tree.internal.len()],
+            stations: Stations::default(),
         };
         // The wrenches of points do not change.
         for closure in &self.closures {

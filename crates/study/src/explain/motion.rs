@@ -69,16 +69,16 @@ pub(crate) struct StepLimits {
     pub(crate) tolerance: &'static str,
 }
 
-/// Explains a motion that takes too many steps: it is the longest step allowed that makes them many where they are on
+/// Explains a motion that takes too many steps (`what` says how many): it is the longest step allowed that makes them many where they are on
 /// average at least half as long, else the tolerance.
 pub(crate) fn explain_max_steps(
     scene: &SceneFile,
     t: f64,
-    max_steps: usize,
+    (steps, what): (usize, &str),
     limits: &StepLimits,
 ) -> StudyError {
     let reached = digits(t, 2);
-    let mean = t / max_steps as f64;
+    let mean = t / steps as f64;
     let tolerance = limits.tolerance;
     let (cause, help) = match limits.max_step {
         Some(max_step) if mean >= 0.5 * max_step => (
@@ -94,7 +94,7 @@ pub(crate) fn explain_max_steps(
             format!("end the motion earlier, or use a larger {tolerance}"),
         ),
     };
-    let message = format!("the maximum of {max_steps} steps is reached at t = {reached} s{cause}");
+    let message = format!("{what} at t = {reached} s{cause}");
     scene_error(
         scene,
         message,

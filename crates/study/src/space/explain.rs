@@ -190,6 +190,14 @@ pub(super) fn explain_position(
     error: &PositionError,
 ) -> StudyError {
     const RANGE_ENDS: &str = "this is outside the range; `dwell check` shows the range";
+    if scene.mechanism.actuators.len() > 1
+        && let Some(joints) = error
+            .group()
+            .and_then(|g| plan.described_groups().into_iter().nth(g))
+            .map(|group| group.joints)
+    {
+        return explain_several(scene, &joints, error);
+    }
     let is_angle = super::prepared::is_angle(scene);
     let name = scene.mechanism.actuators.first().map_or("", |a| &a.name);
     let q = error.coordinate().map_or(String::new(), number);
@@ -232,6 +240,36 @@ pub(super) fn explain_position(
     };
     let place = SceneLocation::Actuator(ActuatorId(0));
     scene_error(scene, message, help, [(place, "its coordinate")])
+}
+
+/// The same of several coordinates, where some joints close loops that have no position.
+fn explain_several(scene: &SpaceScene, joints: &[JointId], error: &PositionError) -> StudyError {
+    let ground = scene.mechanism.ground;
+    let mut bodies: Vec<BodyId> = Vec::new();
+    for body in joints
+        .iter()
+        .flat_map(|j| scene.mechanism.joints[j.0].bodies)
+    {
+        if body.0 != ground && !bodies.contains(&body) {
+            bodies.push(body);
+        }
+    }
+    let names = names_of(scene, &bodies);
+    let message = match error {
+        PositionError::Singular { .. } => format!(
+            "{names} are in a singular position there: the coordinates do not determine their motion"
+        ),
+        _ => {
+            format!("there is no position of {names}: the loops of their joints do not close there")
+        }
+    };
+    let help = "the coordinates lead no farther in this assembly mode: end the motion earlier, or drive other joints";
+    scene_error(
+        scene,
+        message,
+        help,
+        joint_labels(joints, "in a loop that does not close"),
+    )
 }
 
 /// The same model under the loads of the scene, the drives' last.

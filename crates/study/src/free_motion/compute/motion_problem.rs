@@ -2,7 +2,7 @@
 
 use crate::explain::{NamedScene as _, StudyError, missing_section_label, scene_error};
 use crate::machines::{CoordinateOf, MachineScene};
-use crate::number_format::coordinate_unit;
+use crate::number_format::{coordinate_unit, digits};
 use dwell_dynamics::{DynamicsError, Event, EventKind, Machine, OdeState, Orbit, ReducedState};
 use dwell_kinetostatics::MachineModel as _;
 use dwell_scene::{
@@ -44,6 +44,33 @@ pub trait MotionProblem {
     fn named_coordinate(&self, actuator: usize) -> (&str, &'static str) {
         let name = self.scene().actuator(actuator).map_or("", |(name, _)| name);
         (name, coordinate_unit(self.is_angle(actuator)))
+    }
+
+    /// The explained error of a position at which a motion of several coordinates ends, with the instant and all of them.
+    fn with_instant(
+        &self,
+        error: &DynamicsError,
+        explained: StudyError,
+        last: Option<&OdeState>,
+    ) -> StudyError {
+        let free = self.machine().free();
+        match (explained, error, last) {
+            (StudyError::Scene(mut scene), DynamicsError::Position(_), Some(last))
+                if free.len() > 1 && last.t > 0.0 =>
+            {
+                let values = free.iter().zip(&last.y).map(|(&i, &q)| {
+                    let (name, unit) = self.named_coordinate(i);
+                    format!("`{name}` = {} {unit}", digits(q, 6))
+                });
+                let (t, at) = (digits(last.t, 6), values.collect::<Vec<_>>().join(", "));
+                scene.message = format!(
+                    "the motion cannot go on after t = {t} s, at {at}: {}",
+                    scene.message
+                );
+                StudyError::Scene(scene)
+            }
+            (explained, ..) => explained,
+        }
     }
 
     /// The initial state of its machine.

@@ -4,7 +4,9 @@ use crate::branch_note::branch_note;
 use crate::explain::{
     StudyError, explain_machine, explain_model, explain_motion, explain_position_in,
 };
-use crate::free_motion::compute::{MotionProblem, SegmentedMotion, compiled_event, first_changes};
+use crate::free_motion::compute::{
+    MotionProblem, SegmentedMotion, compiled_event, end_where_impossible, first_changes,
+};
 use crate::models::{build_machine, loaded_model};
 use crate::number_format::digits;
 use crate::trajectory::compute::check_variables;
@@ -12,7 +14,7 @@ use dwell_dynamics::atlas::{
     Atlas, AtlasError, ChartChange, ChartChangeReason, ContinuedMotion, CoordinateHistory,
     MachineDescription,
 };
-use dwell_dynamics::{DynamicsError, Event, Machine, OdeState, Options, Solution, solve};
+use dwell_dynamics::{DynamicsError, Event, Machine, Options, solve};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Coordinate, Reaction};
 use dwell_kinetostatics::Model;
@@ -76,32 +78,11 @@ impl<'a> FreeMotionProblem<'a> {
                 let (scene, plan) = (self.loaded_scene, chart.machine.model().plan());
                 explain_position_in(&chart.name, scene, plan, position)
             }
-            _ => self.explain(error),
+            _ => {
+                let last = motion.segments.last().and_then(|(_, s)| s.steps.last());
+                self.with_instant(error, self.explain(error), last)
+            }
         }
-    }
-
-    /// Ends a motion before its first sample that the mechanism cannot take, be it by rounding: an implicit method may
-    /// stay at the end of the range of several coordinates.
-    fn end_where_impossible(&self, solution: &mut Solution) {
-        let mut workspace = self.machine.workspace();
-        let mut failure = |at: &OdeState| {
-            let evaluated = self.machine.evaluate(at.t, &at.y, &mut workspace);
-            evaluated.err().map(|e| (at.t, e))
-        };
-        let Some((t, error)) = solution.samples.iter().find_map(&mut failure) else {
-            return;
-        };
-        solution.samples.retain(|s| s.t < t);
-        solution.event_occurrences.retain(|o| o.state.t < t);
-        solution.steps.retain(|s| s.t < t);
-        while let Some((t, _)) = solution.steps.last().and_then(&mut failure) {
-            solution.steps.retain(|s| s.t < t);
-        }
-        // The last sample may be in a step whose end is impossible: the motion ends with it.
-        let last_step = solution.steps.last().map_or(f64::NEG_INFINITY, |s| s.t);
-        let end = solution.samples.last().filter(|last| last.t > last_step);
-        solution.steps.extend(end.cloned());
-        solution.error = Some(error);
     }
 
     /// Integrates the motion: with one degree of freedom across charts, else in its own coordinates.
@@ -114,7 +95,7 @@ impl<'a> FreeMotionProblem<'a> {
             let (machine, output) = (&self.machine, &self.output_model);
             let solution = solve(machine, output, &start, duration, options, &events);
             let mut solution = solution.map_err(|e| self.explain(&e))?;
-            self.end_where_impossible(&mut solution);
+            end_where_impossible(&self.machine, &mut solution);
             return Ok(SegmentedMotion::single_segment(solution));
         }
         let configuration = scene.assembly.to_configuration();

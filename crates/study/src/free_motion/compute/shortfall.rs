@@ -27,7 +27,19 @@ pub(crate) fn too_many_steps(
     };
     match error {
         Some(&DynamicsError::MaxStepsReached { t, max_steps }) => {
-            Some(explain_max_steps(scene, t, max_steps, &limits))
+            let what = format!("the maximum of {max_steps} steps is reached");
+            Some(explain_max_steps(scene, t, (max_steps, &what), &limits))
+        }
+        Some(&DynamicsError::TooSlow {
+            t,
+            steps,
+            needed,
+            max_steps,
+        }) => {
+            let what = format!(
+                "{max_steps} steps are not enough: after {steps}, about {needed:.0e} are left"
+            );
+            Some(explain_max_steps(scene, t, (steps, &what), &limits))
         }
         _ => None,
     }

@@ -106,7 +106,9 @@ impl Motion {
     /// The same in the names of the scene.
     pub(super) fn explained_error(&self, own: &SpaceMotionProblem<'_>) -> Option<StudyError> {
         let (problem, solution) = self.parts(own).next_back()?;
-        Some(problem.explain(solution.error.as_ref()?))
+        let error = solution.error.as_ref()?;
+        let explained = problem.explain(error);
+        Some(problem.with_instant(error, explained, solution.steps.last()))
     }
 
     /// When it ends, s.

@@ -6,8 +6,8 @@ use super::problem::SpaceMotionProblem;
 use crate::estimate;
 use crate::explain::StudyError;
 use crate::free_motion::compute::{
-    Compared, Difference, MotionProblem as _, MotionSolver, TriedMotion, error_of, find_motion,
-    pair_by_time, reactions_at,
+    Compared, Difference, MotionProblem as _, MotionSolver, TriedMotion, end_where_impossible,
+    error_of, find_motion, pair_by_time, reactions_at,
 };
 use crate::ranges::extent;
 use crate::space::prepared::reaction_unit;
@@ -119,7 +119,10 @@ impl SpaceMotionProblem<'_> {
                 Ok(found) => found,
             };
             options.max_steps = options.max_steps.saturating_sub(solution.statistics.steps);
-            if let Some(DynamicsError::MaxStepsReached { max_steps: of, .. }) = &mut solution.error
+            if let Some(
+                DynamicsError::MaxStepsReached { max_steps: of, .. }
+                | DynamicsError::TooSlow { max_steps: of, .. },
+            ) = &mut solution.error
             {
                 // Those of the whole motion.
                 *of = max_steps;
@@ -174,6 +177,9 @@ impl SpaceMotionProblem<'_> {
             true => solve(machine, model, at, end, options, &events)?,
             false => solve_further(machine, model, at, end, options, &events)?,
         };
+        if self.spec.laws.len() > 1 {
+            end_where_impossible(machine, &mut solution);
+        }
         let reached = self.barrier_of(&mut solution, barriers);
         Ok((solution, reached))
     }
