@@ -28,6 +28,7 @@ mod checked;
 mod error;
 pub mod export_study;
 pub mod extremes;
+pub mod lifted;
 pub mod manual;
 mod overview;
 mod report_parts;

@@ -6,6 +6,7 @@ mod check;
 mod closed_forms;
 mod drawn;
 mod draws;
+pub mod forms;
 mod free_motion;
 mod in_scenes;
 mod jamming;
@@ -30,6 +31,7 @@ pub use series::{
 };
 
 use dwell_study::Outcome;
+use forms::Form;
 use dwell_study::StudyError;
 use rayon::prelude::*;
 
@@ -40,11 +42,9 @@ use rayon::prelude::*;
 /// [`StudyError`] where a picture cannot be drawn.
 pub fn study(slow: bool, seed: u64) -> Result<Outcome, StudyError> {
     let name = if slow { "extremes-long" } else { "extremes" };
-    let mut outcome = outcome(
-        &evaluate(all_series(slow)),
-        large_groups::dense_findings(),
-        name,
-    )?;
+    let results = evaluate(all_series(slow));
+    let mut outcome = outcome(&results, large_groups::dense_findings(), name)?;
+    forms::add_to(&mut outcome, &results, name);
     let pulses = pulses::evaluate(pulses::count(slow), seed);
     pulses::add_to(&mut outcome, &pulses, seed, name)?;
     let machines = machines::evaluate(machines::count(slow), seed);
@@ -54,14 +54,19 @@ pub fn study(slow: bool, seed: u64) -> Result<Outcome, StudyError> {
 
 /// The rows of the grid; with `slow` those that take minutes too.
 pub fn all_series(slow: bool) -> Vec<ParameterSeries> {
-    let mut series = limit_positions::series();
-    series.extend(scale::series());
-    series.extend(free_motion::series(slow));
-    series.extend(stiff::series());
+    all_in(Form::PLANE, slow)
+}
+
+/// The rows of the grid in a form.
+fn all_in(form: Form, slow: bool) -> Vec<ParameterSeries> {
+    let mut series = limit_positions::series(form);
+    series.extend(scale::series(form));
+    series.extend(free_motion::series(form, slow));
+    series.extend(stiff::series(form));
     series.extend(singular::series());
-    series.extend(paper_mechanism::series());
-    series.extend(ratios::series());
-    series.extend(large_groups::series());
+    series.extend(paper_mechanism::series(form));
+    series.extend(ratios::series(form));
+    series.extend(large_groups::series(form));
     series.extend(jamming::series());
     series
 }
