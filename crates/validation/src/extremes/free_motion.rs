@@ -129,7 +129,7 @@ fn base_series(
 }
 
 fn speeds(form: Form) -> ParameterSeries {
-    let options = Options::new(Method::Bdf, 1e-10);
+    let options = Options::new(Method::Bdf, form.tolerance(1e-10));
     ParameterSeries {
         figure: FIGURE,
         key: "speed".into(),
@@ -143,6 +143,8 @@ fn speeds(form: Form) -> ParameterSeries {
 
 fn tolerances(form: Form, method: Method) -> ParameterSeries {
     let name = method.name();
+    let mut values = decades(-2, -14);
+    values.retain(|&tolerance| tolerance == form.tolerance(tolerance));
     ParameterSeries {
         figure: TOLERANCES_FIGURE,
         key: format!("tolerance-{}", name.to_lowercase()),
@@ -150,14 +152,14 @@ fn tolerances(form: Form, method: Method) -> ParameterSeries {
         parameter: ("tolerance", ""),
         reason: "a revolution takes 8 tol^(−1/(p + 1)) steps of the order p that step control sees, each errs by 4 tolerances \
               and a rounding at most",
-        ..base_series(form, decades(-2, -14), move |tolerance| {
+        ..base_series(form, values, move |tolerance| {
             (1.0, 1.0, Options::new(method, tolerance))
         })
     }
 }
 
 fn revolutions(form: Form, slow: bool) -> ParameterSeries {
-    let options = Options::new(Method::Tsit45, 1e-12);
+    let options = Options::new(Method::Tsit45, form.tolerance(1e-12));
     let max_exponent = if slow { 5 } else { 3 };
     ParameterSeries {
         figure: FIGURE,

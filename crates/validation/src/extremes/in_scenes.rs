@@ -9,6 +9,9 @@ use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_scene::Scene;
 use dwell_study::{Analysis, StudyError, compute_reduction, compute_trajectory, no_progress};
 
+/// Rows from one that another form is evaluated at to the next: those beside the peaks are among them.
+const ROW_STEP: usize = 15;
+
 /// A table that a command finds, with the errors that it states.
 pub(super) struct StatedTable {
     table: Table,
@@ -43,7 +46,7 @@ impl StatedTable {
             return Ok(found);
         }
         let reactions = scene.requests.reactions.clone();
-        found.in_form(form, &FormModel::new(form, scene.clone(), reactions, None)?)
+        found.in_form(form, &FormModel::new(form, scene, reactions, None)?)
     }
 
     /// The same rows by a model in another form.
@@ -52,6 +55,14 @@ impl StatedTable {
         form: Form,
         model: &FormModel,
     ) -> Result<Self, Box<dyn std::error::Error>> {
+        let largest =
+            |rows: &mut dyn Iterator<Item = f64>| rows.fold(0.0_f64, |a, b| a.max(b.abs()));
+        let columns = self.table.columns.len() - 1;
+        let size = |k: usize| largest(&mut self.table.rows.iter().map(|row| row[1 + k]));
+        let sizes: Vec<f64> = (0..columns).map(size).collect();
+        if self.table.rows.len() > ROW_STEP {
+            self.table.rows = self.table.rows.into_iter().step_by(ROW_STEP).collect();
+        }
         let mut errors = Vec::new();
         for row in &mut self.table.rows {
             row[0] = form.coordinate(row[0]);
@@ -64,14 +75,12 @@ impl StatedTable {
             row[1..=found.len()].copy_from_slice(&found);
             errors.push(numbers(error));
         }
-        let largest = |rows: &mut dyn Iterator<Item = f64>| rows.fold(0.0_f64, |a, b| a.max(b.abs()));
         let relative = |k: usize| {
-            let size = largest(&mut self.table.rows.iter().map(|row| row[1 + k]));
-            let error = largest(&mut errors.iter().map(|row| row[k]));
-            if size > 0.0 { error / size } else { 0.0 }
+            let error = largest(&mut errors.iter().map(|row: &Vec<f64>| row[k]));
+            if sizes[k] > 0.0 { error / sizes[k] } else { 0.0 }
         };
-        let columns = errors.first().map_or(0, Vec::len);
-        self.errors = [relative(0), relative(1), (2..columns).map(relative).fold(0.0, f64::max)];
+        let rest = (2..columns).map(relative).fold(0.0, f64::max);
+        self.errors = [relative(0), relative(1), rest];
         Ok(self)
     }
 

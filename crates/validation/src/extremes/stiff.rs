@@ -157,7 +157,8 @@ fn light_crank(form: Form) -> ParameterSeries {
             let (t, q) = (0.0, FROM);
             ReducedState { t, q, q_dot }
         };
-        let motion = free_motion(&model, at_speed(1.0), period.value(), &options());
+        let options = Options::new(Method::Bdf, form.tolerance(1e-10));
+        let motion = free_motion(&model, at_speed(1.0), period.value(), &options);
         let [angle, energy] = match motion {
             Ok(runs) => {
                 let late = dd(period.value()) - period;
@@ -185,11 +186,11 @@ fn light_crank(form: Form) -> ParameterSeries {
         reason: "the time of a revolution hardly depends on J: its steps (1e-10), and as many for each tenth of J, for they \
               grow geometrically from each dead point on. There the state passes within J s, so that its time would \
               have to be known to eps J: a condition of 1/J. The quadrature keeps all but 64 roundings",
-        requirement: Box::new(|inertia, quantity| match quantity {
+        requirement: Box::new(move |inertia, quantity| match quantity {
             2 => Requirement::from_rounding(64.0, 1.0),
             _ => {
-                let decades = 1.0 - inertia.log10();
-                Requirement::from_error(decades * ERROR_IN_TOLERANCES * 1e-10, 1.0 / inertia)
+                let errors = (1.0 - inertia.log10()) * ERROR_IN_TOLERANCES;
+                Requirement::from_error(errors * form.tolerance(1e-10), 1.0 / inertia)
             }
         }),
         run: Box::new(run),

@@ -11,7 +11,7 @@ pub use report::check;
 use super::all_in;
 use super::series::{ParameterSeries, Requirement, SeriesResult};
 use dwell_export::Precision;
-use dwell_numerics::Scalar;
+use std::sync::Arc;
 
 /// A kind of evaluation, in a kind of number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,6 +43,13 @@ pub enum Evaluated {
 const ACCURACY: f64 = 1e-9;
 /// The same of cells in single precision.
 const SINGLE_ACCURACY: f64 = 1e-6;
+/// What the operations of a model may differ by, in double and in single precision: beyond, the export refuses them.
+const OPERATIONS: [f64; 2] = [1e-7, 1e-3];
+/// A peak within so small a part of its domain needs more samples than a table takes.
+const NARROW: f64 = 1e-4;
+/// Roundings of the lift: the points and directions of the ground are rounded when they are placed in an oblique plane, and so are the numbers
+/// of a motion in each form.
+const STATED: f64 = 8.0;
 /// Roundings of a form, or its accuracies, that a result may err by: twice the 16 of a dyad, since the numbers are rounded, too, and in a
 /// cell a value may be a small part of the largest.
 const ALLOWED: f64 = 32.0;
@@ -91,7 +98,7 @@ impl Form {
         self.precision == Precision::Float
     }
 
-    fn is_in_space(self) -> bool {
+    pub(super) fn is_in_space(self) -> bool {
         matches!(self.evaluated, Evaluated::Space | Evaluated::Loops)
     }
 
@@ -115,8 +122,16 @@ impl Form {
         self.precision.round(q)
     }
 
+    /// The tolerance of a motion in it: below the rounding of its numbers step control has nothing to go by.
+    pub(super) fn tolerance(self, tolerance: f64) -> f64 {
+        match self.is_single() {
+            true => tolerance.max(SINGLE_ACCURACY),
+            false => tolerance,
+        }
+    }
+
     /// What it has to keep where double precision in the plane has to keep this: it loses as many roundings of its own numbers. A typed
-    /// error is an answer where half of its digits are lost, or where the model that it is fitted to has an error of its accuracy.
+    /// error is an answer where half of its digits are lost, or beyond what an export or a table says it needs.
     fn requirement(self, plane: Requirement, is_motion: bool) -> Requirement {
         if self == Self::PLANE {
             return plane;
@@ -127,10 +142,12 @@ impl Form {
             plane.condition_number
         };
         let error = 10_f64.powf(-plane.min_digits) + ALLOWED * self.accuracy() * magnified;
-        let refusable_from = match (self.is_fitted(), self.is_single()) {
-            (true, _) => self.accuracy() / (ALLOWED * f64::EPSILON),
-            (false, true) => self.accuracy().sqrt().recip(),
-            (false, false) => plane.refusable_from,
+        let rounding = ALLOWED * self.accuracy();
+        let refusable_from = match (self.evaluated, self.is_single()) {
+            (Evaluated::Table | Evaluated::Cells, _) => NARROW.recip(),
+            (Evaluated::Operations, single) => OPERATIONS[usize::from(single)] / rounding,
+            (_, true) => self.accuracy().sqrt().recip(),
+            (_, false) => plane.refusable_from,
         };
         Requirement {
             refusable_from,
@@ -147,6 +164,13 @@ impl Form {
         if in_space(&["light-crank", "gear-ratio", "cam-steepness"]) {
             return Some("its joints lie in a plane: a slot, teeth between parallel axes, a cam");
         }
+        if self.evaluated == Evaluated::Operations && ["cam-steepness", "large-group"].contains(&key)
+        {
+            return Some("no operations: a law known by its values alone, Newton's method; the export says so");
+        }
+        if PLANE_ONLY.contains(&key) {
+            return Some("a command's own result, or a motion under loads");
+        }
         None
     }
 }
@@ -156,23 +180,52 @@ fn is_motion(series: &ParameterSeries) -> bool {
     ["motions", "tolerances", "stiff", "edges"].contains(&series.figure.0)
 }
 
-/// A series as it is run in a form: some of its values, and what the form has to keep.
+/// A series as it is run in a form: some of its values, what the form has to keep of them, and what it states.
 fn in_form(mut series: ParameterSeries, form: Form) -> ParameterSeries {
-    let (count, motion) = (series.values.len(), is_motion(&series));
+    let (motion, quantities) = (is_motion(&series), series.quantities.len());
+    let (plane, run) = (series.requirement, series.run);
+    let required = move |at, quantity| form.requirement(plane(at, quantity), motion);
+    // Of a motion of which nothing is left there is nothing to see, and single precision does not hold the fourth power of a long length.
+    let overflows = form.is_single() && series.key == "power-of-two";
+    series.values.retain(|&at| {
+        let kept = (0..quantities).all(|quantity| required(at, quantity).min_digits > 0.0);
+        (kept || !motion) && !(overflows && at > 1e9)
+    });
+    let count = series.values.len();
     let kept = (0..VALUES.min(count)).map(|k| k * (count - 1) / (VALUES.min(count) - 1).max(1));
     series.values = kept.map(|k| series.values[k]).collect();
-    let plane = series.requirement;
-    series.requirement = Box::new(move |at, quantity| form.requirement(plane(at, quantity), motion));
+    let required = Arc::new(required);
+    let stated = Arc::clone(&required);
+    series.requirement = Box::new(move |at, quantity| required(at, quantity));
+    series.run = Box::new(move |at| {
+        let mut cells = run(at)?;
+        if motion || form.is_in_space() {
+            for (quantity, cell) in cells.iter_mut().enumerate() {
+                let Ok(value) = cell else { continue };
+                let magnified = stated(at, quantity).condition_number;
+                value.error_estimate += STATED * form.accuracy() * magnified * value.scale;
+            }
+        }
+        Ok(cells)
+    });
     series
 }
 
-/// The series that make sense in each form, with their results.
+/// The series of the grid that make sense in a form.
+pub fn series(form: Form) -> Vec<ParameterSeries> {
+    let all = all_in(form, false).into_iter();
+    let sensible = all.filter(|series| form.no_sense(&series.key).is_none());
+    sensible.map(|series| in_form(series, form)).collect()
+}
+
+/// The results of forms.
 pub fn evaluate(forms: &[Form]) -> Vec<(Form, Vec<SeriesResult>)> {
-    let one = |&form: &Form| {
-        let all = all_in(form, false).into_iter();
-        let sensible = all.filter(|series| form.no_sense(&series.key).is_none());
-        let series = sensible.map(|series| in_form(series, form)).collect();
-        (form, super::evaluate(series))
-    };
+    let one = |&form: &Form| (form, super::evaluate(series(form)));
     forms.iter().map(one).collect()
 }
+
+/// What runs in the plane alone.
+const PLANE_ONLY: [&str; 11] = [
+    "stiffness", "damping", "small-rotor", "libration", "rotation", "separatrix", "dead-point", "peak-between-rows",
+    "double-pendulum-ratio", "jamming", "periods-by-quadrature",
+];

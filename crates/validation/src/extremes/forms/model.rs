@@ -10,7 +10,7 @@ use dwell_kinetostatics::space::{
     Axes, Component as SpaceComponent, Model as SpaceModel, Reaction as SpaceReaction,
 };
 use dwell_kinetostatics::{
-    Coefficients, ExactModel, Inertia, Model, ReducedModel, ReducibleModel, TableDomain,
+    Coefficients, ExactModel, Inertia, ReducedModel, ReducibleModel, TableDomain,
     TabulatedModel,
 };
 use dwell_numerics::{DoubleDouble, Scalar};
@@ -18,6 +18,7 @@ use dwell_scene::Scene;
 use dwell_study::models::{compile_model, reduced_model};
 use dwell_study::{ExportRequest, compute_export, estimate};
 use std::error::Error;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Writes the coefficients at a coordinate.
@@ -171,6 +172,9 @@ impl FormModel {
     ) -> Result<Self, Box<dyn Error>> {
         let plane = reduced_model(&scene, &reactions)?;
         let interval = around.map(|[q, width]| (q - 0.5 * width, q + 0.5 * width));
+        // What never repeats has a table over the rows.
+        let unbounded = plane.range() == Range::Unbounded;
+        let interval = interval.or(unbounded.then_some((0.0, TAU)));
         let (evaluate, statement) = match form.evaluated {
             Evaluated::Plane => {
                 let own = |k| vec![(k, 1.0)];
