@@ -58,8 +58,6 @@ impl StatedTable {
         let largest =
             |rows: &mut dyn Iterator<Item = f64>| rows.fold(0.0_f64, |a, b| a.max(b.abs()));
         let columns = self.table.columns.len() - 1;
-        let size = |k: usize| largest(&mut self.table.rows.iter().map(|row| row[1 + k]));
-        let sizes: Vec<f64> = (0..columns).map(size).collect();
         if self.table.rows.len() > ROW_STEP {
             self.table.rows = self.table.rows.into_iter().step_by(ROW_STEP).collect();
         }
@@ -68,7 +66,10 @@ impl StatedTable {
             row[0] = form.coordinate(row[0]);
             let numbers = |of: Coefficients| {
                 let reactions = of.a.into_iter().zip(of.b).flat_map(|(a, b)| [a, b]);
-                [of.m, of.half_dm].into_iter().chain(reactions).collect::<Vec<f64>>()
+                [of.m, of.half_dm]
+                    .into_iter()
+                    .chain(reactions)
+                    .collect::<Vec<f64>>()
             };
             let (found, error) = model.coefficients_with_errors(row[0])?;
             let found = numbers(found);
@@ -77,7 +78,13 @@ impl StatedTable {
         }
         let relative = |k: usize| {
             let error = largest(&mut errors.iter().map(|row: &Vec<f64>| row[k]));
-            if sizes[k] > 0.0 { error / sizes[k] } else { 0.0 }
+            // The largest value is off by the error itself.
+            let size = largest(&mut self.table.rows.iter().map(|row| row[1 + k]));
+            if size > 0.0 {
+                error / (size - error).max(0.1 * size)
+            } else {
+                0.0
+            }
         };
         let rest = (2..columns).map(relative).fold(0.0, f64::max);
         self.errors = [relative(0), relative(1), rest];

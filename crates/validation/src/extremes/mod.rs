@@ -31,8 +31,8 @@ pub use series::{
 };
 
 use dwell_study::Outcome;
-use forms::Form;
 use dwell_study::StudyError;
+use forms::Form;
 use rayon::prelude::*;
 
 /// The whole study: `extremes`, or `extremes-long` with the rows that take minutes. What is drawn at random is of a

@@ -181,7 +181,11 @@ fn short_crank(form: Form) -> ParameterSeries {
         reason: "all velocities and accelerations are in proportion to the crank, and positions do not depend on it: two dyads' 8, 32 roundings",
         // In space the crank's end is a point of the whole mechanism.
         requirement: Box::new(move |crank, _| {
-            let size = if form.is_in_space() { LENGTH_BC / crank } else { 1.0 };
+            let size = if form.is_in_space() {
+                LENGTH_BC / crank
+            } else {
+                1.0
+            };
             Requirement::from_rounding(ALLOWED_ROUNDINGS, DYAD_CONDITION * size.max(1.0))
         }),
         run: Box::new(move |crank| SingleDwell::new(crank).compare(form)),

@@ -10,7 +10,7 @@ use super::series::{
 use dwell_geometry::{Vec2, vec2};
 use dwell_kinetostatics::Mass;
 use dwell_numerics::{DoubleDouble, Scalar};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Positions of a revolution or a motion.
 const POINTS: usize = 181;
@@ -118,7 +118,11 @@ fn cam(form: Form) -> ParameterSeries {
         quantities: &["m", "½m′"],
         reference: "m = I + M s′² and ½m′ = M s′ s″ of s = h tanh((φ − φ₀)/β)",
         reason: "next to the row at π/2, which is a double-precision number as φ₀ is, their difference is exact; 16 roundings of a product of three functions",
-        requirement: Box::new(|_, _| rounding(DYAD_CONDITION)),
+        // In cells it is the part of a turn within which the follower rises that decides.
+        requirement: Box::new(move |angle, _| {
+            let narrow = if form.is_fitted() { TAU / angle } else { 0.0 };
+            rounding(DYAD_CONDITION.max(narrow))
+        }),
         run: Box::new(run),
     }
 }

@@ -73,9 +73,12 @@ fn lengths(form: Form) -> ParameterSeries {
     ParameterSeries {
         parameter: ("crank's length", "m"),
         reason: "nothing but the unit of length changes; a dyad's 8, 16 roundings",
-        ..base_series(form, ("length", "Four-bar: all lengths"), decades(-9, 9), |by| {
-            CRANK_ROCKER.scaled(by)
-        })
+        ..base_series(
+            form,
+            ("length", "Four-bar: all lengths"),
+            decades(-9, 9),
+            |by| CRANK_ROCKER.scaled(by),
+        )
     }
 }
 
@@ -91,7 +94,12 @@ fn placement(form: Form) -> ParameterSeries {
         reason: "attachments on the ground are subtracted before anything is evaluated: as if it were at the origin; \
               a dyad's 8, 16 roundings",
         reference: "circle and circle in 32 digits, at the same double-precision coordinates of the ground's points",
-        ..base_series(form, ("placement", "Four-bar: its position"), decades(0, 9), make)
+        ..base_series(
+            form,
+            ("placement", "Four-bar: its position"),
+            decades(0, 9),
+            make,
+        )
     }
 }
 

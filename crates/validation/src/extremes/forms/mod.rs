@@ -5,8 +5,7 @@ mod model;
 mod report;
 
 pub(super) use model::FormModel;
-pub(super) use report::add_to;
-pub use report::check;
+pub use report::{add_to, check};
 
 use super::all_in;
 use super::series::{ParameterSeries, Requirement, SeriesResult};
@@ -53,8 +52,10 @@ const STATED: f64 = 8.0;
 /// Roundings of a form, or its accuracies, that a result may err by: twice the 16 of a dyad, since the numbers are rounded, too, and in a
 /// cell a value may be a small part of the largest.
 const ALLOWED: f64 = 32.0;
-/// Values of a series that are run in each form.
-const VALUES: usize = 5;
+/// Values of a series that are run in each form, and as exported code, which measures itself at thousands of coordinates.
+const VALUES: [usize; 2] = [5, 3];
+/// What takes long is the grid's own: values above these are not run in other forms.
+const LARGEST_VALUES: [(&str, f64); 2] = [("revolutions", 100.0), ("large-group", 20.0)];
 
 impl Form {
     /// The form of the grid itself.
@@ -103,7 +104,7 @@ impl Form {
     }
 
     /// Whether it keeps an accuracy that is asked for, relative to the largest value, instead of that of its numbers.
-    fn is_fitted(self) -> bool {
+    pub(super) fn is_fitted(self) -> bool {
         matches!(self.evaluated, Evaluated::Table | Evaluated::Cells)
     }
 
@@ -145,7 +146,8 @@ impl Form {
         let rounding = ALLOWED * self.accuracy();
         let refusable_from = match (self.evaluated, self.is_single()) {
             (Evaluated::Table | Evaluated::Cells, _) => NARROW.recip(),
-            (Evaluated::Operations, single) => OPERATIONS[usize::from(single)] / rounding,
+            // One quantity of the worst condition is enough for the whole export to be refused.
+            (Evaluated::Operations, single) => 0.1 * OPERATIONS[usize::from(single)] / rounding,
             (_, true) => self.accuracy().sqrt().recip(),
             (_, false) => plane.refusable_from,
         };
@@ -155,23 +157,40 @@ impl Form {
         }
     }
 
-    /// Why a series makes no sense in it, by its key.
-    pub fn no_sense(self, key: &str) -> Option<&'static str> {
-        let in_space = |keys: &[&str]| self.is_in_space() && keys.contains(&key);
-        if in_space(&["placement"]) {
-            return Some("an oblique plane rounds what is far from the origin; the series of places in space has points that are not rounded");
-        }
-        if in_space(&["light-crank", "gear-ratio", "cam-steepness"]) {
-            return Some("its joints lie in a plane: a slot, teeth between parallel axes, a cam");
-        }
-        if self.evaluated == Evaluated::Operations && ["cam-steepness", "large-group"].contains(&key)
-        {
-            return Some("no operations: a law known by its values alone, Newton's method; the export says so");
-        }
-        if PLANE_ONLY.contains(&key) {
-            return Some("a command's own result, or a motion under loads");
-        }
-        None
+    /// Why a series is not run in it, by its key.
+    pub fn not_run(self, key: &str) -> Option<&'static str> {
+        let is = |evaluated: &[Evaluated], keys: &[&str]| {
+            evaluated.contains(&self.evaluated) && keys.contains(&key)
+        };
+        let space = [Evaluated::Space, Evaluated::Loops];
+        let reasons = [
+            (
+                is(&space, &["placement"]),
+                "an oblique plane rounds the points of what is far from the origin",
+            ),
+            (
+                is(&space, &["light-crank", "gear-ratio", "cam-steepness"]),
+                "the lift has revolute and prismatic joints alone: no slot, teeth or cam",
+            ),
+            (
+                is(&[Evaluated::Operations], &["cam-steepness"]),
+                "refused: a law known by its values alone has no operations",
+            ),
+            (
+                is(&[Evaluated::Operations], &["large-group"]),
+                "refused: positions that Newton's method searches have no operations",
+            ),
+            (
+                is(&[Evaluated::Table], &["cam-steepness"]),
+                "refused: a table's cells are of one width, and its first 64 samples miss a steep cam",
+            ),
+            (
+                PLANE_ONLY.contains(&key),
+                "motions under loads and results of commands run in the plane alone",
+            ),
+        ];
+        let reason = reasons.into_iter().find(|(applies, _)| *applies);
+        reason.map(|(_, reason)| reason)
     }
 }
 
@@ -187,12 +206,15 @@ fn in_form(mut series: ParameterSeries, form: Form) -> ParameterSeries {
     let required = move |at, quantity| form.requirement(plane(at, quantity), motion);
     // Of a motion of which nothing is left there is nothing to see, and single precision does not hold the fourth power of a long length.
     let overflows = form.is_single() && series.key == "power-of-two";
+    let slow = LARGEST_VALUES.iter().find(|(key, _)| *key == series.key);
     series.values.retain(|&at| {
         let kept = (0..quantities).all(|quantity| required(at, quantity).min_digits > 0.0);
-        (kept || !motion) && !(overflows && at > 1e9)
+        (kept || !motion) && !(overflows && at > 1e9) && slow.is_none_or(|(_, most)| at <= *most)
     });
     let count = series.values.len();
-    let kept = (0..VALUES.min(count)).map(|k| k * (count - 1) / (VALUES.min(count) - 1).max(1));
+    let is_exported = matches!(form.evaluated, Evaluated::Cells | Evaluated::Operations);
+    let values = VALUES[usize::from(is_exported)].min(count);
+    let kept = (0..values).map(|k| k * (count - 1) / (values - 1).max(1));
     series.values = kept.map(|k| series.values[k]).collect();
     let required = Arc::new(required);
     let stated = Arc::clone(&required);
@@ -211,11 +233,11 @@ fn in_form(mut series: ParameterSeries, form: Form) -> ParameterSeries {
     series
 }
 
-/// The series of the grid that make sense in a form.
+/// The series of the grid that are run in a form.
 pub fn series(form: Form) -> Vec<ParameterSeries> {
     let all = all_in(form, false).into_iter();
-    let sensible = all.filter(|series| form.no_sense(&series.key).is_none());
-    sensible.map(|series| in_form(series, form)).collect()
+    let run = all.filter(|series| form.not_run(&series.key).is_none());
+    run.map(|series| in_form(series, form)).collect()
 }
 
 /// The results of forms.
@@ -226,6 +248,15 @@ pub fn evaluate(forms: &[Form]) -> Vec<(Form, Vec<SeriesResult>)> {
 
 /// What runs in the plane alone.
 const PLANE_ONLY: [&str; 11] = [
-    "stiffness", "damping", "small-rotor", "libration", "rotation", "separatrix", "dead-point", "peak-between-rows",
-    "double-pendulum-ratio", "jamming", "periods-by-quadrature",
+    "stiffness",
+    "damping",
+    "small-rotor",
+    "libration",
+    "rotation",
+    "separatrix",
+    "dead-point",
+    "peak-between-rows",
+    "double-pendulum-ratio",
+    "jamming",
+    "periods-by-quadrature",
 ];

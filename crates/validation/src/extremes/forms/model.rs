@@ -10,8 +10,7 @@ use dwell_kinetostatics::space::{
     Axes, Component as SpaceComponent, Model as SpaceModel, Reaction as SpaceReaction,
 };
 use dwell_kinetostatics::{
-    Coefficients, ExactModel, Inertia, ReducedModel, ReducibleModel, TableDomain,
-    TabulatedModel,
+    Coefficients, ExactModel, Inertia, ReducedModel, ReducibleModel, TableDomain, TabulatedModel,
 };
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_scene::Scene;
@@ -80,7 +79,10 @@ fn passes<T: Scalar, M: ReducibleModel + Send + 'static>(
 }
 
 /// The terms of motion and reactions of exported code.
-fn exported<R: Real + Send + Sync + 'static>(code: ExportedCode<R>, reactions: bool) -> NewEvaluate {
+fn exported<R: Real + Send + Sync + 'static>(
+    code: ExportedCode<R>,
+    reactions: bool,
+) -> NewEvaluate {
     let code = Arc::new(code);
     Box::new(move || {
         let code = Arc::clone(&code);
@@ -137,8 +139,17 @@ pub(super) fn in_space(
         };
         let first = all.len();
         let joint = reaction.joint;
-        sums.push((first..).zip(&parts).map(|(k, (_, part))| (k, *part)).collect());
-        all.extend(parts.into_iter().map(|(component, _)| SpaceReaction { joint, component }));
+        sums.push(
+            (first..)
+                .zip(&parts)
+                .map(|(k, (_, part))| (k, *part))
+                .collect(),
+        );
+        all.extend(
+            parts
+                .into_iter()
+                .map(|(component, _)| SpaceReaction { joint, component }),
+        );
     }
     let compile = if planes {
         SpaceModel::new
@@ -178,7 +189,11 @@ impl FormModel {
         let (evaluate, statement) = match form.evaluated {
             Evaluated::Plane => {
                 let own = |k| vec![(k, 1.0)];
-                of_model(form, plane.model().clone(), (0..reactions.len()).map(own).collect())
+                of_model(
+                    form,
+                    plane.model().clone(),
+                    (0..reactions.len()).map(own).collect(),
+                )
             }
             Evaluated::Space | Evaluated::Loops => {
                 let planes = form.evaluated == Evaluated::Space;
@@ -186,7 +201,8 @@ impl FormModel {
                 of_model(form, model, sums)
             }
             Evaluated::Table => {
-                let domain = interval.map_or(TableDomain::Full, |(a, b)| TableDomain::Between(a, b));
+                let domain =
+                    interval.map_or(TableDomain::Full, |(a, b)| TableDomain::Between(a, b));
                 on_table(TabulatedModel::new(&plane, form.accuracy(), domain)?)
             }
             Evaluated::Cells | Evaluated::Operations => {
@@ -218,7 +234,8 @@ impl FormModel {
         let errors = match &self.statement {
             Statement::Wider(wider) => {
                 let roundings = 2.0 * self.form.accuracy();
-                let error = |v: f64, w: f64, size: f64| (v - w).abs() + roundings * v.abs().max(size);
+                let error =
+                    |v: f64, w: f64, size: f64| (v - w).abs() + roundings * v.abs().max(size);
                 combined(&values, &at(wider)?, error)
             }
             // What is fitted states nothing about the model that it is fitted to, which states its own rounding.
@@ -239,7 +256,10 @@ fn combined(
 ) -> Coefficients {
     let list = |one: &[f64], other: &[f64]| {
         let size = one.iter().fold(0.0_f64, |size, v| size.max(v.abs()));
-        one.iter().zip(other).map(|(&v, &w)| of(v, w, size)).collect()
+        one.iter()
+            .zip(other)
+            .map(|(&v, &w)| of(v, w, size))
+            .collect()
     };
     Coefficients {
         m: of(one.m, other.m, 0.0),
@@ -317,7 +337,11 @@ fn as_code(
 }
 
 impl ReducedModel for FormModel {
-    type Workspace = (Evaluate, Coefficients, <ExactModel as ReducedModel>::Workspace);
+    type Workspace = (
+        Evaluate,
+        Coefficients,
+        <ExactModel as ReducedModel>::Workspace,
+    );
 
     fn workspace(&self) -> Self::Workspace {
         (

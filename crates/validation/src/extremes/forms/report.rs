@@ -6,8 +6,8 @@ use crate::extremes::series::SeriesResult;
 use crate::report_parts::{StudyReport, figure_blocks, ratio, table};
 use dwell_findings::Finding;
 use dwell_report::{Axis, Cell, Figure, Grid, Group, Row};
-use dwell_study::ranges::extent;
 use dwell_study::Outcome;
+use dwell_study::ranges::extent;
 
 /// The findings of each form: its floors, and the safe side of the errors that it states.
 pub fn check(results: &[(Form, Vec<SeriesResult>)]) -> Vec<Finding> {
@@ -23,13 +23,19 @@ pub fn check(results: &[(Form, Vec<SeriesResult>)]) -> Vec<Finding> {
 /// The worst finding of the series of a form, which stands for all of them.
 fn combined(form: Form, what: &str, findings: impl Iterator<Item = Finding>) -> Finding {
     let findings: Vec<Finding> = findings.collect();
-    let key = format!("{}-{what}", form.name().replace(", ", "-").replace(' ', "-"));
+    let key = format!(
+        "{}-{what}",
+        form.name().replace(", ", "-").replace(' ', "-")
+    );
     let worst = findings.iter().max_by(|a, b| {
         let rank = |f: &Finding| (!f.pass, ratio(f));
         (rank(a).0.cmp(&rank(b).0)).then(rank(a).1.total_cmp(&rank(b).1))
     });
     Finding {
         key,
+        comparison: "series of the extremes, against their closed forms".to_owned(),
+        tolerance_reason: "as each series, with the roundings or the accuracy of the form"
+            .to_owned(),
         domain: format!("{} series of the grid", findings.len()),
         worst_at: worst.map_or_else(String::new, |f| format!("{}: {}", f.key, f.worst_at)),
         ..worst.cloned().unwrap_or_default()
@@ -37,13 +43,15 @@ fn combined(form: Form, what: &str, findings: impl Iterator<Item = Finding>) -> 
 }
 
 /// Adds the report of the forms, beside the results of the grid itself: `extremes-forms`.
-pub(in crate::extremes) fn add_to(outcome: &mut Outcome, plane: &[SeriesResult], name: &str) {
+pub fn add_to(outcome: &mut Outcome, plane: &[SeriesResult], name: &str) {
     let results = evaluate(&Form::OTHERS);
     let figures = [figure(plane, &results)];
     let name = format!("{name}-forms");
     let mut reasons: Vec<[String; 3]> = Vec::new();
     for form in Form::OTHERS {
-        let without = plane.iter().filter_map(|s| Some((s, form.no_sense(&s.series.key)?)));
+        let without = plane
+            .iter()
+            .filter_map(|s| Some((s, form.not_run(&s.series.key)?)));
         for (series, reason) in without {
             let key = &series.series.key;
             match reasons.iter_mut().find(|[k, _, r]| k == key && r == reason) {
@@ -52,21 +60,40 @@ pub(in crate::extremes) fn add_to(outcome: &mut Outcome, plane: &[SeriesResult],
             }
         }
     }
-    let cells: usize = results.iter().flat_map(|(_, all)| all).map(|s| s.cells.len()).sum();
+    let cells: usize = results
+        .iter()
+        .flat_map(|(_, all)| all)
+        .map(|s| s.cells.len())
+        .sum();
     let mut blocks = figure_blocks(&name, &figures, true);
-    blocks.push(table(&["Series", "Not run in", "Why"], reasons.into_iter().map(Vec::from)));
+    blocks.push(table(
+        &["Series", "Not run in", "Why"],
+        reasons.into_iter().map(Vec::from),
+    ));
     let report = StudyReport {
         name: &name,
         title: "Extremes in other forms",
-        text: "The series of the extremes again, in an oblique plane in space, in single precision, on tables and as exported code."
+        text: "The series of the extremes again, with the same references: in an oblique plane in space, where the planar equivalent is taken or every loop is closed in space; in single precision; on tables; as exported code, operation by operation. Each form states beforehand what it may lose of the digits of double precision in the plane: 32 roundings of its numbers, or 32 times the accuracy that is asked of it. The errors that it states must not be below the true ones."
             .to_owned(),
         blocks,
-        snapshot: "Extremes in other forms\n".to_owned(),
+        snapshot: snapshot(&results),
         figures: &figures,
         findings: check(&results),
         count: format!("{cells} cells"),
     };
     report.add_to(outcome);
+}
+
+/// What every machine reproduces: how many series each form runs, and its floors.
+fn snapshot(results: &[(Form, Vec<SeriesResult>)]) -> String {
+    let mut text = "Extremes in other forms\n\n".to_owned();
+    for (form, all) in results {
+        let cells = all.iter().flat_map(|series| &series.cells);
+        let [min, max] = extent(cells.map(|cell| cell.requirement.min_digits));
+        let (name, count) = (form.name(), all.len());
+        text += &format!("{name}  {count} series  floors {max:.1} to {min:.1} digits\n");
+    }
+    text
 }
 
 /// Series by form: the digits kept, with those that the condition takes.
@@ -101,7 +128,8 @@ fn figure(plane: &[SeriesResult], results: &[(Form, Vec<SeriesResult>)]) -> Figu
             heading: String::new(),
             rows: plane.iter().map(row).collect(),
         }],
-        values: Axis::new("digits kept", "").with_range(0.0, 16.0),
+        values: Axis::new("digits kept, beside those that the condition takes", "")
+            .with_range(0.0, 16.0),
     };
     Figure {
         name: "forms".to_owned(),
