@@ -2,12 +2,15 @@
 
 use super::{Form, evaluate};
 use crate::extremes::check::{check_digits, check_estimates};
-use crate::extremes::series::SeriesResult;
+use crate::extremes::series::{ResultCell, SeriesResult};
 use crate::report_parts::{StudyReport, figure_blocks, ratio, table};
 use dwell_findings::Finding;
 use dwell_report::{Axis, Cell, Figure, Grid, Group, Row};
 use dwell_study::Outcome;
 use dwell_study::ranges::extent;
+
+/// Digits of double precision, the most that the figure shows.
+const MAX_DIGITS: f64 = 16.0;
 
 /// The findings of each form: its floors, and the safe side of the errors that it states.
 pub fn check(results: &[(Form, Vec<SeriesResult>)]) -> Vec<Finding> {
@@ -103,10 +106,11 @@ fn figure(plane: &[SeriesResult], results: &[(Form, Vec<SeriesResult>)]) -> Figu
             Some(cell.digits()? + cell.requirement.condition_number.log10().max(0.0))
         });
         let [fewest, _] = extent(kept);
+        let known = fewest.is_finite().then(|| fewest.clamp(0.0, MAX_DIGITS));
         Cell {
-            value: Some(fewest),
-            text: format!("{fewest:.0}"),
-            failed: !series.cells.iter().all(|cell| cell.meets_requirement()),
+            value: known,
+            text: known.map_or("refused".to_owned(), |digits| format!("{digits:.0}")),
+            failed: !series.cells.iter().all(ResultCell::meets_requirement),
         }
     };
     let row = |series: &SeriesResult| {
@@ -129,12 +133,12 @@ fn figure(plane: &[SeriesResult], results: &[(Form, Vec<SeriesResult>)]) -> Figu
             rows: plane.iter().map(row).collect(),
         }],
         values: Axis::new("digits kept, beside those that the condition takes", "")
-            .with_range(0.0, 16.0),
+            .with_range(0.0, MAX_DIGITS),
     };
     Figure {
         name: "forms".to_owned(),
         title: "Digits kept in each form".to_owned(),
-        caption: "The fewest digits over each series, with those that its condition takes from any result.".to_owned(),
+        caption: "The fewest digits over each series, with those that its condition takes from any result; hatched: not run in this form, for the reason in the table below.".to_owned(),
         columns: 1,
         panels: vec![grid.into()],
         ..Figure::default()
