@@ -16,7 +16,11 @@ const MAX_DIGITS: f64 = 16.0;
 pub fn check(results: &[(Form, Vec<SeriesResult>)]) -> Vec<Finding> {
     let of_form = |(form, results): &(Form, Vec<SeriesResult>)| {
         [
-            combined(*form, "digits", results.iter().map(check_digits)),
+            Finding {
+                scale: "the error that the floor allows; typed errors only where half of the digits are lost, or where the fit says so"
+                    .to_owned(),
+                ..combined(*form, "digits", results.iter().map(check_digits))
+            },
             combined(*form, "error-estimate", results.iter().map(check_estimates)),
         ]
     };
