@@ -6,6 +6,8 @@ mod check;
 mod closed_forms;
 mod drawn;
 mod draws;
+mod form_model;
+mod form_report;
 pub mod forms;
 mod free_motion;
 mod in_scenes;

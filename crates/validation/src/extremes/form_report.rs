@@ -1,8 +1,8 @@
 //! Findings, figure and document of the forms.
 
-use super::{Form, evaluate};
-use crate::extremes::check::{check_digits, check_estimates};
-use crate::extremes::series::{ResultCell, SeriesResult};
+use super::check::{check_digits, check_estimates};
+use super::forms::{Form, evaluate};
+use super::series::{ResultCell, SeriesResult};
 use crate::report_parts::{StudyReport, figure_blocks, ratio, table};
 use dwell_findings::Finding;
 use dwell_report::{Axis, Cell, Figure, Grid, Group, Row};

@@ -1,7 +1,7 @@
 //! A reduced model in a form, with the errors that it states.
 
-use super::{Evaluated, Form};
-use crate::extremes::mechanisms::scene;
+use super::forms::{Evaluated, Form};
+use super::mechanisms::scene;
 use crate::lifted::{Plane, tilt};
 use dwell_export::{Evaluator as ExportedCode, Precision, Real, Request};
 use dwell_geometry::space::{Placement, Vec3};
@@ -26,7 +26,7 @@ type Evaluate = Box<dyn FnMut(f64, &mut Coefficients) -> Result<(), PositionErro
 type NewEvaluate = Box<dyn Fn() -> Evaluate + Send + Sync>;
 
 /// A reduced model in a form.
-pub(in crate::extremes) struct FormModel {
+pub(super) struct FormModel {
     form: Form,
     /// The planar mechanism, of which are the derivatives that Newton's method uses.
     plane: ExactModel,
@@ -101,7 +101,7 @@ fn exported<R: Real + Send + Sync + 'static>(
 }
 
 /// The planar scene obliquely in space, at a distance from the origin and with heights in proportion to it.
-pub(super) fn in_space(
+fn in_space(
     scene: &Scene,
     reactions: &[Reaction],
     planes: bool,
@@ -162,7 +162,7 @@ pub(super) fn in_space(
 
 impl FormModel {
     /// The model of a text, with the reactions of a joint if there is one of this name, over an interval around a coordinate if one is given.
-    pub(in crate::extremes) fn of(
+    pub(super) fn of(
         form: Form,
         text: &str,
         joint: &str,
@@ -175,7 +175,7 @@ impl FormModel {
     }
 
     /// The model of a scene with some reactions.
-    pub(in crate::extremes) fn new(
+    pub(super) fn new(
         form: Form,
         mut scene: Scene,
         reactions: Vec<Reaction>,
@@ -219,7 +219,7 @@ impl FormModel {
     }
 
     /// The coefficients at a coordinate, and the error that the form states of each.
-    pub(in crate::extremes) fn coefficients_with_errors(
+    pub(super) fn coefficients_with_errors(
         &self,
         q: f64,
     ) -> Result<(Coefficients, Coefficients), Box<dyn Error>> {

@@ -1,13 +1,9 @@
 //! The forms in which a result of the grid is computed: in the plane, obliquely in space, in single precision, on a table, as exported
 //! code. The series are the same, with the same references; each form states what it may lose of their digits.
 
-mod model;
-mod report;
-
-pub(super) use model::FormModel;
-pub use report::{add_to, check};
-
 use super::all_in;
+pub(super) use super::form_model::FormModel;
+pub use super::form_report::{add_to, check};
 use super::series::{ParameterSeries, Requirement, SeriesResult};
 use dwell_export::Precision;
 use std::sync::Arc;
