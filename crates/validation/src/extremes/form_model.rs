@@ -3,7 +3,7 @@
 use super::forms::{Evaluated, Form};
 use super::mechanisms::scene;
 use crate::lifted::{Plane, tilt};
-use dwell_export::{Evaluator as ExportedCode, Precision, Real, Request};
+use dwell_export::{Domain, Evaluator as ExportedCode, Precision, Real, Request};
 use dwell_geometry::space::{Placement, Vec3};
 use dwell_geometry::{Component, PositionError, Range, Reaction};
 use dwell_kinetostatics::space::{
@@ -81,13 +81,15 @@ fn passes<T: Scalar, M: ReducibleModel + Send + 'static>(
 /// The terms of motion and reactions of exported code.
 fn exported<R: Real + Send + Sync + 'static>(
     code: ExportedCode<R>,
+    domain: Domain,
     reactions: bool,
 ) -> NewEvaluate {
     let code = Arc::new(code);
     Box::new(move || {
         let code = Arc::clone(&code);
         Box::new(move |q, out| {
-            let outside = |_| PositionError::NotFinite { q };
+            let Domain { from, to, .. } = domain;
+            let outside = |_| PositionError::OutOfRange { q, from, to };
             let terms = code.motion_terms(R::of(q)).map_err(outside)?;
             (out.m, out.half_dm) = (terms.m.to_f64(), terms.half_dm.to_f64());
             if reactions {
@@ -327,11 +329,11 @@ fn as_code(
         interval,
     };
     let export = compute_export(scene, &asked)?;
-    let reactions = export.machine.reactions.len();
+    let (domain, reactions) = (export.machine.domain, export.machine.reactions.len());
     let statement = measured(&export.measured.tolerances, reactions);
     let evaluate = match precision {
-        Precision::Double => exported(export.evaluator::<f64>(), reactions > 0),
-        Precision::Float => exported(export.evaluator::<f32>(), reactions > 0),
+        Precision::Double => exported(export.evaluator::<f64>(), domain, reactions > 0),
+        Precision::Float => exported(export.evaluator::<f32>(), domain, reactions > 0),
     };
     Ok((evaluate, statement))
 }
