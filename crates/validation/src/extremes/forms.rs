@@ -181,8 +181,8 @@ impl Form {
                 "refused: a table's cells are of one width, and its first 64 samples miss a steep cam",
             ),
             (
-                PLANE_ONLY.contains(&key),
-                "motions under loads and results of commands run in the plane alone",
+                !(key.starts_with("tolerance-") || IN_FORMS.contains(&key)),
+                "motions under loads, results of commands and places in space run in one form alone",
             ),
         ];
         let reason = reasons.into_iter().find(|(applies, _)| *applies);
@@ -244,17 +244,22 @@ pub fn evaluate(forms: &[Form]) -> Vec<(Form, Vec<SeriesResult>)> {
     forms.iter().map(one).collect()
 }
 
-/// What runs in the plane alone.
-const PLANE_ONLY: [&str; 11] = [
-    "stiffness",
-    "damping",
-    "small-rotor",
-    "libration",
-    "rotation",
-    "separatrix",
-    "dead-point",
-    "peak-between-rows",
-    "double-pendulum-ratio",
-    "jamming",
-    "periods-by-quadrature",
+/// What is evaluated in the form that is asked for, besides the series of tolerances; all else runs once.
+const IN_FORMS: [&str; 16] = [
+    "limit-four-bar",
+    "limit-slider-crank",
+    "flat-parallelogram",
+    "mass-ratio",
+    "length",
+    "power-of-two",
+    "placement",
+    "speed",
+    "revolutions",
+    "light-crank",
+    "short-crank",
+    "guide-near-path",
+    "gear-ratio",
+    "cam-steepness",
+    "long-links",
+    "large-group",
 ];
