@@ -29,6 +29,12 @@ pub enum FitError<E> {
         /// The largest relative error.
         error: f64,
     },
+    /// The cells have missed a narrow peak.
+    #[error("the cells are off by {error:.1e} of the largest value of a function")]
+    NarrowPeak {
+        /// The largest relative error.
+        error: f64,
+    },
     /// No number of cells reaches the accuracy.
     #[error("no cells of accuracy {accuracy:e}: {name} bends too much near {q}")]
     NotReached {

@@ -49,7 +49,21 @@ impl Export {
         sampler: &mut S,
     ) -> Result<Self, FitError<S::Error>> {
         let asked = (Some(request.accuracy), request.precision);
-        Self::measured(machine, asked, None, sampler)?.within_precision()
+        let export = Self::measured(machine, asked, None, sampler)?;
+        match export.error_beyond(10.0 * request.accuracy) {
+            Some(error) => Err(FitError::NarrowPeak { error }),
+            None => export.within_precision(),
+        }
+    }
+
+    /// The largest error, if it is beyond this and beyond what rounding can be: what is fitted or recorded is another function then.
+    fn error_beyond(&self, accuracy: f64) -> Option<f64> {
+        let rounding: f64 = match self.request.precision {
+            Precision::Double => 1e-7,
+            Precision::Float => 1e-3,
+        };
+        let error = self.measured.errors.max();
+        (error.is_nan() || error > rounding.max(accuracy)).then_some(error)
     }
 
     /// Takes the operations of all functions of a machine, and measures them. By part in the order of [`PartKind::ALL`], the
@@ -69,16 +83,10 @@ impl Export {
         let motion = with_slopes(&motion, first, &machine.rotor_columns());
         let code = Some([motion, reactions, positions]);
         let mut export = Self::measured(machine, (None, precision), code, sampler)?;
-        let accuracy = match precision {
-            Precision::Double => 1e-7,
-            Precision::Float => 1e-3,
-        };
-        // Operations of another branch are off by much more.
-        let error = export.measured.errors.max();
-        if error.is_nan() || error > accuracy {
+        if let Some(error) = export.error_beyond(0.0) {
             return Err(FitError::OtherOperations { error });
         }
-        export.request.accuracy = error;
+        export.request.accuracy = export.measured.errors.max();
         export.within_precision()
     }
 

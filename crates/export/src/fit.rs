@@ -21,6 +21,8 @@ const PERIODICITY_TOLERANCE: f64 = 1e-9;
 const BINS: std::ops::RangeInclusive<u32> = 4..=13;
 /// Points of a cell at which its error is measured, the ends included.
 const CHECKS: usize = 3 * TERMS;
+/// Points of the domain at which the cells are searched for narrow peaks besides.
+const SEARCH_POINTS: usize = 8192;
 /// Part of the accuracy that the errors at these points may reach.
 const SHARE: f64 = 0.5;
 
@@ -287,8 +289,19 @@ impl<S: FunctionSampler> Fitter<'_, S> {
             let x = -(std::f64::consts::PI * i as f64 / CHECKS as f64).cos();
             let q = coordinate(x);
             let exact = self.row(q)?;
-            if let Some(function) = self.error_too_large(&numbers, (q - middle) * per_half, &exact)
+            if let Some(function) =
+                self.error_too_large(&numbers, (q - middle) * per_half, &exact, 1.0)
             {
+                return Err(self.not_reached(function, q));
+            }
+        }
+        // Between the points of a wide cell a narrow peak would pass unseen.
+        let further = SEARCH_POINTS * width / bins;
+        for i in 1..further {
+            let q = coordinate(2.0 * i as f64 / further as f64 - 1.0);
+            let exact = self.row(q)?;
+            let x = (q - middle) * per_half;
+            if let Some(function) = self.error_too_large(&numbers, x, &exact, 1.0 / SHARE) {
                 return Err(self.not_reached(function, q));
             }
         }
@@ -296,11 +309,17 @@ impl<S: FunctionSampler> Fitter<'_, S> {
         Ok(rounded.collect())
     }
 
-    /// The first function that is not within its tolerance.
-    fn error_too_large(&self, numbers: &[f64], x: f64, exact: &[f64]) -> Option<Function> {
+    /// The first function that is not within so many of its tolerances.
+    fn error_too_large(
+        &self,
+        numbers: &[f64],
+        x: f64,
+        exact: &[f64],
+        tolerances: f64,
+    ) -> Option<Function> {
         let beyond = |found: f64, value: usize| {
             // NaN counts as the largest error.
-            let within = (found - exact[value]).abs() <= self.tolerances[value];
+            let within = (found - exact[value]).abs() <= tolerances * self.tolerances[value];
             !within
         };
         let Part {

@@ -1,5 +1,5 @@
 //! The validation cases: each is computed, checked against independent computations and published numbers, and
-//! reported. Three studies belong to them: series of closed forms with ever more extreme parameters ([`extremes`]),
+//! reported. Three studies belong to them: series of closed forms with ever more extreme parameters ([`extremes`], in other forms [`extremes::forms`]),
 //! what accuracy costs ([`work_precision`](mod@work_precision)), and what exported runs are worth ([`export_study`]).
 //!
 //! ```
@@ -28,6 +28,7 @@ mod checked;
 mod error;
 pub mod export_study;
 pub mod extremes;
+pub mod lifted;
 pub mod manual;
 mod overview;
 mod report_parts;

@@ -131,6 +131,14 @@ pub(crate) fn explain_fit<E: Display>(
             [(SceneLocation::Whole, "of this scene")],
         ),
         FitError::OtherOperations { .. } => no_operations(scene, SEARCHED),
+        FitError::NarrowPeak { error } => scene_error(
+            scene,
+            format!(
+                "no export: something moves within a part of the range that is too small for cells, which are off by {error:.1e} of the largest value"
+            ),
+            "give an interval around the fast motion with --from and --until, or a smoother law",
+            [OVER_COORDINATE],
+        ),
         FitError::NotReached { name, q, .. } => {
             let (at, unit) = scene.to_scene_unit(*q, machine.is_angle);
             let accuracy = asked.request.accuracy;

@@ -49,7 +49,7 @@ fn row_finding(result: &SeriesResult, key: &str, max: Option<(f64, &ResultCell)>
 }
 
 /// Whether every cell keeps its floor, or is a typed error where the condition is bad.
-fn check_digits(result: &SeriesResult) -> Finding {
+pub(super) fn check_digits(result: &SeriesResult) -> Finding {
     // Errors over what the floor allows; an error that is not allowed is as bad as can be.
     let excess = |cell: &ResultCell| match cell.digits() {
         Some(digits) => Some(10.0_f64.powf(cell.requirement.min_digits - digits)),
@@ -66,7 +66,7 @@ fn check_digits(result: &SeriesResult) -> Finding {
 }
 
 /// Whether no estimate is below the true error.
-fn check_estimates(result: &SeriesResult) -> Finding {
+pub(super) fn check_estimates(result: &SeriesResult) -> Finding {
     let largest = cell_with_max(result, |cell| Some(1.0 / cell.estimate_ratio()?));
     Finding {
         scale: "the estimated error".to_owned(),

@@ -1,11 +1,11 @@
 //! Motions: speeds, tolerances, revolutions.
 
 use super::closed_forms::{dd, four_bar, root_inertia_integral};
-use super::mechanisms::{CRANK_ROCKER, reduced};
+use super::forms::{Form, FormModel};
+use super::mechanisms::CRANK_ROCKER;
 use super::run_pair::{free_motion, kinetic_energy, wrapped_free_motion};
 use super::series::{ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell};
 use dwell_dynamics::{Method, Options, ReducedState};
-use dwell_kinetostatics::ExactModel;
 use dwell_numerics::{DoubleDouble, Scalar};
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
@@ -37,9 +37,9 @@ const FIGURE: (&str, &str) = ("motions", "Speeds and revolutions");
 /// The same of the rows of tolerances.
 const TOLERANCES_FIGURE: (&str, &str) = ("tolerances", "Tolerances");
 
-pub(super) fn series(slow: bool) -> Vec<ParameterSeries> {
-    let mut series = vec![speeds(), revolutions(slow)];
-    series.extend(Method::ALL.map(tolerances));
+pub(super) fn series(form: Form, slow: bool) -> Vec<ParameterSeries> {
+    let mut series = vec![speeds(form), revolutions(form, slow)];
+    series.extend(Method::ALL.map(|method| tolerances(form, method)));
     series
 }
 
@@ -65,7 +65,7 @@ fn required(method: Method, tolerance: f64, revolutions: f64, quantity: usize) -
 
 /// Some revolutions from an initial speed, to the same position again.
 fn solve_revolutions(
-    model: &ExactModel,
+    model: &FormModel,
     speed: f64,
     revolutions: f64,
     options: &Options,
@@ -101,10 +101,11 @@ fn solve_revolutions(
 
 /// A row of motions of the crank-rocker: speed, revolutions and options by value.
 fn base_series(
+    form: Form,
     values: Vec<f64>,
     motion: impl Fn(f64) -> (f64, f64, Options) + Send + Sync + Clone + 'static,
 ) -> ParameterSeries {
-    let model = reduced(&CRANK_ROCKER.text(), "");
+    let model = FormModel::of(form, &CRANK_ROCKER.text(), "", None).map_err(|e| e.to_string());
     let motion_of = motion.clone();
     ParameterSeries {
         figure: FIGURE,
@@ -127,8 +128,8 @@ fn base_series(
     }
 }
 
-fn speeds() -> ParameterSeries {
-    let options = Options::new(Method::Bdf, 1e-10);
+fn speeds(form: Form) -> ParameterSeries {
+    let options = Options::new(Method::Bdf, form.tolerance(1e-10));
     ParameterSeries {
         figure: FIGURE,
         key: "speed".into(),
@@ -136,12 +137,14 @@ fn speeds() -> ParameterSeries {
         parameter: ("speed at the start", "rad/s"),
         reason: "without loads a speed only scales time: one revolution at 1e-10, whatever the speed; its steps, \
               4 tolerances each",
-        ..base_series(decades(-9, 9), move |speed| (speed, 1.0, options))
+        ..base_series(form, decades(-9, 9), move |speed| (speed, 1.0, options))
     }
 }
 
-fn tolerances(method: Method) -> ParameterSeries {
+fn tolerances(form: Form, method: Method) -> ParameterSeries {
     let name = method.name();
+    let mut values = decades(-2, -14);
+    values.retain(|&tolerance| tolerance == form.tolerance(tolerance));
     ParameterSeries {
         figure: TOLERANCES_FIGURE,
         key: format!("tolerance-{}", name.to_lowercase()),
@@ -149,14 +152,14 @@ fn tolerances(method: Method) -> ParameterSeries {
         parameter: ("tolerance", ""),
         reason: "a revolution takes 8 tol^(−1/(p + 1)) steps of the order p that step control sees, each errs by 4 tolerances \
               and a rounding at most",
-        ..base_series(decades(-2, -14), move |tolerance| {
+        ..base_series(form, values, move |tolerance| {
             (1.0, 1.0, Options::new(method, tolerance))
         })
     }
 }
 
-fn revolutions(slow: bool) -> ParameterSeries {
-    let options = Options::new(Method::Tsit45, 1e-12);
+fn revolutions(form: Form, slow: bool) -> ParameterSeries {
+    let options = Options::new(Method::Tsit45, form.tolerance(1e-12));
     let max_exponent = if slow { 5 } else { 3 };
     ParameterSeries {
         figure: FIGURE,
@@ -164,7 +167,7 @@ fn revolutions(slow: bool) -> ParameterSeries {
         description: "Free motion of a four-bar at 1e-12 by Tsit45: revolutions".into(),
         parameter: ("revolutions n", ""),
         reason: "the energy error has the same sign in each of the n revolutions, and the angle errs by half of that, summed over them: n²/2 times the energy error of one revolution",
-        ..base_series(decades(0, max_exponent), move |revolutions| {
+        ..base_series(form, decades(0, max_exponent), move |revolutions| {
             (1.0, revolutions, options)
         })
     }

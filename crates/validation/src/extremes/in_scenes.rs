@@ -1,11 +1,16 @@
 //! What the commands find in the text of a scene, as cells: the row with the largest error, and the error that the command
 //! states.
 
+use super::forms::{Form, FormModel};
 use super::series::{CellResult, EstimatedValue, RunResult};
 use dwell_findings::Table;
+use dwell_kinetostatics::Coefficients;
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_scene::Scene;
 use dwell_study::{Analysis, StudyError, compute_reduction, compute_trajectory, no_progress};
+
+/// Rows from one that another form is evaluated at to the next: those beside the peaks are among them.
+const ROW_STEP: usize = 15;
 
 /// A table that a command finds, with the errors that it states.
 pub(super) struct StatedTable {
@@ -25,14 +30,65 @@ pub(super) fn column(table: &Table, name: &str) -> Result<Vec<f64>, String> {
 pub(super) type ReferenceColumn<'a> = (&'a str, Vec<DoubleDouble>);
 
 impl StatedTable {
-    /// What `reduce` finds in a scene, at a number of positions.
-    pub(super) fn reduced(text: &str, points: usize) -> Result<Self, StudyError> {
+    /// What `reduce` finds in a scene, at a number of positions; in another form, what that finds at its rows.
+    pub(super) fn reduced(
+        form: Form,
+        text: &str,
+        points: usize,
+    ) -> Result<Self, Box<dyn std::error::Error>> {
         let scene = Scene::parse("scene.toml", text)?;
         let reduction = compute_reduction(&scene, Some(points))?;
-        Ok(Self {
+        let found = Self {
             table: reduction.curves.table(&reduction.prepared),
             errors: reduction.errors.max_errors,
-        })
+        };
+        if form == Form::PLANE {
+            return Ok(found);
+        }
+        let reactions = scene.requests.reactions.clone();
+        found.in_form(form, &FormModel::new(form, scene, reactions, None)?)
+    }
+
+    /// The same rows by a model in another form.
+    fn in_form(
+        mut self,
+        form: Form,
+        model: &FormModel,
+    ) -> Result<Self, Box<dyn std::error::Error>> {
+        let largest =
+            |rows: &mut dyn Iterator<Item = f64>| rows.fold(0.0_f64, |a, b| a.max(b.abs()));
+        let columns = self.table.columns.len() - 1;
+        if self.table.rows.len() > ROW_STEP {
+            self.table.rows = self.table.rows.into_iter().step_by(ROW_STEP).collect();
+        }
+        let mut errors = Vec::new();
+        for row in &mut self.table.rows {
+            row[0] = form.coordinate(row[0]);
+            let numbers = |of: Coefficients| {
+                let reactions = of.a.into_iter().zip(of.b).flat_map(|(a, b)| [a, b]);
+                [of.m, of.half_dm]
+                    .into_iter()
+                    .chain(reactions)
+                    .collect::<Vec<f64>>()
+            };
+            let (found, error) = model.coefficients_with_errors(row[0])?;
+            let found = numbers(found);
+            row[1..=found.len()].copy_from_slice(&found);
+            errors.push(numbers(error));
+        }
+        let relative = |k: usize| {
+            let error = largest(&mut errors.iter().map(|row: &Vec<f64>| row[k]));
+            // The largest value is off by the error itself.
+            let size = largest(&mut self.table.rows.iter().map(|row| row[1 + k]));
+            if size > 0.0 {
+                error / (size - error).max(0.1 * size)
+            } else {
+                0.0
+            }
+        };
+        let rest = (2..columns).map(relative).fold(0.0, f64::max);
+        self.errors = [relative(0), relative(1), rest];
+        Ok(self)
     }
 
     /// What `kinetostatics` finds.

@@ -2,6 +2,7 @@
 //! unknowns on faer factors them.
 
 use super::closed_forms::dd;
+use super::forms::Form;
 use super::in_scenes::StatedTable;
 use super::mechanisms::{body, mass};
 use super::ratios::FIGURE;
@@ -99,10 +100,10 @@ impl Ring {
     }
 }
 
-pub(super) fn series() -> Vec<ParameterSeries> {
-    let run = |unknowns: f64| -> RunResult {
+pub(super) fn series(form: Form) -> Vec<ParameterSeries> {
+    let run = move |unknowns: f64| -> RunResult {
         let ring = Ring::new(unknowns as usize / 2);
-        let found = StatedTable::reduced(&ring.text, POINTS)?;
+        let found = StatedTable::reduced(form, &ring.text, POINTS)?;
         let (m, [x, y]) = ring.sums();
         // Ground on disk: F = Σ M c̈, which for c̈ = q̈ k × c − q̇² c is a and b.
         let turned = found.column("phi")?.into_iter().map(|q| {

@@ -1,14 +1,13 @@
 //! Distances: to a limit position, to a flat parallelogram, to a dead point.
 
 use super::closed_forms::{self, arc_cosine, dd};
-use super::mechanisms::{FourBar, SliderCrank, mass, reduced};
+use super::forms::{Form, FormModel};
+use super::mechanisms::{FourBar, SliderCrank, mass};
 use super::series::{
     ALLOWED_ROUNDINGS, ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell,
 };
 use dwell_geometry::{Vec2, vec2};
-use dwell_kinetostatics::ExactModel;
 use dwell_numerics::{DoubleDouble, Scalar};
-use dwell_study::estimate;
 
 /// A triple rocker: coupler and rocker are stretched in one line at both ends of the crank's swing.
 const ROCKER: FourBar = FourBar {
@@ -41,16 +40,16 @@ const SHORT_ROD: SliderCrank = SliderCrank {
 /// Figure of these rows, and its title.
 const FIGURE: (&str, &str) = ("limits", "Near limit positions");
 
-pub(super) fn series() -> Vec<ParameterSeries> {
-    vec![four_bar(), slider_crank(), parallelogram()]
+pub(super) fn series(form: Form) -> Vec<ParameterSeries> {
+    vec![four_bar(form), slider_crank(form), parallelogram(form)]
 }
 
 /// m, ½m′ and what C's reaction has of q̈ and q̇² (the component along x).
 pub(super) const QUANTITIES: [&str; 4] = ["m", "½m′", "a of C", "b of C"];
 
 /// The reduced parameters of a four-bar against circle and circle.
-pub(super) fn compare_four_bar(four_bar: &FourBar, model: &ExactModel, q: f64) -> RunResult {
-    let (computed, error) = estimate::coefficients_with_errors(model.model(), q)?;
+pub(super) fn compare_four_bar(four_bar: &FourBar, model: &FormModel, q: f64) -> RunResult {
+    let (computed, error) = model.coefficients_with_errors(q)?;
     let reference = closed_forms::four_bar(four_bar, dd(q));
     let (a, b) = (reference.a, reference.b);
     let size = |v: Vec2<DoubleDouble>| v.dot(v).sqrt().value();
@@ -62,12 +61,11 @@ pub(super) fn compare_four_bar(four_bar: &FourBar, model: &ExactModel, q: f64) -
     ])
 }
 
-fn four_bar() -> ParameterSeries {
+fn four_bar(form: Form) -> ParameterSeries {
     let [a, b, c] = ROCKER.lengths.map(dd);
     let d = dd(ROCKER.base[1].x);
     let stretched = b + c;
     let limit = arc_cosine((a * a + d * d - stretched * stretched) / (dd(2.0) * a * d));
-    let model = reduced(&ROCKER.text(), "C");
     ParameterSeries {
         figure: FIGURE,
         key: "limit-four-bar".into(),
@@ -83,17 +81,17 @@ fn four_bar() -> ParameterSeries {
             Requirement::from_rounding(ALLOWED_ROUNDINGS, factor * limit.value() / at)
         }),
         run: Box::new(move |at| {
-            let model = model.as_ref().map_err(String::as_str)?;
-            compare_four_bar(&ROCKER, model, (limit - dd(at)).value())
+            let q = form.coordinate((limit - dd(at)).value());
+            let model = FormModel::of(form, &ROCKER.text(), "C", Some([q, at]))?;
+            compare_four_bar(&ROCKER, &model, q)
         }),
     }
 }
 
-fn slider_crank() -> ParameterSeries {
+fn slider_crank(form: Form) -> ParameterSeries {
     let [crank, rod] = SHORT_ROD.lengths.map(dd);
     let sine = (dd(SHORT_ROD.height) + rod) / crank;
     let limit = DoubleDouble::PI * dd(0.5) - arc_cosine(sine);
-    let model = reduced(&SHORT_ROD.text(false), "");
     ParameterSeries {
         figure: FIGURE,
         key: "limit-slider-crank".into(),
@@ -109,9 +107,9 @@ fn slider_crank() -> ParameterSeries {
             Requirement::from_rounding(ALLOWED_ROUNDINGS, factor * limit.value() / at)
         }),
         run: Box::new(move |at| {
-            let model = model.as_ref().map_err(String::as_str)?;
-            let q = (limit - dd(at)).value();
-            let (computed, error) = estimate::coefficients_with_errors(model.model(), q)?;
+            let q = form.coordinate((limit - dd(at)).value());
+            let model = FormModel::of(form, &SHORT_ROD.text(false), "", Some([q, at]))?;
+            let (computed, error) = model.coefficients_with_errors(q)?;
             let [m, half_dm] = closed_forms::slider_crank(&SHORT_ROD, dd(q));
             let m = cell((computed.m, error.m), m);
             Ok(vec![m, cell((computed.half_dm, error.half_dm), half_dm)])
@@ -119,8 +117,7 @@ fn slider_crank() -> ParameterSeries {
     }
 }
 
-fn parallelogram() -> ParameterSeries {
-    let model = reduced(&PARALLELOGRAM.text(), "");
+fn parallelogram(form: Form) -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
         key: "flat-parallelogram".into(),
@@ -136,8 +133,9 @@ fn parallelogram() -> ParameterSeries {
             Requirement::from_rounding(ALLOWED_ROUNDINGS, at.powi(-2 - quantity as i32))
         }),
         run: Box::new(move |at| {
-            let model = model.as_ref().map_err(String::as_str)?;
-            let (computed, error) = estimate::coefficients_with_errors(model.model(), at)?;
+            let q = form.coordinate(at);
+            let model = FormModel::of(form, &PARALLELOGRAM.text(), "", Some([q, at]))?;
+            let (computed, error) = model.coefficients_with_errors(q)?;
             let [m, half_dm] = closed_forms::parallelogram(&PARALLELOGRAM);
             Ok(vec![
                 cell((computed.m, error.m), m),
@@ -149,6 +147,7 @@ fn parallelogram() -> ParameterSeries {
 
 #[cfg(test)]
 mod tests {
+    use super::super::mechanisms::reduced;
     use super::*;
     use dwell_kinetostatics::Coefficients;
 

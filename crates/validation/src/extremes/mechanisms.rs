@@ -1,8 +1,11 @@
 //! The mechanisms of the grid, as the texts of scenes.
 
 use dwell_geometry::{Vec2, vec2};
-use dwell_kinetostatics::{ExactModel, Mass};
+#[cfg(test)]
+use dwell_kinetostatics::ExactModel;
+use dwell_kinetostatics::Mass;
 use dwell_scene::Scene;
+#[cfg(test)]
 use dwell_study::models::reduced_model;
 
 /// Mass in kg, centre of mass in m, moment of inertia in kg m².
@@ -28,6 +31,7 @@ pub(crate) fn scene(text: &str) -> Result<Scene, String> {
 }
 
 /// The reduced model of a text, with the reaction of a joint if there is one of this name.
+#[cfg(test)]
 pub(crate) fn reduced(text: &str, joint: &str) -> Result<ExactModel, String> {
     let scene = scene(text)?;
     let mut reactions = scene.mechanism.reactions();

@@ -6,6 +6,9 @@ mod check;
 mod closed_forms;
 mod drawn;
 mod draws;
+mod form_model;
+mod form_report;
+pub mod forms;
 mod free_motion;
 mod in_scenes;
 mod jamming;
@@ -33,6 +36,7 @@ pub use series::{
 
 use dwell_study::Outcome;
 use dwell_study::StudyError;
+use forms::Form;
 use rayon::prelude::*;
 
 /// The whole study: `extremes`, or `extremes-long` with the rows that take minutes. What is drawn at random is of a
@@ -42,11 +46,9 @@ use rayon::prelude::*;
 /// [`StudyError`] where a picture cannot be drawn.
 pub fn study(slow: bool, seed: u64) -> Result<Outcome, StudyError> {
     let name = if slow { "extremes-long" } else { "extremes" };
-    let mut outcome = outcome(
-        &evaluate(all_series(slow)),
-        large_groups::dense_findings(),
-        name,
-    )?;
+    let results = evaluate(all_series(slow));
+    let mut outcome = outcome(&results, large_groups::dense_findings(), name)?;
+    forms::add_to(&mut outcome, &results, name);
     let pulses = pulses::evaluate(pulses::count(slow), seed);
     pulses::add_to(&mut outcome, &pulses, seed, name)?;
     let machines = machines::evaluate(machines::count(slow), seed);
@@ -56,17 +58,23 @@ pub fn study(slow: bool, seed: u64) -> Result<Outcome, StudyError> {
 
 /// The rows of the grid; with `slow` those that take minutes too.
 pub fn all_series(slow: bool) -> Vec<ParameterSeries> {
-    let mut series = limit_positions::series();
-    series.extend(scale::series());
-    series.extend(free_motion::series(slow));
-    series.extend(stiff::series());
-    series.extend(singular::series());
+    let mut series = all_in(Form::PLANE, slow);
     series.extend(narrow_peaks::series());
-    series.extend(paper_mechanism::series());
-    series.extend(ratios::series());
-    series.extend(large_groups::series());
-    series.extend(jamming::series());
     series.extend(places::series());
+    series
+}
+
+/// The rows of the grid in a form.
+fn all_in(form: Form, slow: bool) -> Vec<ParameterSeries> {
+    let mut series = limit_positions::series(form);
+    series.extend(scale::series(form));
+    series.extend(free_motion::series(form, slow));
+    series.extend(stiff::series(form));
+    series.extend(singular::series());
+    series.extend(paper_mechanism::series(form));
+    series.extend(ratios::series(form));
+    series.extend(large_groups::series(form));
+    series.extend(jamming::series());
     series
 }
 

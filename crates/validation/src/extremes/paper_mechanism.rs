@@ -2,6 +2,7 @@
 //! the path of P as it may be, where the guide flies round.
 
 use super::closed_forms::{Point, UnitSpeedBody, at_rest, dd, four_bar_bodies};
+use super::forms::Form;
 use super::in_scenes::StatedTable;
 use super::mechanisms::{FourBar, mass};
 use super::series::{
@@ -31,8 +32,8 @@ const FIGURE: (&str, &str) = (
     "The paper's mechanism without a flywheel",
 );
 
-pub(super) fn series() -> Vec<ParameterSeries> {
-    vec![short_crank(), near_path(), peak_between_rows()]
+pub(super) fn series(form: Form) -> Vec<ParameterSeries> {
+    vec![short_crank(form), near_path(form), peak_between_rows()]
 }
 
 /// Crank, coupler and rocker, and where the guide turns on the ground.
@@ -134,8 +135,8 @@ impl SingleDwell {
     }
 
     /// What `reduce` finds, against the closed form at its positions.
-    fn compare(&self) -> RunResult {
-        let found = StatedTable::reduced(&self.text(), POINTS)?;
+    fn compare(&self, form: Form) -> RunResult {
+        let found = StatedTable::reduced(form, &self.text(), POINTS)?;
         let positions = found.column("phi")?;
         let rows: Vec<[DoubleDouble; 4]> = positions
             .into_iter()
@@ -167,7 +168,7 @@ impl SingleDwell {
 const QUANTITIES: [&str; 3] = ["m", "½m′", "a and b of the slide"];
 const REFERENCE: &str = "circle and circle, and the line from Q to P, in 32 digits";
 
-fn short_crank() -> ParameterSeries {
+fn short_crank(form: Form) -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
         key: "short-crank".into(),
@@ -178,8 +179,16 @@ fn short_crank() -> ParameterSeries {
         quantities: &QUANTITIES,
         reference: REFERENCE,
         reason: "all velocities and accelerations are in proportion to the crank, and positions do not depend on it: two dyads' 8, 32 roundings",
-        requirement: Box::new(|_, _| Requirement::from_rounding(ALLOWED_ROUNDINGS, DYAD_CONDITION)),
-        run: Box::new(|crank| SingleDwell::new(crank).compare()),
+        // In space the crank's end is a point of the whole mechanism.
+        requirement: Box::new(move |crank, _| {
+            let size = if form.is_in_space() {
+                LENGTH_BC / crank
+            } else {
+                1.0
+            };
+            Requirement::from_rounding(ALLOWED_ROUNDINGS, DYAD_CONDITION * size.max(1.0))
+        }),
+        run: Box::new(move |crank| SingleDwell::new(crank).compare(form)),
     }
 }
 
@@ -190,7 +199,7 @@ fn near_requirement(distance: f64, quantity: usize) -> Requirement {
     Requirement::from_rounding(ALLOWED_ROUNDINGS, DYAD_CONDITION * factor * size)
 }
 
-fn near_path() -> ParameterSeries {
+fn near_path(form: Form) -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
         key: "guide-near-path".into(),
@@ -202,10 +211,10 @@ fn near_path() -> ParameterSeries {
         reference: REFERENCE,
         reason: "places are known to their rounding, of 0.25 m: the line from Q to P to 0.25 eps/δ of its length, m as 2 of these, ½m′ and b as 3; 32 roundings of two dyads' 8",
         requirement: Box::new(near_requirement),
-        run: Box::new(|distance| {
+        run: Box::new(move |distance| {
             // Beside the peak, where ½m′ is as large as it comes: P moves by 0.07 m per rad there.
             let row = TAU * 60.0 / (POINTS - 1) as f64;
-            SingleDwell::pivot_off_path(row + 5.0 * distance, distance).compare()
+            SingleDwell::pivot_off_path(row + 5.0 * distance, distance).compare(form)
         }),
     }
 }

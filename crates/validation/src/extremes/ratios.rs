@@ -1,6 +1,7 @@
 //! Ratios: of gears, of a cam's steepness, of links that are far longer than their crank, of the bars of a double pendulum.
 
 use super::closed_forms::{UnitSpeedBody, at_rest, dd, exponential, four_bar};
+use super::forms::Form;
 use super::in_scenes::StatedTable;
 use super::mechanisms::{CRANK_ROCKER, FourBar, body, mass};
 use super::series::{
@@ -9,7 +10,7 @@ use super::series::{
 use dwell_geometry::{Vec2, vec2};
 use dwell_kinetostatics::Mass;
 use dwell_numerics::{DoubleDouble, Scalar};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Positions of a revolution or a motion.
 const POINTS: usize = 181;
@@ -20,8 +21,8 @@ pub(super) const FIGURE: (&str, &str) = (
     "Gears, cams, long links, two freedoms, large groups",
 );
 
-pub(super) fn series() -> Vec<ParameterSeries> {
-    vec![gears(), cam(), long_links(), double_pendulum()]
+pub(super) fn series(form: Form) -> Vec<ParameterSeries> {
+    vec![gears(form), cam(form), long_links(form), double_pendulum()]
 }
 
 fn rounding(condition: f64) -> Requirement {
@@ -29,8 +30,8 @@ fn rounding(condition: f64) -> Requirement {
 }
 
 /// A pair of gears on fixed centres: the second turns −r₁/r₂ as fast.
-fn gears() -> ParameterSeries {
-    let run = |ratio: f64| -> RunResult {
+fn gears(form: Form) -> ParameterSeries {
+    let run = move |ratio: f64| -> RunResult {
         let (one, two) = (0.5, 0.25);
         let text = format!(
             "[bodies]\nground = {{ points = {{ A = [0, 0], B = [{}, 0] }} }}\n\
@@ -42,7 +43,7 @@ fn gears() -> ParameterSeries {
              [requests]\nreactions = [\"teeth.tooth\"]\n",
             1.0 + ratio
         );
-        let found = StatedTable::reduced(&text, POINTS)?;
+        let found = StatedTable::reduced(form, &text, POINTS)?;
         let speed = dd(1.0) / dd(ratio);
         let m = dd(one) + dd(two) * speed * speed;
         // The tooth force times its radius turns the second gear.
@@ -76,9 +77,9 @@ fn tanh(x: DoubleDouble) -> DoubleDouble {
 }
 
 /// A follower that a cam lifts by 20 mm within a small angle: s = h tanh((φ − φ₀)/β), 0.4 β beside a row.
-fn cam() -> ParameterSeries {
+fn cam(form: Form) -> ParameterSeries {
     const RISE: f64 = 0.01;
-    let run = |angle: f64| -> RunResult {
+    let run = move |angle: f64| -> RunResult {
         let center = FRAC_PI_2 + 0.4 * angle;
         let text = format!(
             "[bodies]\nground = {{ points = {{ O = [0, 0] }} }}\n\
@@ -91,7 +92,7 @@ fn cam() -> ParameterSeries {
              [actuators]\nphi = {{ angle = [\"ground\", \"cam\"] }}\n[assembly]\nphi = 0\nfollower = 0\n\
              [requests]\nreactions = [\"contact.force\"]\n"
         );
-        let found = StatedTable::reduced(&text, POINTS)?;
+        let found = StatedTable::reduced(form, &text, POINTS)?;
         let rows = found.column("phi")?.into_iter().map(|q| {
             let x = (dd(q) - dd(center)) / dd(angle);
             let value = tanh(x);
@@ -117,13 +118,17 @@ fn cam() -> ParameterSeries {
         quantities: &["m", "½m′"],
         reference: "m = I + M s′² and ½m′ = M s′ s″ of s = h tanh((φ − φ₀)/β)",
         reason: "next to the row at π/2, which is a double-precision number as φ₀ is, their difference is exact; 16 roundings of a product of three functions",
-        requirement: Box::new(|_, _| rounding(DYAD_CONDITION)),
+        // In cells it is the part of a turn within which the follower rises that decides.
+        requirement: Box::new(move |angle, _| {
+            let narrow = if form.is_fitted() { TAU / angle } else { 0.0 };
+            rounding(DYAD_CONDITION.max(narrow))
+        }),
         run: Box::new(run),
     }
 }
 
 /// The crank-rocker with coupler and rocker of another length: nearly parallel, and then they turn slowly.
-fn long_links() -> ParameterSeries {
+fn long_links(form: Form) -> ParameterSeries {
     let make = |length: f64| FourBar {
         lengths: [1.0, 2.5 + length, 1.0 + length],
         ..CRANK_ROCKER
@@ -143,7 +148,7 @@ fn long_links() -> ParameterSeries {
             angle(dc)
         );
         let text = assembled.text() + &rest;
-        let found = StatedTable::reduced(&text, POINTS)?;
+        let found = StatedTable::reduced(form, &text, POINTS)?;
         let all: Vec<_> = found.column("phi")?.into_iter().map(four_bar_at).collect();
         let m = all.iter().map(|at| at.m).collect();
         let half_dm = all.iter().map(|at| at.half_dm).collect();

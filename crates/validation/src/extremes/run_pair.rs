@@ -6,7 +6,7 @@ use dwell_dynamics::{
     CoordinateMode, DynamicsError, Machine, OdeState, Options, Orbit, ReducedState, Solution,
     solve, solve_reduced,
 };
-use dwell_kinetostatics::{ExactModel, Load, LoadKind, Magnitude, ReducedModel as _};
+use dwell_kinetostatics::{Load, LoadKind, Magnitude, ReducedModel};
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_study::estimate;
 use dwell_study::models::compile_model;
@@ -60,7 +60,7 @@ fn compared_states(solution: Solution) -> Result<Vec<Vec<f64>>, DynamicsError> {
 
 /// A motion without loads.
 pub(super) fn free_motion(
-    model: &ExactModel,
+    model: &impl ReducedModel,
     start: ReducedState,
     end: f64,
     options: &Options,
@@ -73,7 +73,7 @@ pub(super) fn free_motion(
 /// A motion without loads in parts of equal duration, s, each of which rotates by `advance`: the angle is wrapped
 /// after each, so that it keeps its digits. Compared are the ends of the parts.
 pub(super) fn wrapped_free_motion(
-    model: &ExactModel,
+    model: &impl ReducedModel,
     start: ReducedState,
     (parts, duration): (usize, f64),
     advance: DoubleDouble,
@@ -95,7 +95,7 @@ pub(super) fn wrapped_free_motion(
 }
 
 /// The kinetic energy of a state, J; no number where there is none.
-pub(super) fn kinetic_energy(model: &ExactModel, y: &[f64]) -> f64 {
+pub(super) fn kinetic_energy(model: &impl ReducedModel, y: &[f64]) -> f64 {
     let m = model.inertia(y[0], &mut model.workspace());
     m.map_or(f64::NAN, |(m, _)| 0.5 * m * y[1] * y[1])
 }

@@ -1,14 +1,14 @@
 //! Scales: masses, lengths, and the distance of a mechanism from the origin.
 
 use super::closed_forms::dd;
+use super::forms::{Form, FormModel};
 use super::limit_positions::{QUANTITIES, compare_four_bar};
-use super::mechanisms::{CRANK_ROCKER, FourBar, reduced};
+use super::mechanisms::{CRANK_ROCKER, FourBar};
 use super::series::{
     ALLOWED_ROUNDINGS, DYAD_CONDITION, ParameterSeries, Requirement, cell, decades,
 };
 use dwell_geometry::vec2;
 use dwell_kinetostatics::Coefficients;
-use dwell_study::estimate;
 
 /// A crank angle in no special place, rad.
 const CRANK_ANGLE: f64 = 1.125;
@@ -16,8 +16,13 @@ const CRANK_ANGLE: f64 = 1.125;
 /// Figure of these rows, and its title.
 const FIGURE: (&str, &str) = ("scales", "Masses, lengths and places");
 
-pub(super) fn series() -> Vec<ParameterSeries> {
-    vec![mass_ratio(), lengths(), powers_of_two(), placement()]
+pub(super) fn series(form: Form) -> Vec<ParameterSeries> {
+    vec![
+        mass_ratio(form),
+        lengths(form),
+        powers_of_two(form),
+        placement(form),
+    ]
 }
 
 fn required(_: f64, _: usize) -> Requirement {
@@ -25,7 +30,12 @@ fn required(_: f64, _: usize) -> Requirement {
 }
 
 /// A row that evaluates a four-bar for each value.
-fn base_series(key: &str, what: &str, values: Vec<f64>, of: fn(f64) -> FourBar) -> ParameterSeries {
+fn base_series(
+    form: Form,
+    (key, what): (&str, &str),
+    values: Vec<f64>,
+    of: fn(f64) -> FourBar,
+) -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
         key: key.into(),
@@ -38,13 +48,13 @@ fn base_series(key: &str, what: &str, values: Vec<f64>, of: fn(f64) -> FourBar) 
         requirement: Box::new(required),
         run: Box::new(move |at| {
             let four_bar = of(at);
-            let model = reduced(&four_bar.text(), "C")?;
+            let model = FormModel::of(form, &four_bar.text(), "C", None)?;
             compare_four_bar(&four_bar, &model, CRANK_ANGLE)
         }),
     }
 }
 
-fn mass_ratio() -> ParameterSeries {
+fn mass_ratio(form: Form) -> ParameterSeries {
     let make = |ratio: f64| {
         let mut four_bar = CRANK_ROCKER;
         four_bar.masses[1].mass *= ratio;
@@ -55,21 +65,24 @@ fn mass_ratio() -> ParameterSeries {
     ParameterSeries {
         parameter: ("mass of the coupler over its initial mass", ""),
         reason: "the parameters are sums over the bodies, each of which a well-shaped dyad magnifies by 8; 16 roundings",
-        ..base_series("mass-ratio", what, decades(-12, 12), make)
+        ..base_series(form, ("mass-ratio", what), decades(-12, 12), make)
     }
 }
 
-fn lengths() -> ParameterSeries {
+fn lengths(form: Form) -> ParameterSeries {
     ParameterSeries {
         parameter: ("crank's length", "m"),
         reason: "nothing but the unit of length changes; a dyad's 8, 16 roundings",
-        ..base_series("length", "Four-bar: all lengths", decades(-9, 9), |by| {
-            CRANK_ROCKER.scaled(by)
-        })
+        ..base_series(
+            form,
+            ("length", "Four-bar: all lengths"),
+            decades(-9, 9),
+            |by| CRANK_ROCKER.scaled(by),
+        )
     }
 }
 
-fn placement() -> ParameterSeries {
+fn placement(form: Form) -> ParameterSeries {
     let make = |distance: f64| {
         let mut four_bar = CRANK_ROCKER;
         let offset = vec2(distance, -0.75 * distance);
@@ -81,17 +94,22 @@ fn placement() -> ParameterSeries {
         reason: "attachments on the ground are subtracted before anything is evaluated: as if it were at the origin; \
               a dyad's 8, 16 roundings",
         reference: "circle and circle in 32 digits, at the same double-precision coordinates of the ground's points",
-        ..base_series("placement", "Four-bar: its position", decades(0, 9), make)
+        ..base_series(
+            form,
+            ("placement", "Four-bar: its position"),
+            decades(0, 9),
+            make,
+        )
     }
 }
 
 /// Lengths scaled by a power of two change the exponents of all numbers and no other bit.
-fn powers_of_two() -> ParameterSeries {
+fn powers_of_two(form: Form) -> ParameterSeries {
     type Reduced = Result<Coefficients, Box<dyn std::error::Error>>;
-    fn reduced_at_scale(by: f64) -> Reduced {
-        let model = reduced(&CRANK_ROCKER.scaled(by).text(), "C")?;
-        Ok(estimate::coefficients_with_errors(model.model(), CRANK_ANGLE)?.0)
-    }
+    let reduced_at_scale = move |by: f64| -> Reduced {
+        let model = FormModel::of(form, &CRANK_ROCKER.scaled(by).text(), "C", None)?;
+        Ok(model.coefficients_with_errors(CRANK_ANGLE)?.0)
+    };
     ParameterSeries {
         parameter: ("crank's length", "m"),
         reference: "the same bits as at 1 m, with another exponent",
@@ -114,8 +132,8 @@ fn powers_of_two() -> ParameterSeries {
             ])
         }),
         ..base_series(
-            "power-of-two",
-            "Four-bar: all lengths times a power of two",
+            form,
+            ("power-of-two", "Four-bar: all lengths times a power of two"),
             (-10..=10).map(|k| 8.0_f64.powi(k)).collect(),
             |by| CRANK_ROCKER.scaled(by),
         )

@@ -49,6 +49,8 @@ pub struct Requirement {
     pub min_digits: f64,
     /// By how much a relative change of the input is magnified in the result.
     pub condition_number: f64,
+    /// A typed error is an answer only where the condition number is above this.
+    pub refusable_from: f64,
 }
 
 impl Requirement {
@@ -64,6 +66,7 @@ impl Requirement {
         Self {
             min_digits: (-error.log10()).max(0.0),
             condition_number,
+            refusable_from: MIN_ILL_CONDITIONED,
         }
     }
 }
@@ -155,7 +158,7 @@ impl ResultCell {
     pub fn meets_requirement(&self) -> bool {
         match self.digits() {
             Some(digits) => digits >= self.requirement.min_digits,
-            None => self.requirement.condition_number > MIN_ILL_CONDITIONED,
+            None => self.requirement.condition_number > self.requirement.refusable_from,
         }
     }
 }

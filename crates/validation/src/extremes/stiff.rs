@@ -1,7 +1,8 @@
 //! Stiffness, damping, and drives with next to no mass.
 
 use super::closed_forms::{dd, elliptic_e, exponential};
-use super::mechanisms::{mass, reduced, rotor, scotch_yoke, slider};
+use super::forms::{Form, FormModel};
+use super::mechanisms::{mass, rotor, scotch_yoke, slider};
 use super::run_pair::{free_motion, kinetic_energy, load, loaded_motion, machine, quadrature};
 use super::series::{ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell};
 use dwell_dynamics::{Method, Options, Orbit, ReducedState};
@@ -17,8 +18,8 @@ const BODIES: [BodyId; 2] = [BodyId(0), BodyId(1)];
 /// Figure of these rows, and its title.
 const FIGURE: (&str, &str) = ("stiff", "Stiffness, damping and next to no mass");
 
-pub(super) fn series() -> Vec<ParameterSeries> {
-    vec![stiffness(), damping(), small_rotor(), light_crank()]
+pub(super) fn series(form: Form) -> Vec<ParameterSeries> {
+    vec![stiffness(), damping(), small_rotor(), light_crank(form)]
 }
 
 fn options() -> Options {
@@ -141,10 +142,10 @@ fn small_rotor() -> ParameterSeries {
 
 /// A Scotch yoke's crank carries next to nothing: m = J + sin² φ kg m², and the speed at the dead points is
 /// as large as J is small.
-fn light_crank() -> ParameterSeries {
+fn light_crank(form: Form) -> ParameterSeries {
     const FROM: f64 = 1.125;
-    let run = |inertia: f64| -> RunResult {
-        let model = reduced(&scotch_yoke(inertia, 1.0), "")?;
+    let run = move |inertia: f64| -> RunResult {
+        let model = FormModel::of(form, &scotch_yoke(inertia, 1.0), "", None)?;
         let (sin, _) = dd(FROM).sin_cos();
         let m = dd(inertia) + sin * sin;
         // ∮ √(J + sin² φ) dφ = 4 √(1 + J) E(k), k² = 1/(1 + J).
@@ -156,7 +157,8 @@ fn light_crank() -> ParameterSeries {
             let (t, q) = (0.0, FROM);
             ReducedState { t, q, q_dot }
         };
-        let motion = free_motion(&model, at_speed(1.0), period.value(), &options());
+        let options = Options::new(Method::Bdf, form.tolerance(1e-10));
+        let motion = free_motion(&model, at_speed(1.0), period.value(), &options);
         let [angle, energy] = match motion {
             Ok(runs) => {
                 let late = dd(period.value()) - period;
@@ -184,11 +186,11 @@ fn light_crank() -> ParameterSeries {
         reason: "the time of a revolution hardly depends on J: its steps (1e-10), and as many for each tenth of J, for they \
               grow geometrically from each dead point on. There the state passes within J s, so that its time would \
               have to be known to eps J: a condition of 1/J. The quadrature keeps all but 64 roundings",
-        requirement: Box::new(|inertia, quantity| match quantity {
+        requirement: Box::new(move |inertia, quantity| match quantity {
             2 => Requirement::from_rounding(64.0, 1.0),
             _ => {
-                let decades = 1.0 - inertia.log10();
-                Requirement::from_error(decades * ERROR_IN_TOLERANCES * 1e-10, 1.0 / inertia)
+                let errors = (1.0 - inertia.log10()) * ERROR_IN_TOLERANCES;
+                Requirement::from_error(errors * form.tolerance(1e-10), 1.0 / inertia)
             }
         }),
         run: Box::new(run),

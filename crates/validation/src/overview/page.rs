@@ -11,6 +11,7 @@ const REPORTS: &str = "<nav><ul>\n\
     <li><a href=\"manual.html\">Verification manual</a>: what is required, and the evidence for each capability</li>\n\
     <li><a href=\"space.html\">Mechanisms in space</a>: linkages in space against the dense equations and references</li>\n\
     <li><a href=\"extremes.html\">Extreme parameters</a>: ratios, scales, singular and stiff cases</li>\n\
+    <li><a href=\"extremes-forms.html\">Extremes in other forms</a>: in space, in single precision, on tables, as exported code</li>\n\
     <li><a href=\"extremes-pulses.html\">Pulses</a>: random pulses against closed forms</li>\n\
     <li><a href=\"extremes-machines.html\">Machines</a>: random machines against the multibody equations</li>\n\
     <li><a href=\"mutations.md\">Mutation study</a>: which checks detect which fault (just mutations)</li>\n\

@@ -1,0 +1,265 @@
+//! The forms in which a result of the grid is computed: in the plane, obliquely in space, in single precision, on a table, as exported
+//! code. The series are the same, with the same references; each form states what it may lose of their digits.
+
+use super::all_in;
+pub(super) use super::form_model::FormModel;
+pub use super::form_report::{add_to, check};
+use super::series::{ParameterSeries, Requirement, SeriesResult};
+use dwell_export::Precision;
+use std::sync::Arc;
+
+/// A kind of evaluation, in a kind of number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Form {
+    /// What is evaluated.
+    pub evaluated: Evaluated,
+    /// Its numbers.
+    pub precision: Precision,
+}
+
+/// What is evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Evaluated {
+    /// The planar mechanism.
+    Plane,
+    /// The mechanism in an oblique plane in space, which may take its planar equivalent.
+    Space,
+    /// The same with every loop closed in space.
+    Loops,
+    /// Its table.
+    Table,
+    /// Exported cells.
+    Cells,
+    /// The model's own operations, exported.
+    Operations,
+}
+
+/// The accuracy that is asked of tables and cells.
+const ACCURACY: f64 = 1e-9;
+/// The same of cells in single precision.
+const SINGLE_ACCURACY: f64 = 1e-6;
+/// What the operations of a model may differ by, in double and in single precision: beyond, the export refuses them.
+const OPERATIONS: [f64; 2] = [1e-7, 1e-3];
+/// A peak within so small a part of its domain needs more samples than a table takes.
+const NARROW: f64 = 1e-4;
+/// Roundings of the lift: the points and directions of the ground are rounded when they are placed in an oblique plane, and so are the numbers
+/// of a motion in each form.
+const STATED: f64 = 8.0;
+/// Roundings of a form, or its accuracies, that a result may err by: twice the 16 of a dyad, since the numbers are rounded, too, and in a
+/// cell a value may be a small part of the largest.
+const ALLOWED: f64 = 32.0;
+/// Values of a series that are run in each form, and as exported code, which measures itself at thousands of coordinates.
+const VALUES: [usize; 2] = [5, 3];
+/// What takes long is the grid's own: values above these are not run in other forms.
+const LARGEST_VALUES: [(&str, f64); 2] = [("revolutions", 100.0), ("large-group", 8.0)];
+
+impl Form {
+    /// The form of the grid itself.
+    pub const PLANE: Self = Self::of(Evaluated::Plane, Precision::Double);
+
+    /// The others.
+    pub const OTHERS: [Self; 9] = [
+        Self::of(Evaluated::Space, Precision::Double),
+        Self::of(Evaluated::Loops, Precision::Double),
+        Self::of(Evaluated::Plane, Precision::Float),
+        Self::of(Evaluated::Space, Precision::Float),
+        Self::of(Evaluated::Loops, Precision::Float),
+        Self::of(Evaluated::Table, Precision::Double),
+        Self::of(Evaluated::Cells, Precision::Double),
+        Self::of(Evaluated::Operations, Precision::Double),
+        Self::of(Evaluated::Operations, Precision::Float),
+    ];
+
+    const fn of(evaluated: Evaluated, precision: Precision) -> Self {
+        Self {
+            evaluated,
+            precision,
+        }
+    }
+
+    /// Its name in tables.
+    pub fn name(self) -> String {
+        let evaluated = match self.evaluated {
+            Evaluated::Plane => "plane",
+            Evaluated::Space => "space",
+            Evaluated::Loops => "space, loops",
+            Evaluated::Table => "table",
+            Evaluated::Cells => "exported cells",
+            Evaluated::Operations => "exported operations",
+        };
+        let precision = if self.is_single() { ", single" } else { "" };
+        format!("{evaluated}{precision}")
+    }
+
+    fn is_single(self) -> bool {
+        self.precision == Precision::Float
+    }
+
+    pub(super) fn is_in_space(self) -> bool {
+        matches!(self.evaluated, Evaluated::Space | Evaluated::Loops)
+    }
+
+    /// Whether it keeps an accuracy that is asked for, relative to the largest value, instead of that of its numbers.
+    pub(super) fn is_fitted(self) -> bool {
+        matches!(self.evaluated, Evaluated::Table | Evaluated::Cells)
+    }
+
+    /// The error of one of its numbers or functions.
+    pub(super) fn accuracy(self) -> f64 {
+        match (self.is_fitted(), self.is_single()) {
+            (true, false) => ACCURACY,
+            (true, true) => SINGLE_ACCURACY,
+            (false, false) => f64::EPSILON,
+            (false, true) => f32::EPSILON.into(),
+        }
+    }
+
+    /// The nearest coordinate that it can be asked for.
+    pub(super) fn coordinate(self, q: f64) -> f64 {
+        self.precision.round(q)
+    }
+
+    /// The tolerance of a motion in it: below the rounding of its numbers step control has nothing to go by.
+    pub(super) fn tolerance(self, tolerance: f64) -> f64 {
+        match self.is_single() {
+            true => tolerance.max(SINGLE_ACCURACY),
+            false => tolerance,
+        }
+    }
+
+    /// What it has to keep where double precision in the plane has to keep this: it loses as many roundings of its own numbers. A typed
+    /// error is an answer where half of its digits are lost, or beyond what an export or a table says it needs.
+    fn requirement(self, plane: Requirement, is_motion: bool) -> Requirement {
+        if self == Self::PLANE {
+            return plane;
+        }
+        let magnified = if self.is_fitted() && !is_motion {
+            1.0
+        } else {
+            plane.condition_number
+        };
+        let error = 10_f64.powf(-plane.min_digits) + ALLOWED * self.accuracy() * magnified;
+        let rounding = ALLOWED * self.accuracy();
+        let refusable_from = match (self.evaluated, self.is_single()) {
+            (Evaluated::Table | Evaluated::Cells, _) => NARROW.recip(),
+            // One quantity of the worst condition is enough for the whole export to be refused.
+            (Evaluated::Operations, single) => 0.1 * OPERATIONS[usize::from(single)] / rounding,
+            (_, true) => self.accuracy().sqrt().recip(),
+            (_, false) => plane.refusable_from,
+        };
+        Requirement {
+            refusable_from,
+            ..Requirement::from_error(error, plane.condition_number)
+        }
+    }
+
+    /// Why a series is not run in it, by its key.
+    pub fn not_run(self, key: &str) -> Option<&'static str> {
+        let is = |evaluated: &[Evaluated], keys: &[&str]| {
+            evaluated.contains(&self.evaluated) && keys.contains(&key)
+        };
+        let space = [Evaluated::Space, Evaluated::Loops];
+        let reasons = [
+            (
+                is(&space, &["placement"]),
+                "an oblique plane rounds the points of what is far from the origin",
+            ),
+            (
+                is(&space, &["light-crank", "gear-ratio", "cam-steepness"]),
+                "the lift has revolute and prismatic joints alone: no slot, teeth or cam",
+            ),
+            (
+                is(&[Evaluated::Operations], &["cam-steepness"]),
+                "refused: a law known by its values alone has no operations",
+            ),
+            (
+                is(&[Evaluated::Operations], &["large-group"]),
+                "refused: positions that Newton's method searches have no operations",
+            ),
+            (
+                is(&[Evaluated::Table], &["cam-steepness"]),
+                "refused: a table's cells are of one width, and its first 64 samples miss a steep cam",
+            ),
+            (
+                !(key.starts_with("tolerance-") || IN_FORMS.contains(&key)),
+                "motions under loads, results of commands and places in space run in one form alone",
+            ),
+        ];
+        let reason = reasons.into_iter().find(|(applies, _)| *applies);
+        reason.map(|(_, reason)| reason)
+    }
+}
+
+/// Whether the cells of a series are those of a motion.
+fn is_motion(series: &ParameterSeries) -> bool {
+    ["motions", "tolerances", "stiff", "edges"].contains(&series.figure.0)
+}
+
+/// A series as it is run in a form: some of its values, what the form has to keep of them, and what it states.
+fn in_form(mut series: ParameterSeries, form: Form) -> ParameterSeries {
+    let (motion, quantities) = (is_motion(&series), series.quantities.len());
+    let (plane, run) = (series.requirement, series.run);
+    let required = move |at, quantity| form.requirement(plane(at, quantity), motion);
+    // Of a motion of which nothing is left there is nothing to see, and single precision does not hold the fourth power of a long length.
+    let overflows = form.is_single() && series.key == "power-of-two";
+    let slow = LARGEST_VALUES.iter().find(|(key, _)| *key == series.key);
+    // What a compiler's own sines make of a last digit is not of this study either.
+    let drops = motion || (form.is_single() && form.evaluated == Evaluated::Operations);
+    series.values.retain(|&at| {
+        let kept = (0..quantities).all(|quantity| required(at, quantity).min_digits > 0.0);
+        (kept || !drops) && !(overflows && at > 1e9) && slow.is_none_or(|(_, most)| at <= *most)
+    });
+    let count = series.values.len();
+    let is_exported = matches!(form.evaluated, Evaluated::Cells | Evaluated::Operations);
+    let values = VALUES[usize::from(is_exported)].min(count);
+    let kept = (0..values).map(|k| k * (count - 1) / (values - 1).max(1));
+    series.values = kept.map(|k| series.values[k]).collect();
+    let required = Arc::new(required);
+    let stated = Arc::clone(&required);
+    series.requirement = Box::new(move |at, quantity| required(at, quantity));
+    series.run = Box::new(move |at| {
+        let mut cells = run(at)?;
+        if motion || form.is_in_space() {
+            for (quantity, cell) in cells.iter_mut().enumerate() {
+                let Ok(value) = cell else { continue };
+                let magnified = stated(at, quantity).condition_number;
+                value.error_estimate += STATED * form.accuracy() * magnified * value.scale;
+            }
+        }
+        Ok(cells)
+    });
+    series
+}
+
+/// The series of the grid that are run in a form.
+pub fn series(form: Form) -> Vec<ParameterSeries> {
+    let all = all_in(form, false).into_iter();
+    let run = all.filter(|series| form.not_run(&series.key).is_none());
+    run.map(|series| in_form(series, form)).collect()
+}
+
+/// The results of forms.
+pub fn evaluate(forms: &[Form]) -> Vec<(Form, Vec<SeriesResult>)> {
+    let one = |&form: &Form| (form, super::evaluate(series(form)));
+    forms.iter().map(one).collect()
+}
+
+/// What is evaluated in the form that is asked for, besides the series of tolerances; all else runs once.
+const IN_FORMS: [&str; 16] = [
+    "limit-four-bar",
+    "limit-slider-crank",
+    "flat-parallelogram",
+    "mass-ratio",
+    "length",
+    "power-of-two",
+    "placement",
+    "speed",
+    "revolutions",
+    "light-crank",
+    "short-crank",
+    "guide-near-path",
+    "gear-ratio",
+    "cam-steepness",
+    "long-links",
+    "large-group",
+];
