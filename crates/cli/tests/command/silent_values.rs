@@ -10,8 +10,8 @@ fn between_balls(load: &str) -> String {
 
 fn run(scene: impl AsRef<[u8]>, arguments: &[&str]) -> (TestDir, Run) {
     let dir = TestDir::new();
-    dir.put("scene.toml", scene);
-    let all = [&arguments[..1], &["scene.toml"], &arguments[1..]].concat();
+    dir.put("machine.toml", scene);
+    let all = [&arguments[..1], &["machine.toml"], &arguments[1..]].concat();
     let run = dir.run(&all);
     (dir, run)
 }
@@ -37,7 +37,7 @@ fn a_load_that_turns_a_body_about_the_line_of_its_balls_is_refused() {
                 "pull = {{ force = \"coupler.{point}\", direction = [0, 0, 1], magnitude = 50 }}"
             ),
             format!(
-                "pull = {{ force = \"coupler.{point}\", direction = [0, 1, 0], frame = \"body\", magnitude = \"5*t\" }}"
+                "pull = {{ force = \"coupler.{point}\", direction = [0, 0, 1], frame = \"body\", magnitude = \"5*t\" }}"
             ),
             format!(
                 "pull = {{ spring = [\"ground.S\", \"coupler.{point}\"], stiffness = 100, free-length = 0.1 }}"
@@ -105,13 +105,13 @@ fn a_rack_and_a_disc_mesh_at_the_travel_that_is_given() {
         ] {
             let (dir, run) = run(&scene, &["kinematics", "--pictures", "none"]);
             assert_eq!(run.status, Some(0), "{run:?}");
-            let s = column(&dir, "reports/scene-kinematics.csv", "s [m]");
+            let s = column(&dir, "reports/machine-kinematics.csv", "s [m]");
             // To rounding of positions of 0.3 m.
             assert!((s[0] - 0.3).abs() < 1e-14, "{s:?}");
             assert!((s[1] - 0.3 - sign * 0.5 * radius).abs() < 1e-14, "{s:?}");
         }
         let (dir, _) = run(rack("", radius), &["kinematics", "--pictures", "none"]);
-        let s = column(&dir, "reports/scene-kinematics.csv", "s [m]");
+        let s = column(&dir, "reports/machine-kinematics.csv", "s [m]");
         assert!((s[0] - 0.5 * radius).abs() < 1e-14, "{s:?}");
     }
 }
@@ -143,7 +143,7 @@ fn a_motor_given_by_its_line_has_no_current() {
     ] {
         let (dir, run) = run(driven(motor), &["simulate", "--pictures", "none"]);
         assert_eq!(run.status, Some(0), "{run:?}");
-        let text = std::fs::read_to_string(dir.0.join("reports/scene-motion.csv")).unwrap();
+        let text = std::fs::read_to_string(dir.0.join("reports/machine-motion.csv")).unwrap();
         for name in electrical {
             assert_eq!(text.contains(name), is_circuit, "{name}, {motor}");
         }
@@ -166,10 +166,14 @@ fn the_largest_force_of_a_drive_is_without_its_rotor() {
     ];
     let (dir, found) = run(&scene, &vary);
     assert_eq!(found.status, Some(0), "{found:?}");
-    let swept = column(&dir, "reports/scene-sweep.csv", "cycle.motor.max_abs [N m]")[0];
+    let swept = column(
+        &dir,
+        "reports/machine-sweep.csv",
+        "cycle.motor.max_abs [N m]",
+    )[0];
     let (dir, _) = run(&scene, &["simulate", "--pictures", "none"]);
     let [t, force] = ["t [s]", "motor.load_moment [N m]"]
-        .map(|name| column(&dir, "reports/scene-motion.csv", name));
+        .map(|name| column(&dir, "reports/machine-motion.csv", name));
     let late = t.iter().zip(&force).filter(|(t, _)| **t > 18.0);
     let largest = late.map(|(_, force)| force.abs()).fold(0.0, f64::max);
     // Both at samples, between which the largest is missed by less than 1 %; with what accelerates the rotor it would differ more.
