@@ -46,6 +46,7 @@ fn motor(inductance: f64) -> DriveKind {
         inductance,
         gear_ratio: 5.0,
         rotor_inertia: 1e-4,
+        is_torque_speed_line: false,
     })
 }
 

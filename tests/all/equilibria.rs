@@ -126,6 +126,7 @@ fn motor(inductance: f64) -> Motor {
         inductance,
         gear_ratio: 20.0,
         rotor_inertia: 1e-4,
+        is_torque_speed_line: false,
     }
 }
 

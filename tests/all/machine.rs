@@ -236,6 +236,7 @@ push = { torque = "two", magnitude = { table = [[-4, 1], [0, 2], [4, -1]], of = 
                 inductance: 0.05,
                 gear_ratio: 3.0,
                 rotor_inertia: 0.001,
+                is_torque_speed_line: false,
             }),
         },
         Drive {

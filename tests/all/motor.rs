@@ -37,6 +37,7 @@ fn final_velocity(inductance: f64, method: Method, tolerance: f64) -> f64 {
             inductance,
             gear_ratio: 5.0,
             rotor_inertia: 1e-4,
+            is_torque_speed_line: false,
         }),
     };
     let machine = machine(&scene, &[], &[motor]);

@@ -82,6 +82,9 @@ pub struct Motor<C = Coordinate> {
     pub gear_ratio: f64,
     /// Moment of inertia of the rotor, J, kg m².
     pub rotor_inertia: f64,
+    /// Whether voltage, torque constant and resistance are a torque–speed line written as a circuit: then they, the current and what they make
+    /// of power and losses are no quantities of the motor.
+    pub is_torque_speed_line: bool,
 }
 
 /// A proportional-integral speed controller, eq. (2).

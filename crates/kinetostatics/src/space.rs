@@ -36,6 +36,7 @@
 mod action;
 mod compiled_loads;
 mod friction;
+mod idle_moments;
 mod in_plane;
 mod lifted_reactions;
 mod load;

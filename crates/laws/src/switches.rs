@@ -215,13 +215,15 @@ impl Switches {
                 Some(subtrahend) => minuend.enclose(over).minus(subtrahend.enclose(over)),
                 None => minuend.enclose(over),
             };
-            let ends = [0.0, 0.5, 1.0].map(value);
-            let rounding = ROUNDING
-                * ends
-                    .into_iter()
-                    .fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
+            let size = |at: f64| {
+                let right = subtrahend.as_ref().map_or(0.0, |s| s.value(at));
+                minuend.value(at).abs() + right.abs()
+            };
+            let sizes = [0.0, 0.5, 1.0].map(size);
+            let rounding = ROUNDING * sizes.into_iter().fold(f64::MIN_POSITIVE, f64::max);
+            let start = value(0.0);
             // Where the motion begins anew it is beyond its bound by rounding.
-            let bounds = [low.min(ends[0]) - rounding, high.max(ends[0]) + rounding];
+            let bounds = [low.min(start) - rounding, high.max(start) + rounding];
             let at = (low < high).then(|| first_outside(bounds, value, enclose))?;
             at.map(|at| (k, at))
         });

@@ -10,7 +10,7 @@ use crate::features::interval::Interval;
 use crate::features::switching::{Operands, enclose_ops};
 
 /// Most parts of a step that are looked at for one function.
-const MAX_CELLS: usize = 2000;
+const MAX_CELLS: usize = 256;
 /// The narrowest of them, as a part of the step: what is narrower is not looked for.
 const MIN_WIDTH: f64 = 1e-9;
 /// Polynomials up to this degree are seen by the points of a step and a parabola through them.
@@ -159,8 +159,9 @@ pub(crate) fn first_outside(
         if let Some(at) = [from, middle, to].into_iter().find(|&at| is_outside(at)) {
             return Some(at);
         }
-        // What grows or falls throughout is between its ends.
-        if slope.contains(0.0) && to - from > MIN_WIDTH {
+        // What grows or falls throughout is between its ends, and so is what stands still.
+        let turns = slope.contains(0.0) && slope.magnitude() > 0.0;
+        if turns && to - from > MIN_WIDTH {
             open.extend([[middle, to], [from, middle]]);
         }
     }

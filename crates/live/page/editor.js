@@ -16,6 +16,8 @@ class Editor {
     this.hint = root.querySelector('[data-part=hint]');
     this.schema = null;
     this.messages = [];
+    // The text while a number slides: it is shown and computed, and typed when the slider is let go.
+    this.sliding = null;
     this.changed = changed;
     this.completion = new Completion(this, root.querySelector('[data-part=completion]'));
     this.slider = new NumberSlider(this, root.querySelector('[data-part=slider]'));
@@ -29,10 +31,11 @@ class Editor {
     });
   }
 
-  get text() { return this.area.value; }
+  get text() { return this.sliding ?? this.area.value; }
 
   // Shows another text, without a call of `changed`.
   open(text) {
+    this.sliding = null;
     this.area.value = text;
     this.area.scrollTop = 0;
     this.area.setSelectionRange(0, 0);
@@ -62,12 +65,21 @@ class Editor {
     }
   }
 
-  // The same from a slider, without a step of undo for each of its positions.
-  replace(from, to, text) {
-    this.area.setRangeText(text, from, to, 'preserve');
+  // Shows a part of the text replaced, without typing it: after `setRangeText` the browser forgets all steps of undo.
+  slide(from, to, text) {
+    const typed = this.area.value;
+    this.sliding = typed.slice(0, from) + text + typed.slice(to);
     this.messages = [];
     this.draw();
     this.changed(this.text);
+  }
+
+  // Types what was slid to: one step of undo.
+  settle(from, to, text) {
+    if (this.sliding === null) return;
+    this.sliding = null;
+    if (this.area.value.slice(from, to) !== text) this.type(from, to, text);
+    else this.edited();
   }
 
   // Whether the scene is one in space: a point with three numbers.

@@ -28,6 +28,8 @@ class Live {
     this.files = new SceneFiles(this);
     this.command = 'motion';
     this.version = 0;
+    // Whether a scene was opened of which nothing has been shown yet.
+    this.isOther = false;
     this.buttons = COMMANDS.map(([name, command]) => this.tab(name, command));
     document.querySelector('.live-tabs').append(...this.buttons);
     element('live-again').addEventListener('click', () => this.work(this.ask()));
@@ -123,10 +125,14 @@ class Live {
     this.messages(answer.messages);
     if (!results) return;
     const { page } = answer;
-    document.body.classList.toggle('live-old', !page);
-    if (!page) return this.say('not computed: see the messages beside');
+    if (!page) {
+      this.old();
+      return this.say('not computed: see the messages beside');
+    }
+    document.body.classList.remove('live-old', 'live-none');
     const begun = performance.now();
-    this.page.show(page, numbers);
+    this.page.show(page, numbers, this.isOther);
+    this.isOther = false;
     this.work(this.page.settled());
     document.title = `${page.title} – Dwell`;
     const drawn = performance.now() - begun;
@@ -134,9 +140,16 @@ class Live {
   }
 
   failed(error) {
-    document.body.classList.add('live-old');
+    this.old();
     this.messages([{ severity: 'error', message: `this scene could not be computed here: ${error.message}`, help: 'the command line may', labels: [] }]);
     this.say('not computed');
+  }
+
+  // What is shown belongs to the text before the change: it is dimmed. Of the scene before nothing is shown, and nothing can be saved, once another is opened.
+  old() {
+    document.body.classList.add('live-old');
+    document.body.classList.toggle('live-none', this.isOther);
+    if (this.isOther) document.title = 'Dwell';
   }
 
   messages(messages) {
@@ -170,6 +183,7 @@ class Live {
   say(text) { element('live-status').textContent = text; }
 
   open(text) {
+    this.isOther = true;
     this.editor.open(text);
     this.edited();
     if (!this.follows(this.command)) this.choose('motion');

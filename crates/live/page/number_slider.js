@@ -7,7 +7,9 @@ class NumberSlider {
     this.editor = editor;
     this.box = box;
     this.input = box.querySelector('input');
+    this.written = null;
     this.input.addEventListener('input', () => this.slid());
+    this.input.addEventListener('change', () => this.settle());
     this.input.addEventListener('keydown', (event) => {
       if (event.key !== 'Escape') return;
       this.close();
@@ -44,9 +46,21 @@ class NumberSlider {
   slid() {
     const value = this.low + Number(this.input.value) * this.step;
     const written = this.whole ? String(Math.max(2, Math.round(value))) : number(value, this.decimals);
-    this.editor.replace(this.from, this.to, written);
-    this.to = this.from + written.length;
+    this.written = written;
+    this.editor.slide(this.from, this.to, written);
     this.input.setAttribute('aria-valuetext', written);
+  }
+
+  // Types the number; the slider stays at it.
+  settle() {
+    const { written, from, to } = this;
+    if (written === null) return;
+    this.written = null;
+    this.editor.settle(from, to, written);
+    this.to = from + written.length;
+    this.box.hidden = false;
+    this.place();
+    this.input.focus();
   }
 
   place() {
@@ -60,7 +74,14 @@ class NumberSlider {
     if (!this.box.hidden) this.input.focus();
   }
 
-  close() { this.box.hidden = true; }
+  close() {
+    if (this.written !== null) {
+      const { written, from, to } = this;
+      this.written = null;
+      this.editor.settle(from, to, written);
+    }
+    this.box.hidden = true;
+  }
 }
 
 const decimalsOf = (text) => (/\.(\d*)/.exec(text) || ['', ''])[1].length;

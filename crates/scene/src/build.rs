@@ -151,13 +151,19 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
     if log.count() > 0 {
         return None;
     }
-    let mechanism = Mechanism {
+    let mut mechanism = Mechanism {
         bodies: bodies.list.iter().map(|b| Body::named(b.name)).collect(),
         ground: bodies.ground?,
         joints: joints.list.into_iter().filter_map(|j| j.joint).collect(),
         actuators: actuators.into_iter().filter_map(|a| a.actuator).collect(),
         couplings: joints.couplings,
     };
+    let assembly = Assembly {
+        coordinates: start,
+        initial_guess: assembly.initial_guess,
+        branch_hints: assembly.branch_hints,
+    };
+    mechanism.mesh_as_given(&assembly.to_configuration());
     let mut requests = requested.unwrap_or_default();
     if !requests.lists_reactions {
         requests.reactions = mechanism.reactions();
@@ -173,13 +179,9 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
         varying_inertias,
         points: bodies.named_points(),
         coordinates: named.of_section(),
-        motion: motion.and_then(|m| m.into_spec(&start, events)),
+        motion: motion.and_then(|m| m.into_spec(&assembly.coordinates, events)),
         mechanism,
-        assembly: Assembly {
-            coordinates: start,
-            initial_guess: assembly.initial_guess,
-            branch_hints: assembly.branch_hints,
-        },
+        assembly,
         prescribed,
         sweep,
         loads,

@@ -101,7 +101,8 @@ impl<C: AnyCoordinate> DriveTable<'_, C> {
         }
         let inertia = NumberRule::new(&units.inertia, SignRule::NotNegative);
         let inertia = fields.number_or(0.0, "inertia", &inertia);
-        let circuit = match self.is_torque_speed_line()? {
+        let is_torque_speed_line = self.is_torque_speed_line()?;
+        let circuit = match is_torque_speed_line {
             true => self.torque_speed_line(),
             false => self.circuit(),
         };
@@ -113,6 +114,7 @@ impl<C: AnyCoordinate> DriveTable<'_, C> {
             inductance,
             gear_ratio: ratio?,
             rotor_inertia: inertia?,
+            is_torque_speed_line,
         }))
     }
 

@@ -47,7 +47,7 @@ fn description(scene: &Scene, record: &mut Record) -> Result<String, StudyError>
     let actuators = mechanism.actuators.iter().map(|a| a.name.as_str());
     let mut text = describe_parts(scene, "", parts, actuators, record);
     text += &describe_freedom(scene, plan, record);
-    text += &describe_range(mechanism, plan, record);
+    text += &describe_range((scene, mechanism), plan, record);
     text += &describe_groups(mechanism, plan, record);
     text += &(describe_branch(scene, plan, record) + &branch_note(scene, plan));
     text += &describe_contents(scene, plan, record);
@@ -150,6 +150,7 @@ pub(crate) fn describe_redundant(
 
 /// The range of an actuator; `note` says what is known of its ends.
 pub(crate) fn range_text(
+    file: &SceneFile,
     (name, is_angle): (&str, bool),
     range: Range,
     note: &str,
@@ -169,14 +170,18 @@ pub(crate) fn range_text(
         }
         Range::Unbounded => format!("  no limit of {name} was found\n"),
         Range::Limited(from, to) | Range::Stroke(from, to) | Range::Unresolved(from, to) => {
-            let ends = describe_ends(from, to, is_angle);
+            let ends = describe_ends(file, from, to, is_angle);
             format!("  {name} ranges from {ends}{note}\n")
         }
     }
 }
 
 /// The range of the actuator.
-fn describe_range(mechanism: &Mechanism, plan: &Plan, record: &mut Record) -> String {
+fn describe_range(
+    (file, mechanism): (&SceneFile, &Mechanism),
+    plan: &Plan,
+    record: &mut Record,
+) -> String {
     let actuator = match mechanism.actuators.as_slice() {
         [] => return String::new(),
         [actuator] => actuator,
@@ -196,7 +201,7 @@ fn describe_range(mechanism: &Mechanism, plan: &Plan, record: &mut Record) -> St
         Range::Unbounded if is_angle => {
             format!("  {name} is unlimited; the mechanism is not periodic within 8 revolutions\n")
         }
-        range => range_text((name, is_angle), range, note, record),
+        range => range_text(file, (name, is_angle), range, note, record),
     };
     let limits = plan.range_limits().into_iter().flatten();
     let limits = limits.map(|limit| {
@@ -206,7 +211,7 @@ fn describe_range(mechanism: &Mechanism, plan: &Plan, record: &mut Record) -> St
         };
         format!(
             "    {}{beyond}\n",
-            describe_limit(mechanism, plan, limit, 0.0)
+            describe_limit((file, mechanism), plan, limit, 0.0)
         )
     });
     text + &limits.collect::<String>()

@@ -17,6 +17,7 @@ mod pictures;
 mod real_time;
 mod results;
 mod rows;
+mod silent_values;
 mod space;
 mod studies;
 mod summaries;

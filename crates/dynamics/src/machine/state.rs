@@ -46,6 +46,15 @@ impl<T: Scalar, M: MovingModel> MachineState<'_, T, M> {
         &self.equation.drive_forces
     }
 
+    /// By drive: its force on the bodies, N·m or N, without that which accelerates its rotor.
+    pub fn net_drive_forces(&self) -> impl Iterator<Item = T> + '_ {
+        let magnitudes = self.forces.magnitudes();
+        self.machine
+            .drives
+            .iter()
+            .map(|drive| magnitudes[drive.load])
+    }
+
     /// The magnitudes of the loads, in the units of their kinds.
     pub fn magnitudes(&self) -> &[T] {
         self.forces.magnitudes()

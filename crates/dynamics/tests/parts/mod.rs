@@ -100,6 +100,7 @@ pub(crate) fn motor(bodies: [usize; 2]) -> Drive {
             inductance: 0.05,
             gear_ratio: 3.0,
             rotor_inertia: 0.001,
+            is_torque_speed_line: false,
         }),
     }
 }

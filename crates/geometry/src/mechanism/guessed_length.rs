@@ -47,6 +47,47 @@ impl Mechanism {
         (length > 0.0 && length.is_finite()).then_some(length)
     }
 
+    /// Meshes racks and rolling discs as the assembly gives them: where a travel given there says how far the disc has rolled, the point P₁ of the
+    /// pitch line or track moves along it, so that the disc is there at its angle. Without such a travel P₁ stays, where angle 0 meets it.
+    pub fn mesh_as_given(&mut self, assembly: &AssemblyConfiguration) {
+        // A travel that the phase does not depend on says nothing about it.
+        let mut other = assembly.clone();
+        for (hint, joint) in other.branch_hints.iter_mut().zip(&self.joints) {
+            let is_travel = joint.kind.travel_axis().is_some();
+            *hint = hint.map(|value| value + if is_travel { 1.0 } else { 0.0 });
+        }
+        for j in 0..self.joints.len() {
+            let (JointKind::Rack { axis, .. } | JointKind::Rolling { axis, .. }) =
+                self.joints[j].kind
+            else {
+                continue;
+            };
+            let [given, elsewhere] = [assembly, &other].map(|at| self.unrolled(JointId(j), at));
+            if let (Some(given), Some(elsewhere)) = (given, elsewhere)
+                && given != elsewhere
+            {
+                self.joints[j].points[0] = self.joints[j].points[0] + axis * given;
+            }
+        }
+    }
+
+    /// t·(P₂ − P₁) + r (θ₂ − θ₁) of a rack or rolling disc, m, where the assembly places both bodies: zero where they mesh.
+    fn unrolled(&self, JointId(j): JointId, assembly: &AssemblyConfiguration) -> Option<f64> {
+        let joint = self.joints.get(j)?;
+        let (JointKind::Rack { axis, radius } | JointKind::Rolling { axis, radius }) = joint.kind
+        else {
+            return None;
+        };
+        let (frames, angles) = (self.guessed_frames(assembly), self.guessed_angles(assembly));
+        let [first, second] = joint
+            .bodies
+            .map(|b| Some((frames.get(b.0).copied()??, angles.get(b.0).copied()??)));
+        let ((from, first_angle), (to, second_angle)) = (first?, second?);
+        let point = |(origin, rotation): Frame, k: usize| origin + joint.points[k].rotate(rotation);
+        let along = axis.rotate(from.1).dot(point(to, 1) - point(from, 0));
+        Some(along + radius * (second_angle - first_angle))
+    }
+
     /// The frames of the bodies that the approximate angles place.
     fn guessed_frames(&self, assembly: &AssemblyConfiguration) -> Vec<Option<Frame>> {
         let angles = self.guessed_angles(assembly);

@@ -117,6 +117,7 @@ impl MachineModel for Model {
 
     fn with_loads(mut self, loads: Vec<Load>) -> Result<Self, LoadError> {
         self.loads = CompiledLoads::compile(self.mechanism(), self.plan(), loads)?;
+        self.require_no_idle_moment()?;
         self.compile_surface_frictions()?;
         self.compile_frictions()?;
         Ok(self)

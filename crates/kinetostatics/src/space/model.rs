@@ -86,7 +86,7 @@ pub struct Model {
     /// Those of cylindrical joints that hold at rest.
     pub(super) surface_frictions: Vec<SurfaceFriction>,
     /// By actuator: where it was assembled.
-    start: Vec<f64>,
+    pub(super) start: Vec<f64>,
     /// The planar model of its reduced coefficients, where one was looked for and found.
     pub(super) in_plane: Option<Arc<InPlane>>,
 }

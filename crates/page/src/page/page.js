@@ -58,9 +58,12 @@ function create(root, options = {}) {
     el('header', {}, el('div', {}, title, subtitle), el('div', { class: 'tools' }, hash, unitButton, themeButton)), note, words.top,
     el('div', { class: 'grid' }, left, charts.root), peaks.tableCard, words.root);
 
-  function show(description, numbers) {
-    const before = run && run.axis ? run.axis.values[row] : state.at;
+  // Another run of the same scene keeps the position, where it has the same axis; one of another scene begins at its first.
+  function show(description, numbers, isOther) {
+    const axis = run && run.axis && run.axis.key;
+    let before = run ? axis && run.axis.values[row] : state.at;
     run = createRun(description, numbers);
+    if (isOther || (axis && (!run.axis || run.axis.key !== axis))) before = null;
     const d = run.description;
     run.isClosed = isClosed(run);
     units = createUnits(d.units);
@@ -161,8 +164,8 @@ function create(root, options = {}) {
 
   return {
     // Shows a run: the description (an object, or its JSON) and its numbers (a Float64Array).
-    show(description, numbers) {
-      show(description, numbers);
+    show(description, numbers, isOther) {
+      show(description, numbers, isOther);
       run.numbers = numbers;
     },
     move: actions.move,

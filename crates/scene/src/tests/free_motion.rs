@@ -143,6 +143,7 @@ fn drives() {
         inductance: 0.002,
         gear_ratio: -20.0,
         rotor_inertia: 3.5 / 1e6,
+        is_torque_speed_line: false,
     };
     let pump = Motor {
         voltage: Magnitude::Constant(1.0),
@@ -151,6 +152,7 @@ fn drives() {
         inductance: 0.0,
         gear_ratio: 400.0,
         rotor_inertia: 0.0,
+        is_torque_speed_line: true,
     };
     let governor = SpeedController {
         reference_speed: Magnitude::Constant(PI),

@@ -2,10 +2,10 @@
 
 use crate::cycle::errors::MAX_SPEED_ERROR;
 pub use crate::cycle::errors::{CycleErrors, CycleStability};
-use crate::explain::{StudyError, labels};
+use crate::explain::{StudyError, describe_ends, labels};
 use crate::machines::{MachineScene, SceneMachine};
 use crate::models::SolverSettings;
-use crate::number_format::{coordinate_unit, count, digits};
+use crate::number_format::{count, digits};
 use dwell_dynamics::{
     Cycle, DynamicsError, Flywheel, Machine, MovingModel, OdeState, Options, initial_transient,
     size_flywheel, steady_cycle,
@@ -60,8 +60,8 @@ fn require_rotating(prepared: &SceneMachine<'_, impl MachineScene>) -> Result<()
         None if is_angle => return Ok(()),
         None => "is a length".to_owned(),
         Some((from, to)) => {
-            let [from, to] = [from, to].map(|end| digits(end, 6));
-            format!("is limited to {from} to {to} {}", coordinate_unit(is_angle))
+            let range = describe_ends(prepared.scene, from, to, is_angle);
+            format!("is limited to {range}")
         }
     };
     let name = prepared.coordinate_name(coordinate);

@@ -2,8 +2,8 @@
 
 use crate::explain::{
     Labels, StudyError, actuator_labels, body_labels, body_names, body_names_or_mechanism,
-    joint_labels, joint_names, labels, non_finite_coupling, non_finite_coupling_error, scene_error,
-    start_labels,
+    joint_labels, joint_names, labels, non_finite_coupling, non_finite_coupling_error, own_length,
+    scene_error, start_labels,
 };
 use crate::number_format::{count, number};
 use dwell_dynamics::MachineError;
@@ -66,7 +66,7 @@ fn explain_assembly(scene: &Scene, error: &AssemblyError) -> StudyError {
                 )
             } else {
                 let missing = match gap.is_finite() {
-                    true => format!(": {} m are missing", number(*gap)),
+                    true => format!(": {} are missing", own_length(scene, *gap, 6)),
                     false => String::new(),
                 };
                 (
@@ -89,9 +89,10 @@ fn explain_assembly(scene: &Scene, error: &AssemblyError) -> StudyError {
         } => scene_error(
             scene,
             format!(
-                "`{}` cannot mesh: the distance is {distance:.6} m at the start, and the radii ask for \
-                 {required:.6} m",
-                mechanism.joints[joint.0].name
+                "`{}` cannot mesh: the distance is {} at the start, and the radii ask for {}",
+                mechanism.joints[joint.0].name,
+                own_length(scene, *distance, 6),
+                own_length(scene, *required, 6)
             ),
             "correct a radius or a centre; `internal = true` is for a ring gear, a negative radius for a pinion \
              on the other side of its rack",
@@ -170,7 +171,8 @@ pub(crate) fn inconsistent(
 ) -> StudyError {
     let redundant = count(redundant_count, "constraint");
     let message = format!(
-        "the mechanism is overconstrained by {redundant}, and the redundant constraints are inconsistent: closure error {gap:.2e} m"
+        "the mechanism is overconstrained by {redundant}, and the redundant constraints are inconsistent: closure error {}",
+        own_length(scene, gap, 3)
     );
     let help = format!("redundant constraints must agree to the last digits: {help}");
     let labels = joint_labels(joints, "among the redundant constraints");

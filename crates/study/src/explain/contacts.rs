@@ -1,7 +1,7 @@
 //! Explains friction that holds, end stops, and functions of a program that jump.
 
-use crate::explain::{NamedScene, StudyError, scene_error};
-use crate::number_format::{coordinate_unit, digits, number};
+use crate::explain::{NamedScene, StudyError, own_coordinate, scene_error};
+use crate::number_format::{digits, number};
 use dwell_geometry::ActuatorId;
 use dwell_scene::SceneLocation;
 
@@ -57,12 +57,8 @@ pub(super) fn explain_no_progress(
 pub(super) fn explain_beyond_stop(scene: &impl NamedScene, stop: usize, q: f64) -> StudyError {
     let (_, actuator) = scene.stop(stop).unwrap_or(("", ActuatorId(0)));
     let is_angle = scene.actuator(actuator.0).is_some_and(|(_, angle)| angle);
-    let unit = coordinate_unit(is_angle);
-    let name = stop_name(scene, stop);
-    let message = format!(
-        "the motion starts at {} {unit}, beyond end stop `{name}`",
-        number(q)
-    );
+    let (name, at) = (stop_name(scene, stop), own_coordinate(scene, q, is_angle));
+    let message = format!("the motion starts at {at}, beyond end stop `{name}`");
     let help = "start between the limits, or move the stop";
     let places = [
         (SceneLocation::Stop(stop), "this stop"),

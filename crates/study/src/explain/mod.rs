@@ -26,5 +26,7 @@ pub(crate) use motion::{StepLimits, explain_any_motion, explain_max_steps};
 pub use named_scene::NamedScene;
 pub use position::explain_position;
 pub(crate) use position::explain_position_in;
-pub(crate) use position::{describe_coordinate, describe_ends, describe_limit};
+pub(crate) use position::{
+    describe_coordinate, describe_ends, describe_limit, own_coordinate, own_length,
+};
 pub use study_error::{StudyError, SweepError};

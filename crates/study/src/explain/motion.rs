@@ -5,9 +5,10 @@ use super::contacts::{
     explain_sticking, explain_stop,
 };
 use crate::explain::{
-    NamedScene, StudyError, body_names, explain_position, joint_labels, labels, scene_error,
+    NamedScene, StudyError, body_names, explain_position, joint_labels, labels, own_coordinate,
+    scene_error,
 };
-use crate::number_format::{coordinate_unit, digits, force_unit, number};
+use crate::number_format::{digits, force_unit, number};
 use dwell_dynamics::DynamicsError;
 use dwell_geometry::{ActuatorId, Plan};
 use dwell_kinetostatics::KinetostaticsError;
@@ -292,18 +293,18 @@ fn explain_near_branches(
     t: f64,
     [q, half_width]: [f64; 2],
 ) -> StudyError {
-    let unit = coordinate_unit(plan.is_angle(0));
+    let own = |value| own_coordinate(scene, value, plan.is_angle(0));
     let mut nearest = plan.near_branches().iter();
     let group = nearest.find(|near| near.half_width == half_width);
     let bodies = group.map(|near| body_names(&scene.mechanism, &plan.group_bodies(near.group)));
     let message = format!(
-        "soon after t = {} s the assembly modes of {} nearly meet, at {} = {} {unit}: they are as close as at a change \
-         point within {} {unit}, and rounding does not show in which of them the motion continues",
+        "soon after t = {} s the assembly modes of {} nearly meet, at {} = {}: they are as close as at a change \
+         point within {}, and rounding does not show in which of them the motion continues",
         digits(t, 6),
         bodies.unwrap_or_else(|| "the mechanism".to_owned()),
         scene.quoted_coordinate(),
-        number(q),
-        digits(half_width, 2),
+        own(q),
+        own(half_width),
     );
     let help = "make the lengths exactly those of a change point, which the motion crosses; or change one by more than 1e-9 \
                 of the mechanism's size, so that the modes are apart; or end the motion earlier";

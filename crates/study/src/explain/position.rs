@@ -4,13 +4,26 @@ use crate::explain::{
     NamedScene as _, StudyError, body_names, body_names_or_mechanism, joint_labels, labels,
     scene_error,
 };
-use crate::number_format::{coordinate_unit, digits, number};
+use crate::number_format::{digits, number};
 use dwell_geometry::{ActuatorId, Mechanism, Plan, PositionError, RangeLimit};
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{Scene, SceneFile, SceneLocation};
 use std::f64::consts::TAU;
 
-/// A coordinate with its name: `phi = 2.046915388 rad (117.28°)`. What is finer is rounding at the end of a range.
-pub(crate) fn describe_coordinate(name: &str, q: f64, is_angle: bool) -> String {
+/// A length, m, to so many digits in the scene's own unit: `12.5 mm`.
+pub(crate) fn own_length(file: &SceneFile, length: f64, count: usize) -> String {
+    let (value, unit) = file.to_scene_unit(length, false);
+    format!("{} {unit}", digits(value, count))
+}
+
+/// A coordinate, rad or m, in the scene's own unit: `117.28 deg`.
+pub(crate) fn own_coordinate(file: &SceneFile, q: f64, is_angle: bool) -> String {
+    let (value, unit) = file.to_scene_unit(q, is_angle);
+    format!("{} {unit}", number(value))
+}
+
+/// A coordinate with its name: `phi = 2.046915388 rad (117.28°)`, a length in the scene's own unit. What is finer is rounding at the end
+/// of a range.
+pub(crate) fn describe_coordinate(file: &SceneFile, name: &str, q: f64, is_angle: bool) -> String {
     let rounded = (q * 1e9).round() * 1e-9 + 0.0;
     match is_angle {
         true => format!(
@@ -18,13 +31,13 @@ pub(crate) fn describe_coordinate(name: &str, q: f64, is_angle: bool) -> String 
             digits(rounded, 10),
             number(rounded.to_degrees())
         ),
-        false => format!("{name} = {} m", digits(rounded, 10)),
+        false => format!("{name} = {}", own_length(file, rounded, 10)),
     }
 }
 
 /// What the end of a range is, and where: `limit position of `rod` at s = 0.2 m`. `revolutions` are added to an angle.
 pub(crate) fn describe_limit(
-    mechanism: &Mechanism,
+    (file, mechanism): (&SceneFile, &Mechanism),
     plan: &Plan,
     limit: RangeLimit,
     revolutions: f64,
@@ -40,19 +53,25 @@ pub(crate) fn describe_limit(
     };
     let who = body_names_or_mechanism(mechanism, &bodies);
     let name = mechanism.actuators.first().map_or("", |a| &a.name);
-    let at = describe_coordinate(name, limit.q + TAU * revolutions, plan.is_angle(0));
+    let at = describe_coordinate(file, name, limit.q + TAU * revolutions, plan.is_angle(0));
     format!("{kind} of {who} at {at}")
 }
 
 /// The two ends of a range: `0 to 2.046915 rad (0° to 117.28°)`.
-pub(crate) fn describe_ends(from: f64, to: f64, is_angle: bool) -> String {
+pub(crate) fn describe_ends(file: &SceneFile, from: f64, to: f64, is_angle: bool) -> String {
     match is_angle {
         true => format!(
             "{from:.6} to {to:.6} rad ({:.2}° to {:.2}°)",
             from.to_degrees(),
             to.to_degrees()
         ),
-        false => format!("{from:.6} to {to:.6} m"),
+        false => {
+            let ([from, to], unit) = (
+                [from, to].map(|q| file.to_scene_unit(q, false).0),
+                file.to_scene_unit(to, false).1,
+            );
+            format!("{} to {} {unit}", number(from), number(to))
+        }
     }
 }
 
@@ -70,16 +89,15 @@ pub(crate) fn explain_position_in(
     error: &PositionError,
 ) -> StudyError {
     const RANGE_ENDS: &str = "this is outside the range; `dwell check` shows the range";
-    let unit = coordinate_unit(plan.is_angle(0));
-    let at = error.coordinate().map_or(String::new(), number);
-    let at = format!("{phi} = {at} {unit}");
+    let at = |q| format!("{phi} = {}", own_coordinate(scene, q, plan.is_angle(0)));
+    let at = error.coordinate().map_or_else(String::new, at);
     let group = error.group();
     let bodies = group.map(|g| body_names(&scene.mechanism, &plan.group_bodies(g)));
     let bodies = bodies.unwrap_or_default();
     let (message, help) = match *error {
         PositionError::NoAssembly { gap, .. } => {
-            let gap = digits(gap, 3);
-            let message = format!("{bodies} cannot reach each other at {at}: gap of {gap} m");
+            let gap = own_length(scene, gap, 3);
+            let message = format!("{bodies} cannot reach each other at {at}: gap of {gap}");
             (message, RANGE_ENDS)
         }
         PositionError::Singular { .. } => (
@@ -97,11 +115,11 @@ pub(crate) fn explain_position_in(
         ),
         PositionError::NotConverged { residual, .. } => {
             let what = format!("the positions of {bodies} could not be computed at {at}");
-            let message = format!("{what}: residual {} m", digits(residual, 3));
+            let message = format!("{what}: residual {}", own_length(scene, residual, 3));
             (message, RANGE_ENDS)
         }
         PositionError::OutOfRange { from, to, .. } => {
-            let range = describe_ends(from, to, plan.is_angle(0));
+            let range = describe_ends(scene, from, to, plan.is_angle(0));
             let message = format!("{at} is outside its range, {range}");
             (message, "start within the range; `dwell check` shows it")
         }

@@ -22,10 +22,15 @@ pub(crate) fn drive_states<C: Copy>(
     drives.iter().filter_map(state).collect()
 }
 
-/// The motor of a drive that is one; none of a motor whose current makes no torque.
+/// The motor of a drive that is one, given by its circuit; none of a motor given by its torque–speed line, whose circuit is not known, or whose
+/// current makes no torque.
 pub(crate) fn motor_of<C: Copy>(drive: &Drive<C>) -> Option<&Motor<C>> {
     match &drive.kind {
-        DriveKind::Motor(motor) if motor.torque_constant * motor.gear_ratio != 0.0 => Some(motor),
+        DriveKind::Motor(motor)
+            if motor.torque_constant * motor.gear_ratio != 0.0 && !motor.is_torque_speed_line =>
+        {
+            Some(motor)
+        }
         DriveKind::Motor(_) | DriveKind::SpeedController(_) | DriveKind::AppliedForce(_) => None,
     }
 }

@@ -102,7 +102,13 @@ fn describe_range(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> Strin
         (Range::Unresolved(..), _) => "; how it goes on from there is not known",
         _ => ": limit positions at both ends",
     };
-    let text = range_text((&actuator.name, is_angle(scene)), range, note, record);
+    let text = range_text(
+        scene,
+        (&actuator.name, is_angle(scene)),
+        range,
+        note,
+        record,
+    );
     text + &describe_change_points(scene, plan, record)
 }
 
@@ -116,7 +122,7 @@ fn describe_change_points(scene: &SpaceScene, plan: &Plan, record: &mut Record) 
         let joints = groups.get(point.group).into_iter();
         let joints = joints.flat_map(|group| &group.joints);
         let joints = list(joints.map(|j| scene.mechanism.joints[j.0].name.as_str()));
-        let at = describe_coordinate(name, point.q, is_angle);
+        let at = describe_coordinate(scene, name, point.q, is_angle);
         format!(
             "    change point of the group closed by {joints} at {at}, where another assembly mode meets this one\n"
         )

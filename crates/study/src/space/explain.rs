@@ -2,9 +2,9 @@
 
 use crate::explain::{
     Labels, NamedScene as _, StudyError, body_labels, describe_ends, driven_labels, freedom_text,
-    inconsistent, joint_labels, labels, missing_section_label, not_connected, scene_error,
+    inconsistent, joint_labels, labels, missing_section_label, not_connected, own_coordinate,
+    own_length, scene_error,
 };
-use crate::number_format::{coordinate_unit, digits, number};
 use dwell_geometry::space::{JointKind, Plan};
 use dwell_geometry::{ActuatorId, AssemblyError, BodyId, JointId, PositionError, StructureError};
 use dwell_kinetostatics::space::{Model, ModelError};
@@ -75,8 +75,8 @@ fn explain_assembly(scene: &SpaceScene, error: &AssemblyError) -> StudyError {
         } => {
             let names = names_of(scene, bodies);
             let message = format!(
-                "{names} cannot be assembled at the start: {} m are missing",
-                number(*gap)
+                "{names} cannot be assembled at the start: {} are missing",
+                own_length(scene, *gap, 6)
             );
             let help = "check points, axes and lengths, the coordinate in [assembly], and the placements there: \
                         each body should be near where it belongs";
@@ -200,14 +200,13 @@ pub(super) fn explain_position(
     }
     let is_angle = super::prepared::is_angle(scene);
     let name = scene.mechanism.actuators.first().map_or("", |a| &a.name);
-    let q = error.coordinate().map_or(String::new(), number);
-    let unit = coordinate_unit(is_angle);
-    let at = format!("`{name}` = {q} {unit}");
+    let at = |q| format!("`{name}` = {}", own_coordinate(scene, q, is_angle));
+    let at = error.coordinate().map_or_else(String::new, at);
     let (message, help) = match *error {
         PositionError::OutOfRange { from, to, .. } => (
             format!(
                 "{at} is outside its range, {}",
-                describe_ends(from, to, is_angle)
+                describe_ends(scene, from, to, is_angle)
             ),
             "stay within the range; `dwell check` shows it",
         ),
@@ -224,8 +223,8 @@ pub(super) fn explain_position(
         ),
         PositionError::NoAssembly { gap, .. } => (
             format!(
-                "the loops cannot be closed at {at}: gap of {} m",
-                digits(gap, 3)
+                "the loops cannot be closed at {at}: gap of {}",
+                own_length(scene, gap, 3)
             ),
             RANGE_ENDS,
         ),

@@ -177,10 +177,16 @@ fn chart(name: &str, unit: &str, x: Axis, series: Vec<Series>) -> Option<Chart> 
         .then(|| output::chart(title, x, Axis::new(label, unit_text(unit)), series))
 }
 
-/// The values of a parameter that get curves: the first, the last, and some between them.
-fn chosen_values(mut values: Vec<f64>) -> Vec<f64> {
+/// The values, each once, rising.
+fn distinct(mut values: Vec<f64>) -> Vec<f64> {
     values.sort_by(f64::total_cmp);
     values.dedup();
+    values
+}
+
+/// The values of a parameter that get curves: the first, the last, and some between them.
+fn chosen_values(values: Vec<f64>) -> Vec<f64> {
+    let values = distinct(values);
     let last = values.len().saturating_sub(1);
     let step = last.div_ceil(MAX_CURVES - 1).max(1);
     let mut chosen: Vec<f64> = values.iter().copied().step_by(step).collect();
@@ -214,8 +220,15 @@ impl<S: SweptScene> SweptCurves<'_, S> {
             let series = self.series(&group, &places, parameter.as_ref())?;
             let chart = chart(group.title, group.unit, axis_of(&axes[abscissa]), series);
             let Some(mut chart) = chart else { continue };
-            if let Some((axis, _)) = &parameter {
+            if let Some((axis, inputs)) = &parameter {
                 chart.title += &format!(", by {}", axis.path);
+                let (drawn, all) = (
+                    chosen_values(inputs.clone()).len(),
+                    distinct(inputs.clone()).len(),
+                );
+                if drawn < all {
+                    chart.title += &format!(" ({drawn} of its {all} values)");
+                }
             }
             charts.push(chart);
         }

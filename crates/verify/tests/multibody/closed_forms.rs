@@ -215,6 +215,7 @@ fn val_motor_on_a_flywheel() {
             inductance,
             gear_ratio: ratio,
             rotor_inertia: rotor,
+            is_torque_speed_line: false,
         };
         plant.drive(phi, DriveKind::Motor(motor));
         let samples = plant.integrate(vec![[0.0; 3]; 2], vec![[0.0; 3]; 2], &[0.03, 0.1, 0.5]);

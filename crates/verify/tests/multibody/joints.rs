@@ -68,6 +68,7 @@ fn motor() -> DriveKind {
         inductance: 0.02,
         gear_ratio: 3.0,
         rotor_inertia: 0.05,
+        is_torque_speed_line: false,
     })
 }
 

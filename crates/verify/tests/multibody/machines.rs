@@ -174,6 +174,7 @@ fn slider_crank() -> Plant {
         inductance: 0.0,
         gear_ratio: 6.0,
         rotor_inertia: 1e-4,
+        is_torque_speed_line: false,
     };
     plant.drive(phi, DriveKind::Motor(motor));
     plant

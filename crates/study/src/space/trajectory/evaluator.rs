@@ -78,7 +78,7 @@ impl<'a> SpaceEvaluator<'a> {
         let actuators = self.scene.mechanism.actuators.iter().enumerate();
         let coordinates = actuators.map(|(i, actuator)| {
             let is_angle = self.model.is_angle(i);
-            describe_coordinate(&actuator.name, sample.q[i], is_angle)
+            describe_coordinate(self.scene, &actuator.name, sample.q[i], is_angle)
         });
         let all: Vec<String> = time.into_iter().chain(coordinates).collect();
         all.join(", ")

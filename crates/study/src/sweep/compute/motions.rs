@@ -168,7 +168,8 @@ pub(crate) fn cycle_values(scene: &impl MachineScene) -> Result<Vec<f64>, StudyE
     Ok(values)
 }
 
-/// The largest magnitude of the force of each drive at the samples of a cycle.
+/// The largest magnitude of the force of each drive on the bodies, without what accelerates its rotor, at the samples of a cycle: of the column
+/// `<drive>.load_moment` or `<drive>.load_force` of `simulate`.
 fn peak_forces(found: &CycleResults<'_, impl MachineScene>) -> Result<Vec<f64>, StudyError> {
     let machine = &found.prepared.machine;
     let mut workspace = machine.workspace();
@@ -176,7 +177,7 @@ fn peak_forces(found: &CycleResults<'_, impl MachineScene>) -> Result<Vec<f64>, 
     for point in &found.steady.samples {
         let state = machine.evaluate(point.t, &point.y, &mut workspace);
         let state = state.map_err(|e| found.prepared.explain(&e))?;
-        for (peak, force) in peaks.iter_mut().zip(state.drive_forces()) {
+        for (peak, force) in peaks.iter_mut().zip(state.net_drive_forces()) {
             *peak = peak.max(force.abs());
         }
     }

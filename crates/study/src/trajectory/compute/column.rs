@@ -254,6 +254,10 @@ impl ColumnList {
         if let Some((unit, meaning)) = force {
             let kind = if unit == "N" { "force" } else { "moment" };
             let name = format!("{name}.load_{kind}");
+            let meaning = match is_drive {
+                true => format!("{meaning}; without what accelerates the drive's rotor"),
+                false => meaning.to_owned(),
+            };
             self.add(name, unit, Quantity::LoadForce(k), meaning);
         }
         let meaning = match is_drive {

@@ -218,7 +218,7 @@ impl<'a> EarlyStop<'a> {
         (limit, revolutions): (RangeLimit, f64),
     ) -> StudyError {
         let plan = self.plan;
-        let name = describe_limit(&scene.mechanism, plan, limit, revolutions);
+        let name = describe_limit((scene, &scene.mechanism), plan, limit, revolutions);
         let when = match self.trajectory.swept_actuator() {
             Some(_) => String::new(),
             None => format!(" at t = {} s", digits(self.last_reached.t, 6)),
@@ -252,7 +252,7 @@ impl<'a> EarlyStop<'a> {
         let mut labels = joint_labels(&joints.unwrap_or_default(), "cannot be joined there");
         labels.push((self.trajectory.location(scene), "starts there".to_owned()));
         let range = plan.range().limits().map(|(from, to)| {
-            let range = describe_ends(from, to, plan.is_angle(0));
+            let range = describe_ends(scene, from, to, plan.is_angle(0));
             match plan.range_limits() {
                 [Some(_), Some(_)] => format!(", outside the range of {range}"),
                 _ => format!("; the range was searched from {range} only"),
@@ -269,7 +269,7 @@ impl<'a> EarlyStop<'a> {
         let at = &self.last_reached;
         let one = |(i, q): (usize, &f64)| {
             let name = &scene.mechanism.actuators[i].name;
-            describe_coordinate(name, *q, self.plan.is_angle(i))
+            describe_coordinate(scene, name, *q, self.plan.is_angle(i))
         };
         let all: Vec<_> = at.q.iter().enumerate().map(one).collect();
         let all = all.join(", ");

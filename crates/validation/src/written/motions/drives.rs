@@ -141,7 +141,7 @@ impl Drive {
         }
     }
 
-    /// The circuit of a motor in a row, of one that is given by its line at 1 V; none of another drive. With inductance the current is the written one.
+    /// The circuit of a motor in a row, none of one that is given by its line and of another drive. With inductance the current is the written one.
     pub(super) fn circuit(&self, motion: &Motion<'_>) -> Option<CircuitState> {
         let [voltage, constant, resistance, inductance] = match &self.kind {
             DriveKind::Circuit {
@@ -155,15 +155,9 @@ impl Drive {
                 *resistance,
                 *inductance,
             ],
-            // As a circuit at 1 V.
-            DriveKind::Line {
-                stall_torque,
-                no_load_speed,
-            } => {
-                let constant = 1.0 / no_load_speed;
-                [1.0, constant, constant / stall_torque, 0.0]
-            }
-            DriveKind::AppliedForce(_) | DriveKind::SpeedController { .. } => return None,
+            DriveKind::Line { .. }
+            | DriveKind::AppliedForce(_)
+            | DriveKind::SpeedController { .. } => return None,
         };
         let speed = motion.measure(self.measure).0[1];
         let induced = constant * self.gear_ratio * speed;
@@ -193,11 +187,8 @@ impl Drive {
         of("moment").or_else(|| of("force"))
     }
 
-    /// Whether it is a motor.
-    pub(super) fn is_motor(&self) -> bool {
-        matches!(
-            self.kind,
-            DriveKind::Line { .. } | DriveKind::Circuit { .. }
-        )
+    /// Whether it is a motor, and its circuit is known; none is known of one given by its torque–speed line.
+    pub(super) fn has_circuit(&self) -> bool {
+        matches!(self.kind, DriveKind::Circuit { .. })
     }
 }

@@ -15,11 +15,20 @@ pub(super) struct Motors {
     pub(super) delivered: Differences,
 }
 
-/// The columns of all motors; those of one that is given by its line are of a circuit at 1 V.
+/// The columns of all motors that are given by their circuit; one given by its torque–speed line has none.
 pub(super) fn motors(motion: &MotionReading, rows: &Rows, file: &str) -> Motors {
     let mut found = Motors::default();
     for drive in &motion.drives {
-        if !drive.is_motor() {
+        if !drive.has_circuit() {
+            // Of one given by its torque–speed line nobody knows them.
+            for end in ["current", "electrical_power", "efficiency"] {
+                let name = format!("{}.{end}", drive.name);
+                if rows.columns.contains_key(&name) {
+                    found
+                        .electrical
+                        .fail(format!("{file}: `{name}` of a drive without a circuit"));
+                }
+            }
             continue;
         }
         let column = |end: &str| rows.columns.get(&format!("{}.{end}", drive.name));
