@@ -1,7 +1,7 @@
 //! Explains friction that holds, end stops, and functions of a program that jump.
 
 use crate::explain::{NamedScene, StudyError, own_coordinate, scene_error};
-use crate::number_format::{digits, number};
+use crate::number_format::digits;
 use dwell_geometry::ActuatorId;
 use dwell_scene::SceneLocation;
 

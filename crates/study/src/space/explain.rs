@@ -5,6 +5,7 @@ use crate::explain::{
     inconsistent, joint_labels, labels, missing_section_label, not_connected, own_coordinate,
     own_length, scene_error,
 };
+use crate::number_format::digits;
 use dwell_geometry::space::{JointKind, Plan};
 use dwell_geometry::{ActuatorId, AssemblyError, BodyId, JointId, PositionError, StructureError};
 use dwell_kinetostatics::space::{Model, ModelError};
@@ -116,10 +117,10 @@ fn explain_not_throughout(
     nearly_parallel: Option<([JointId; 2], f64)>,
 ) -> StudyError {
     let name = scene.mechanism.actuators.first().map_or("", |a| &a.name);
-    let (at, unit) = (number(q), coordinate_unit(super::prepared::is_angle(scene)));
+    let at = own_coordinate(scene, q, super::prepared::is_angle(scene));
+    let gap = own_length(scene, gap, 3);
     let mut message = format!(
-        "redundant constraints agree at the start, but not along the motion: at `{name}` = {at} {unit} they leave a gap of {} m",
-        digits(gap, 3)
+        "redundant constraints agree at the start, but not along the motion: at `{name}` = {at} they leave a gap of {gap}"
     );
     let Some((pair, angle)) = nearly_parallel else {
         let help = "redundant constraints must agree to the last digits: correct a length, a point or an axis, or replace a joint \
