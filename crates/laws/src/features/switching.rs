@@ -226,6 +226,7 @@ fn enclose_op(
     [side, second]: Sides,
     variable: impl Fn(usize) -> Enclosure,
 ) -> Enclosure {
+    let [side, second] = decided(op, operands, [side, second]);
     let choose = |side: Option<f64>, above: Enclosure, below: Enclosure| match side {
         Some(s) if s > 0.0 => above,
         Some(_) => below,
@@ -267,6 +268,27 @@ fn enclose_op(
             None => yes.hull(no),
         },
         _ => Enclosure::UNKNOWN,
+    }
+}
+
+/// The sides that are held, and where none is, those on which the values that an operation compares are.
+fn decided(op: Op, operands: &[Enclosure], [side, second]: Sides) -> Sides {
+    let decide = |held: Option<f64>, difference: Enclosure| {
+        let Interval { lo, hi } = difference.value();
+        let by_value = if lo > 0.0 {
+            Some(1.0)
+        } else {
+            (hi < 0.0).then_some(-1.0)
+        };
+        held.or(by_value)
+    };
+    match (op, operands) {
+        (Op::Unary(Unary::Abs | Unary::Sign | Unary::Step), &[x]) => [decide(side, x), None],
+        (Op::Binary(Binary::Min | Binary::Max), &[a, b]) | (Op::If(_), &[a, b, _, _]) => {
+            [decide(side, a.minus(b)), None]
+        }
+        (Op::Clamp, &[x, low, high]) => [decide(side, x.minus(low)), decide(second, x.minus(high))],
+        _ => [side, second],
     }
 }
 
