@@ -33,6 +33,8 @@ type Solver = NalgebraLU<f64>;
 const MIN_STEP: f64 = 1e-17;
 /// The part of a step that could not be evaluated with which a method begins anew.
 const FAILURE_REDUCTION: f64 = 0.1;
+/// An event this near to the end, as a part of its time, is at the end.
+const END_ROUNDING: f64 = 256.0 * f64::EPSILON;
 
 /// Integrates a system from `start` until `end` (s), or without an end until the observer stops it. The
 /// observer is called after every step. Where a function of time or of the state switches, one integration ends and
@@ -136,11 +138,16 @@ fn integrate_held(
                 Some(contacts) => contacts.first_event(&mut watched_system, &mut smooth)?,
                 None => None,
             };
-            let found = match (change, crossing) {
+            let mut found = match (change, crossing) {
                 (Some((state, touched)), _) => HeldEvent::Contacts(state, touched),
                 (None, Some(crossing)) => HeldEvent::Switch(crossing),
                 (None, None) => return observer(before, now, taken.dense),
             };
+            // No method begins anew so near to the end: the event is there.
+            let is_last = |end: &f64| found.state().t >= *end - END_ROUNDING * end.abs();
+            if let Some(end) = end.filter(is_last) {
+                found.state_mut().t = end;
+            }
             let is_longer = found.state().t > before.t;
             let control = match is_longer {
                 true => observer(before, found.state(), taken.dense)?,
@@ -174,10 +181,7 @@ fn integrate_held(
             }
             (Err(error), None) => return Err(error),
         }
-        let t = parts.next.start.t;
-        // No method begins anew so near to the end.
-        let rounding = 256.0 * f64::EPSILON * t.abs();
-        if end.is_some_and(|end| t >= end - rounding) {
+        if end.is_some_and(|end| parts.next.start.t >= end) {
             break;
         }
     }
@@ -201,6 +205,13 @@ impl HeldEvent {
     fn state(&self) -> &OdeState {
         match self {
             Self::Switch(crossing) => &crossing.state,
+            Self::Contacts(state, _) => state,
+        }
+    }
+
+    fn state_mut(&mut self) -> &mut OdeState {
+        match self {
+            Self::Switch(crossing) => &mut crossing.state,
             Self::Contacts(state, _) => state,
         }
     }

@@ -115,11 +115,14 @@ impl SwitchMonitor {
         let [value, rate] = self.motion_of(k, system, at)?;
         let step = near * self.step;
         let switch = &mut self.switches[k];
-        switch.piece = switch.kind.piece_at(value + step * rate);
-        if switch.kind == SwitchKind::Zero && value == 0.0 {
+        let by_value = switch.kind.piece_at(value + step * rate);
+        switch.piece = by_value;
+        // There a rounding would choose the piece whose rates are asked.
+        if switch.kind == SwitchKind::Zero && value.abs() <= step * rate.abs() {
             self.decide_at_zero(k, system, at)?;
         }
         let switch = &mut self.switches[k];
+        switch.piece = switch.piece.or(by_value);
         (switch.switched, switch.chatter, switch.is_inside) = (None, None, false);
         Ok(())
     }

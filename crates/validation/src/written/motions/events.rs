@@ -4,7 +4,7 @@
 use crate::written::poses::difference::Differences;
 use crate::written::poses::law::number;
 use crate::written::poses::reading::Reading;
-use crate::written::poses::rows::{Rows, largest};
+use crate::written::poses::rows::{Rows, extent, largest};
 use std::f64::consts::TAU;
 use toml::{Table, Value};
 
@@ -86,15 +86,28 @@ fn changes(side: &[f64]) -> Vec<[usize; 2]> {
         .collect()
 }
 
-/// Every change point that `check` prints is one that `simulate` says it crosses, or why not: that the fit across it is poor is no reason.
-pub(super) fn change_points(checked: &str, simulated: &str) -> Differences {
+/// Every change point that `check` prints and that the rows come to is one that `simulate` says it crosses, or why not: that the fit across it
+/// is poor is no reason.
+pub(super) fn change_points(checked: &str, simulated: &str, rows: &Rows) -> Differences {
     let mut found = Differences::default();
     let named = checked.lines().filter_map(|line| {
-        let (_, rest) = line
+        let (place, rest) = line
             .trim()
             .strip_prefix("change point of ")?
             .split_once(" = ")?;
-        rest.split([' ', ',']).next()?.parse::<f64>().ok()
+        let (_, coordinate) = place.rsplit_once(' ')?;
+        let [from, to] = extent(rows.column(coordinate));
+        let point = rest.split([' ', ',']).next()?.parse::<f64>().ok()?;
+        // The next one of an angle that is not below the rows.
+        let is_angle = rest.contains(" rad");
+        let turns = if is_angle {
+            ((from - point) / TAU).ceil()
+        } else {
+            0.0
+        };
+        (from..=to)
+            .contains(&(point + TAU * turns))
+            .then_some(point)
     });
     let said: Vec<(f64, &str)> = simulated
         .lines()
@@ -170,9 +183,14 @@ mod tests {
 
     #[test]
     fn a_change_point_that_is_not_crossed_is_found() {
+        let turning = |phi: [f64; 2]| Rows {
+            columns: [("phi".to_owned(), phi.to_vec())].into(),
+            count: 2,
+            words: [].into(),
+        };
         let checked = "change point of `a`, `b` at phi = 3.141592654 rad (180°), where another assembly mode begins";
         let fails = |simulated: &str| {
-            let found = change_points(checked, simulated);
+            let found = change_points(checked, simulated, &turning([6.0, 12.0]));
             found.failure().is_some() || found.largest() > 0.0
         };
         assert!(!fails(
@@ -188,5 +206,8 @@ mod tests {
             "  the change point at 3.14159 cannot be crossed: couplings"
         ));
         assert!(fails(""));
+        // A motion that does not come to it says nothing of it.
+        let found = change_points(checked, "", &turning([0.0, 3.0]));
+        assert!(found.failure().is_none());
     }
 }

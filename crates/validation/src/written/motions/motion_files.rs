@@ -74,7 +74,7 @@ pub(crate) fn compare(
     let missing = missing_events(&motion.reading, &everything, &rows, events[0].as_ref());
     compared.merge("written-motion-events", missing);
     let contents = program.run("contents", &text, &["check"])?;
-    let points = change_points(&contents.printed, &first.printed);
+    let points = change_points(&contents.printed, &first.printed, &rows);
     compared.merge("written-motion-change-points", points);
     for (run, rows, events) in [
         (&first, &rows, &events[0]),
