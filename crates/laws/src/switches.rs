@@ -26,7 +26,7 @@
 use crate::expression::{Expression, HeldPieces, Jet, Op, Sides, run_held_parts};
 use crate::features::switching::{Operands, Switch, switches_of};
 use crate::law::Law;
-use crate::windows::{Course, NarrowTerm, Pulse, Traced, first_outside, may_hide};
+use crate::windows::{Course, NarrowTerm, Pulse, Traced, UNDERFLOW, first_outside, may_hide};
 
 /// A function is beyond a bound if it is by more than this part of its values.
 const ROUNDING: f64 = 1e-12;
@@ -220,7 +220,7 @@ impl Switches {
                 minuend.value(at).abs() + right.abs()
             };
             let sizes = [0.0, 0.5, 1.0].map(size);
-            let rounding = ROUNDING * sizes.into_iter().fold(f64::MIN_POSITIVE, f64::max);
+            let rounding = (ROUNDING * sizes.into_iter().fold(0.0, f64::max)).max(UNDERFLOW);
             let start = value(0.0);
             // Where the motion begins anew it is beyond its bound by rounding.
             let bounds = [low.min(start) - rounding, high.max(start) + rounding];

@@ -17,6 +17,8 @@ const MIN_WIDTH: f64 = 1e-9;
 const SEEN_DEGREE: u32 = 2;
 /// Changes below this part of a term's largest value are no pulse.
 const NEGLIGIBLE: f64 = 1e-9;
+/// What is smaller is a tail that underflows, of which only the rounding of its bounds is left.
+pub(crate) const UNDERFLOW: f64 = 1e-290;
 /// A pulse that is higher than what the step's ends show by this part of their difference is looked at.
 const UNSEEN: f64 = 0.5;
 /// Where a pulse begins, as a part of its height: what lies before is lost.
@@ -203,7 +205,9 @@ impl NarrowTerm {
         } else {
             low.abs().max(high.abs())
         };
-        let unseen = (UNSEEN * (high - low)).max(NEGLIGIBLE * scale);
+        let unseen = (UNSEEN * (high - low))
+            .max(NEGLIGIBLE * scale)
+            .max(UNDERFLOW);
         let enclose = |over: [f64; 2]| term.enclose(over);
         let at = first_outside([low - unseen, high + unseen], |at| term.value(at), enclose)?;
         let excess = |at: f64| (low - term.value(at)).max(term.value(at) - high);

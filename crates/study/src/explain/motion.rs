@@ -448,7 +448,12 @@ mod tests {
                 max_step,
                 tolerance,
             };
-            match explain_max_steps(&scene, t, 1000, &limits) {
+            match explain_max_steps(
+                &scene,
+                t,
+                (1000, "the maximum of 1000 steps is reached"),
+                &limits,
+            ) {
                 StudyError::Scene(error) => {
                     let first = &error.errors()[0];
                     (
