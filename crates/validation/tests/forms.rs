@@ -1,5 +1,7 @@
 //! The forms of the extremes see what they are there to see, and narrow peaks are not exported as if they were not there.
 
+#![allow(clippy::expect_used, reason = "a test")]
+
 use dwell_export::{Precision, Request};
 use dwell_findings::Finding;
 use dwell_scene::Scene;

@@ -21,8 +21,7 @@ fn column(dir: &TestDir, file: &str, name: &str) -> Vec<f64> {
     let text = std::fs::read_to_string(dir.0.join(file)).unwrap();
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));
     let header = lines.next().unwrap();
-    let index = header.split(',').position(|found| found == name);
-    let index = index.unwrap_or_else(|| panic!("`{name}` in {header}"));
+    let index = header.split(',').position(|found| found == name).unwrap();
     let number = |line: &str| line.split(',').nth(index).unwrap().parse().unwrap();
     lines.map(number).collect()
 }

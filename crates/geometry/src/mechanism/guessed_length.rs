@@ -66,7 +66,7 @@ impl Mechanism {
             if let (Some(given), Some(elsewhere)) = (given, elsewhere)
                 && given != elsewhere
             {
-                self.joints[j].points[0] = self.joints[j].points[0] + axis * given;
+                self.joints[j].points[0] += axis * given;
             }
         }
     }

@@ -242,6 +242,7 @@ fn motor(inductance: f64) -> DriveKind {
         inductance,
         gear_ratio: 4.0,
         rotor_inertia: 3e-4,
+        is_torque_speed_line: false,
     })
 }
 

@@ -24,7 +24,7 @@ impl Setup {
         Self {
             mechanism: scene.mechanism.clone(),
             masses: scene.masses.clone(),
-            assembly: scene.assembly.clone(),
+            assembly: scene.assembly,
         }
     }
 

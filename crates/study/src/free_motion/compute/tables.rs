@@ -13,6 +13,9 @@ use dwell_findings::Table;
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_kinetostatics::{Drive, Model};
 
+/// The times (s) under which a picked state of a solution is kept, each with the side of an event that it is evaluated on.
+type WantedTimes<'a> = dyn FnMut(&Solution, usize) -> Vec<(f64, EventSide)> + 'a;
+
 impl FreeMotionProblem<'_> {
     /// A computed motion as a trajectory, with its samples, which may have been `evaluated` already, or else with wanted times
     /// (s) as rows.
@@ -59,7 +62,7 @@ impl FreeMotionProblem<'_> {
         &self,
         motion: &SegmentedMotion,
         picked: fn(&Solution) -> &[OdeState],
-        wanted: &mut dyn FnMut(&Solution, usize) -> Vec<(f64, EventSide)>,
+        wanted: &mut WantedTimes<'_>,
         coordinates: &[Vec<[f64; 3]>],
     ) -> Result<Vec<(f64, TrajectorySample)>, DynamicsError> {
         let mut all = Vec::new();
