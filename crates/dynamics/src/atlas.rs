@@ -151,19 +151,19 @@ impl<'s> Atlas<'s> {
 
     /// Those of the change points that a motion comes to.
     pub fn change_points_of(&self, motion: &ContinuedMotion) -> Vec<&ChangePointFit> {
-        let is_met = |crossing: usize| {
+        let is_reached = |crossing: usize| {
             motion.segments.iter().any(|segment| {
                 let windows = self.charts[segment.chart].machine.fit_windows.iter();
                 let mut windows = windows.filter(|window| window.crossing == crossing);
                 let steps = &segment.solution.steps;
                 windows.any(|window| {
                     let mut pairs = steps.windows(2);
-                    pairs.any(|pair| window.is_met([pair[0].y[0], pair[1].y[0]]))
+                    pairs.any(|pair| window.is_reached([pair[0].y[0], pair[1].y[0]]))
                 })
             })
         };
         let fits = self.change_point_fits().enumerate();
-        let met = fits.filter(|(crossing, _)| is_met(*crossing));
+        let met = fits.filter(|(crossing, _)| is_reached(*crossing));
         met.map(|(_, fit)| fit).collect()
     }
 

@@ -115,7 +115,7 @@ impl FitWindow {
     }
 
     /// Whether a step from one coordinate to another passes the change point, or begins or ends within the window.
-    pub(crate) fn is_met(&self, ends: [f64; 2]) -> bool {
+    pub(crate) fn is_reached(&self, ends: [f64; 2]) -> bool {
         let passed = |q: f64| {
             let x = q - self.fit.center;
             self.period

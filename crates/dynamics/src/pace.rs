@@ -27,7 +27,11 @@ impl Pace {
     /// Of an integration that begins.
     pub(crate) fn new(of: &Part) -> Self {
         Self {
-            end: of.end.unwrap_or(f64::NEG_INFINITY),
+            // Without an end nothing is left that could take too long.
+            end: of
+                .end
+                .filter(|end| end.is_finite())
+                .unwrap_or(f64::NEG_INFINITY),
             max_steps: of.options.max_steps,
             steps: 0,
             from: of.start.t,

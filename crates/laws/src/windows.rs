@@ -14,7 +14,7 @@ const MAX_CELLS: usize = 256;
 /// The narrowest of them, as a part of the step: what is narrower is not looked for.
 const MIN_WIDTH: f64 = 1e-9;
 /// Polynomials up to this degree are seen by the points of a step and a parabola through them.
-const SEEN_DEGREE: u32 = 2;
+const PARABOLA_DEGREE: u32 = 2;
 /// Changes below this part of a term's largest value are no pulse.
 const NEGLIGIBLE: f64 = 1e-9;
 /// What is smaller is a tail that underflows, of which only the rounding of its bounds is left.
@@ -243,7 +243,7 @@ fn is_narrow(op: Op) -> bool {
 
 /// Whether a function may be beyond a bound between points at which it is not.
 pub(crate) fn may_hide(ops: &[Op], tree: &Operands, last: usize) -> bool {
-    degree(ops, tree, last) > SEEN_DEGREE
+    degree(ops, tree, last) > PARABOLA_DEGREE
 }
 
 /// The degree of a part as a polynomial; beyond all, what is none.

@@ -290,7 +290,7 @@ impl Figures<'_> {
         let size = self.size.max(body.size);
         let (radius, unit) = self.file.to_scene_unit(body.radius_of_gyration(), false);
         let message = format!(
-            "is a unit meant otherwise? By its inertia and mass `{}` has a radius of gyration of {} {unit}, but {} {} {unit}: {} In doubt: {names}",
+            "is a unit meant otherwise? By its inertia and mass `{}` has a radius of gyration of {} {unit}, but {} {} {unit}: {} Check {names}",
             shorten(body.name),
             short(radius),
             if body.size > 0.0 {

@@ -26,7 +26,10 @@ impl Progress {
         Self {
             // Where the user has set the longest step, that says how many there are.
             end: match part.options.max_step {
-                None => part.end.unwrap_or(part.start.t),
+                None => part
+                    .end
+                    .filter(|end| end.is_finite())
+                    .unwrap_or(part.start.t),
                 Some(_) => part.start.t,
             },
             max_steps: HOPELESS * part.options.max_steps as f64,

@@ -128,14 +128,14 @@ impl SwitchMonitor {
         };
         both.put_on_switch(&sliding, at);
         system.record_sliding(at, sliding.switches[0], Some(&sliding));
-        self.watch_beside(&sliding);
+        self.watch_others(&sliding);
         self.hold(system);
         self.sliding = Some(sliding);
         Ok(true)
     }
 
     /// Watches the switches that are the same on both sides alone.
-    fn watch_beside(&mut self, sliding: &Sliding) {
+    fn watch_others(&mut self, sliding: &Sliding) {
         self.take(&sliding.sides[0]);
         for (k, switch) in self.switches.iter_mut().enumerate() {
             switch.piece = switch.piece.filter(|_| !sliding.decides(k));
@@ -219,7 +219,7 @@ impl SwitchMonitor {
             self.settle(&mut passed.to_vec(), system, at)?;
             *side = self.pieces();
         }
-        self.watch_beside(&sliding);
+        self.watch_others(&sliding);
         let first = sliding.switches[0];
         let source_index = system.switch_source(first);
         let several = DynamicsError::SlidesOnSeveral {

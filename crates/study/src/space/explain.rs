@@ -263,7 +263,8 @@ fn explain_several(scene: &SpaceScene, joints: &[JointId], error: &PositionError
             format!("there is no position of {names}: the loops of their joints do not close there")
         }
     };
-    let help = "the coordinates lead no farther in this assembly mode: end the motion earlier, or drive other joints";
+    let help =
+        "the motion cannot go on in this assembly mode: end it earlier, or drive other joints";
     scene_error(
         scene,
         message,

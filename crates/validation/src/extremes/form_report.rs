@@ -136,7 +136,7 @@ fn figure(plane: &[SeriesResult], results: &[(Form, Vec<SeriesResult>)]) -> Figu
             heading: String::new(),
             rows: plane.iter().map(row).collect(),
         }],
-        values: Axis::new("digits kept, beside those that the condition takes", "")
+        values: Axis::new("digits kept, plus those that the condition takes", "")
             .with_range(0.0, MAX_DIGITS),
     };
     Figure {
