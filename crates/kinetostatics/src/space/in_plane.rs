@@ -53,7 +53,7 @@ impl InPlane {
         let model = model.with_reactions(lifted.planar_reactions()).ok()?;
         let model = model.pruned_for(lifted.bodies());
         let limits = match (of.plan().range(), model.plan().range()) {
-            (Range::Full, Range::Full) => None,
+            (Range::Full, Range::Full) | (Range::Unbounded, Range::Unbounded) => None,
             (own, other) => {
                 other.limits()?;
                 Some(own.limits()?)
