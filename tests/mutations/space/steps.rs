@@ -11,7 +11,9 @@ pub fn evaluation_step(path: &str, function: &str) -> Option<(usize, &'static st
     let module = path.trim_start_matches("crates/").trim_end_matches(".rs");
     let (name, module) = module.split_once("/src/")?;
     Some(match (name, module, function) {
-        ("geometry", "space/follow" | "space/prediction", _) => (0, "predictions of poses"),
+        ("geometry", "space/follow" | "space/prediction" | "space/stations", _) => {
+            (0, "predictions of poses")
+        }
         ("geometry", "space/vector", _) => (2, "rotations"),
         ("geometry", "space/frames", "motion") => (7, "velocities along the tree"),
         ("geometry", "space/frames", "added") => (9, "accelerations along the tree"),
