@@ -255,9 +255,11 @@ impl<'m, M: MovingModel> CycleProblem<'m, M> {
         let stalled = (termination.state.y[1] / z[0]).abs() < STALL_FRACTION;
         match termination.error {
             // Rates by the coordinate are infinite where the speed falls to zero.
-            Some(DynamicsError::NotFinite { .. } | DynamicsError::StepTooSmall { .. })
-                if stalled =>
-            {
+            Some(
+                DynamicsError::NotFinite { .. }
+                | DynamicsError::StepTooSmall { .. }
+                | DynamicsError::TooSlow { .. },
+            ) if stalled => {
                 let q = self.start_angle + self.direction * termination.state.t;
                 Err(DynamicsError::ComesToRest { q })
             }

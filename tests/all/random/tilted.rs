@@ -25,7 +25,7 @@ const REACTION_TOLERANCE: f64 = 5e-14;
 #[derive(Debug, Default)]
 struct Coverage {
     compared: u32,
-    /// Those whose ranges are of one kind, and of them those that are evaluated as their planar equivalent.
+    /// Those with a plane whose ranges are of one kind, and of them those that are evaluated as their planar equivalent.
     as_in_plane: u32,
     in_plane: u32,
     /// What is refused in space, with planes and without.
@@ -171,7 +171,10 @@ fn check(built: &BuiltMechanism, seed: u64, coverage: &mut Coverage) -> Result<(
         return Err("its reactions are not those of its planar equivalent".to_owned());
     }
     let kinds = [plan.range(), with.plan().range()].map(|range| range.limits().is_some());
-    coverage.as_in_plane += u32::from(kinds[0] == kinds[1]);
+    // Slides alone turn no body: no axis says which plane they move in.
+    let mut turning = mechanism.joints.iter();
+    let has_plane = turning.any(|joint| matches!(joint.kind, JointKind::Revolute));
+    coverage.as_in_plane += u32::from(has_plane && kinds[0] == kinds[1]);
     coverage.reactions += u32::from(reduced.model().is_in_plane());
     coverage.worst_reactions = coverage.worst_reactions.max(coefficients / condition);
     if coefficients > REACTION_TOLERANCE * condition {
@@ -261,7 +264,7 @@ fn random_planar_mechanisms_agree_in_oblique_planes() {
     }
     assert!(
         coverage.compared * 16 >= ProptestConfig::default().cases
-            // Seen: 42 of 43.
+            // Seen: 33 of 36.
             && 10 * coverage.in_plane >= 8 * coverage.as_in_plane
             && coverage.in_plane > 0
             // Seen: 1 of about 2000.
