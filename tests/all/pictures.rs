@@ -9,9 +9,14 @@ use dwell_study::{
     analyse_trajectory, cycle, equilibria, no_progress, reduce, simulate, sweep,
 };
 use dwell_tests::fixtures::{case_names, repository_root, scene};
-use dwell_validation::{export_study, extremes, index, validate, work_precision};
+use dwell_validation::{
+    Judged, JudgedCase, export_study, extremes, index, validate, work_precision,
+};
 use rayon::prelude::*;
 use std::fmt::Write as _;
+
+/// Height of two pages of paper, A4, over the width of one.
+const TWO_PAGES: f64 = 2.0 * std::f64::consts::SQRT_2;
 
 /// How many pictures there are of a study, and what is wrong with them.
 #[derive(Debug, Default)]
@@ -28,6 +33,9 @@ fn checked(study: &str, pictures: &[Picture]) -> Checked {
     for picture in pictures {
         let layouts = picture.layouts().expect("a layout");
         let mut defects: Vec<String> = layouts.iter().flat_map(|layout| layout.defects()).collect();
+        let long = layouts.iter().map(|layout| layout.page);
+        let long = long.filter(|[width, height]| *height > TWO_PAGES * width);
+        defects.extend(long.map(|[w, h]| format!("{w} × {h} pixels are more than two pages")));
         // The frames of a film are much alike.
         defects.sort();
         defects.dedup();
@@ -90,9 +98,18 @@ fn the_pictures_of_the_validation_are_legible() {
     };
     let done: Vec<_> = cases.par_iter().map(of_case).collect();
     let scenes: Vec<Scene> = cases.iter().map(|case| scene(case)).collect();
-    let results = cases.iter().zip(scenes.iter().zip(&done));
-    let results: Vec<_> = results.map(|(name, of)| (name.as_str(), Ok(of))).collect();
-    let mut all = vec![checked("index", &index(&results).pictures)];
+    let judged = scenes.iter().zip(&done).map(|(scene, done)| JudgedCase {
+        name: &scene.name,
+        title: &scene.title,
+        in_space: false,
+        result: Ok(done),
+    });
+    let judged = Judged {
+        cases: judged.collect(),
+        studies: Vec::new(),
+        manual: Some([1, 1]),
+    };
+    let mut all = vec![checked("index", &index(&judged).pictures)];
     all.extend(
         done.iter()
             .map(|d| checked("validate", &d.outcome.pictures)),

@@ -52,6 +52,7 @@ fn named_mutations(study: &Study) -> Panel {
         columns: columns(),
         groups: std::iter::once(clean).chain(groups).collect(),
         values: Axis::new("digits above the tolerance", "").with_range(0.0, 16.0),
+        compact: true,
     })
 }
 
@@ -93,5 +94,6 @@ fn operations(steps: &[(&'static str, Tally)]) -> Panel {
             rows: steps.iter().map(row).collect(),
         }],
         values: Axis::new("detected by the check", "%").with_range(0.0, 100.0),
+        compact: true,
     })
 }

@@ -7,7 +7,8 @@ use dwell_scene::{Scene, SceneError, SpaceScene};
 use dwell_study::{Outcome, Step, StudyError};
 use dwell_validation::manual::KeyStudy;
 use dwell_validation::{
-    CaseResult, Validation, export_study, extremes, index, validate_program, work_precision,
+    CaseResult, Judged, JudgedCase, Validation, export_study, extremes, index, validate_program,
+    work_precision,
 };
 use indicatif::ProgressBar;
 use miette::{Report, miette};
@@ -65,27 +66,47 @@ pub(crate) fn validate(
     let spatial = in_space
         .par_iter()
         .map(|path| case_in_space(path, program.as_deref()));
-    let spatial = spatial.collect();
+    let spatial: Vec<_> = spatial.collect();
     bar.finish_and_clear();
-    let mut others = studies.map_err(SceneError::from)?;
+    let studies = studies.map_err(SceneError::from)?;
     let names: Vec<String> = cases.iter().map(|c| c.display().to_string()).collect();
     let by_case = case_results(&names, &scenes, &results);
-    if let Some(keys) = keys {
-        let extremes: Vec<_> = others.iter().flat_map(|o| o.findings.clone()).collect();
-        others.push(keys.manual(&by_case, &extremes, &interface()));
-    }
+    let manual = keys.map(|keys| {
+        let extremes: Vec<_> = studies
+            .iter()
+            .flat_map(|(_, o)| o.findings.clone())
+            .collect();
+        keys.manual(&by_case, &extremes, &interface())
+    });
     let mut all = Outcome::default();
-    if cases.len() > 1 && results.iter().any(Result::is_ok) {
-        let overview = index(&by_case);
-        all.files.extend("", overview.files);
-        all.pictures.extend(overview.pictures);
+    let judged = Judged {
+        cases: judged_cases(&by_case, &in_space, &spatial),
+        studies: studies
+            .iter()
+            .map(|(name, o)| (*name, &o.findings[..]))
+            .collect(),
+        manual: manual.as_ref().map(|manual| {
+            let number = |name: &str| {
+                let mut numbers = manual.record.numbers.iter();
+                numbers
+                    .find(|n| n.name == name)
+                    .map_or(0, |n| n.value as usize)
+            };
+            [number("passed"), number("required")]
+        }),
+    };
+    if judged.cases.len() > 1 {
+        add(&mut all, index(&judged));
     }
     let (done, failed) = separate(results);
     done.into_iter().for_each(|one| add(&mut all, one.outcome));
-    let failures = combined_error(failed);
-    let failures = add_cases_in_space(spatial, &mut all, failures);
+    let (done, failed_in_space) = separate(spatial);
+    done.into_iter()
+        .for_each(|(_, one)| add(&mut all, one.outcome));
+    let failures = combined_error(failed.into_iter().chain(failed_in_space).collect());
     all.record.add_count("cases", cases.len() + in_space.len());
-    others.into_iter().for_each(|added| add(&mut all, added));
+    let studies = studies.into_iter().map(|(_, study)| study);
+    studies.chain(manual).for_each(|added| add(&mut all, added));
     let failed = all.findings.iter().filter(|finding| !finding.pass);
     all.record.add_count("findings.failed", failed.count());
     all.record.add_count("findings", all.findings.len());
@@ -102,7 +123,10 @@ fn add(all: &mut Outcome, added: Outcome) {
 
 /// The studies beside the cases: extreme parameters, and with all of Dwell's own cases what accuracy costs and what exported
 /// runs are worth.
-fn studies(all: Option<&[&Scene]>, (slow, seed): (bool, u64)) -> Result<Vec<Outcome>, StudyError> {
+fn studies(
+    all: Option<&[&Scene]>,
+    (slow, seed): (bool, u64),
+) -> Result<Vec<(&'static str, Outcome)>, StudyError> {
     let exported = all.and_then(|scenes| scenes.iter().find(|s| s.name == export_study::CASE));
     let (extremes, (costs, exports)) = rayon::join(
         || (all.is_some() || slow).then(|| extremes::study(slow, seed)),
@@ -113,7 +137,10 @@ fn studies(all: Option<&[&Scene]>, (slow, seed): (bool, u64)) -> Result<Vec<Outc
             )
         },
     );
-    [extremes, costs, exports].into_iter().flatten().collect()
+    let names = ["extremes", "work-precision", export_study::NAME];
+    let studies = names.into_iter().zip([extremes, costs, exports]);
+    let done = studies.filter_map(|(name, study)| study.map(|study| Ok((name, study?))));
+    done.collect()
 }
 
 /// A scene in space with its validation, by the reference beside it if there is one, and what leaves the program of it.
@@ -129,20 +156,41 @@ fn case_in_space(
     Ok((scene, done.map_err(validation_error)?))
 }
 
-/// Adds the results of the cases in space, with their table where there are several, and returns all failures.
-fn add_cases_in_space(
-    results: Vec<Result<(SpaceScene, Validation), SceneError>>,
-    all: &mut Outcome,
-    failures: Option<SceneError>,
-) -> Option<SceneError> {
-    let (done, failed) = separate(results);
-    if done.len() > 1 {
-        let pairs: Vec<_> = done.iter().map(|(scene, done)| (scene, done)).collect();
-        let overview = dwell_validation::index_in_space(&pairs);
-        all.files.extend("", overview.files);
-    }
-    done.into_iter().for_each(|(_, one)| add(all, one.outcome));
-    combined_error(failures.into_iter().chain(failed).collect())
+/// The cases of the plane and those in space for the verdict.
+fn judged_cases<'a>(
+    by_case: &'a [CaseResult<'a>],
+    in_space: &'a [PathBuf],
+    spatial: &'a [Result<(SpaceScene, Validation), SceneError>],
+) -> Vec<JudgedCase<'a>> {
+    let planar = by_case.iter().map(|(name, result)| match result {
+        Ok((scene, done)) => (&scene.name[..], &scene.title[..], Ok(*done)),
+        Err(reason) => (*name, *name, Err(reason.clone())),
+    });
+    let spatial = in_space
+        .iter()
+        .zip(spatial)
+        .map(|(path, result)| match result {
+            Ok((scene, done)) => (&scene.name[..], &scene.title[..], Ok(done)),
+            Err(error) => {
+                let name = path
+                    .file_stem()
+                    .and_then(|name| name.to_str())
+                    .unwrap_or("");
+                (name, name, Err(error.message.clone()))
+            }
+        });
+    let judged = |in_space: bool| {
+        move |(name, title, result)| JudgedCase {
+            name,
+            title,
+            in_space,
+            result,
+        }
+    };
+    planar
+        .map(judged(false))
+        .chain(spatial.map(judged(true)))
+        .collect()
 }
 
 /// Refuses two cases of one name: they would write the same files.

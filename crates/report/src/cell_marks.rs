@@ -1,15 +1,12 @@
 //! The marks of cells that do not apply or have failed, in a matrix and in its key.
 
-use crate::axis::Paint;
 use crate::canvas::{Canvas, LineStyle};
 use crate::curve::clipped;
 use crate::rect::Rect;
-use crate::theme::{GRID, rgb};
+use crate::theme::GRID;
 
 /// Between the lines of a hatched cell.
 const HATCH_SPACING: f64 = 11.0;
-/// Border of a failed cell.
-const BORDER_WIDTH: f64 = 5.0;
 
 /// A cell that does not apply.
 pub(crate) fn hatched_cell(canvas: &mut Canvas<'_>, area: &Rect) {
@@ -22,10 +19,4 @@ pub(crate) fn hatched_cell(canvas: &mut Canvas<'_>, area: &Rect) {
         x += HATCH_SPACING;
     }
     canvas.rect_outline(&area.grown(-0.75), LineStyle::solid(GRID, 1.5));
-}
-
-/// The border of a cell that failed.
-pub(crate) fn failed_border(canvas: &mut Canvas<'_>, area: &Rect) {
-    let border = LineStyle::solid(rgb(Paint::Palette(1)), BORDER_WIDTH);
-    canvas.rect_outline(&area.grown(-0.5 * BORDER_WIDTH), border);
 }

@@ -4,12 +4,12 @@ use crate::axes::{horizontal_ticks, ticks_below};
 use crate::axis::Axis;
 use crate::axis_range::AxisRange;
 use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
-use crate::cell_marks::{failed_border, hatched_cell};
+use crate::cell_marks::hatched_cell;
 use crate::colormap;
 use crate::fonts::width;
 use crate::linear_ticks::Ticks;
 use crate::rect::Rect;
-use crate::theme::{EDGE, INK, TICK_LENGTH, TICK_SIZE, WHITE};
+use crate::theme::{FAILED, INK, TICK_LENGTH, TICK_SIZE, WHITE};
 use crate::wrapped_text::{self, WrappedText};
 
 /// Height of the bar, its share of the width, and how many steps of colour it is drawn in.
@@ -80,8 +80,7 @@ impl ColorBar {
                     "does not apply"
                 }
                 CellMark::Failed => {
-                    canvas.rect_outline(&cell, LineStyle::solid(EDGE, 1.5));
-                    failed_border(canvas, &cell);
+                    canvas.rect(&cell, FAILED);
                     "failed"
                 }
             };

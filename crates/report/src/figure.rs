@@ -1,7 +1,7 @@
 //! A figure as plain data: panels on one page, each a chart, a drawing or a matrix of cells.
 
 use crate::axis::{Axis, Paint};
-use crate::grid::Grid;
+use crate::grid::{Grid, Tiles};
 use crate::shape::Drawing;
 
 /// One page of panels, written as one PNG.
@@ -34,6 +34,14 @@ pub enum Panel {
     Stack(Vec<Chart>),
     /// A matrix of coloured cells; best alone on its page.
     Grid(Grid),
+    /// Statements side by side.
+    Tiles(Tiles),
+}
+
+impl From<Tiles> for Panel {
+    fn from(tiles: Tiles) -> Self {
+        Self::Tiles(tiles)
+    }
 }
 
 impl From<Grid> for Panel {

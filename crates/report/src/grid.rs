@@ -4,8 +4,8 @@ use crate::axis::Axis;
 
 /// Rows and columns of cells, coloured by their values: which fault each check sees, how many digits each case keeps.
 ///
-/// The panel is as wide as its cell on the page and grows with its rows: about 40 pixels each. Give it a page of one column, and
-/// no more than about 24 columns. The colours go from nearly white to dark blue, so that they can be distinguished in
+/// The panel is as wide as its cell on the page and grows with its rows: about 40 pixels each, 24 if compact. Give it a page of one
+/// column, and no more than about 24 columns. The colours go from nearly white to dark blue, so that they can be distinguished in
 /// grey and by colour-blind readers; a bar above the cells states them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Grid {
@@ -18,6 +18,8 @@ pub struct Grid {
     /// What the values are, their unit and scale, and the range that the colours cover (found from the values if absent). A value
     /// beyond the range has the colour of its end.
     pub values: Axis,
+    /// Whether rows and letters are small, so that some 60 rows fit a screen.
+    pub compact: bool,
 }
 
 /// Rows under one heading.
@@ -47,7 +49,7 @@ pub struct Cell {
     pub value: Option<f64>,
     /// A few letters drawn in the cell, or nothing.
     pub text: String,
-    /// Whether to mark the cell as failed: a vermilion border and bold letters.
+    /// Whether to mark the cell as failed: vermilion, with bold letters.
     pub failed: bool,
 }
 
@@ -82,6 +84,49 @@ impl Cell {
     pub fn failed(self) -> Self {
         Self {
             failed: true,
+            ..self
+        }
+    }
+}
+
+/// Statements side by side, each a short value with its name above and its reason below: what a reader takes from a page in
+/// seconds.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Tiles {
+    /// Tiles in a row (at least one).
+    pub columns: usize,
+    /// The tiles, row by row.
+    pub tiles: Vec<Tile>,
+}
+
+/// One of [`Tiles`].
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Tile {
+    /// What it is about.
+    pub name: String,
+    /// The value, in large letters; set smaller where it is wider than its tile.
+    pub value: String,
+    /// How it is known, or where; wrapped.
+    pub note: String,
+    /// Whether it passed, where it is a verdict: a green or vermilion edge.
+    pub passed: Option<bool>,
+}
+
+impl Tile {
+    /// A statement.
+    pub fn new(name: impl Into<String>, value: impl Into<String>, note: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            value: value.into(),
+            note: note.into(),
+            passed: None,
+        }
+    }
+
+    /// The same as a verdict.
+    pub fn verdict(self, passed: bool) -> Self {
+        Self {
+            passed: Some(passed),
             ..self
         }
     }

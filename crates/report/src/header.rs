@@ -5,8 +5,6 @@ use crate::fonts::{widest, width, wrapped_anywhere};
 use crate::number::one_line;
 use crate::theme::INK;
 
-/// Type of names and cells.
-pub(crate) const TEXT_SIZE: f64 = 25.0;
 /// Distance of baselines, in font sizes.
 pub(crate) const LEADING: f64 = 1.2;
 /// Between names and cells, and between names.
@@ -19,6 +17,7 @@ const MIN_ROTATED_HEIGHT: f64 = 160.0;
 /// Names of columns, broken into lines.
 pub(crate) struct Header {
     pub(crate) names: Vec<Vec<String>>,
+    size: f64,
     rotated: bool,
     pub(crate) height: f64,
 }
@@ -37,13 +36,14 @@ pub(crate) fn draw_lines(
 }
 
 impl Header {
-    pub(crate) fn new(columns: &[String], column: f64) -> Self {
+    /// Names in letters of a size over columns of a width.
+    pub(crate) fn new(columns: &[String], column: f64, size: f64) -> Self {
         // Names that read upwards have no room for line breaks.
         let columns: Vec<String> = columns.iter().map(|name| one_line(name)).collect();
         let room = column - PAD;
         let broken = |room: f64| -> Vec<Vec<String>> {
             let names = columns.iter();
-            let lines = names.map(|name| wrapped_anywhere(name, TEXT_SIZE, false, room));
+            let lines = names.map(|name| wrapped_anywhere(name, size, false, room));
             lines.collect()
         };
         let horizontal = broken(room);
@@ -51,15 +51,16 @@ impl Header {
         let mut words = columns
             .iter()
             .flat_map(|name| name.split_ascii_whitespace());
-        if lines <= MAX_LINES && words.all(|word| width(word, TEXT_SIZE, false) <= room) {
+        if lines <= MAX_LINES && words.all(|word| width(word, size, false) <= room) {
             return Self {
-                height: lines as f64 * LEADING * TEXT_SIZE + 2.0 * PAD,
+                height: lines as f64 * LEADING * size + 2.0 * PAD,
                 names: horizontal,
+                size,
                 rotated: false,
             };
         }
         // As high as it takes for the lines of each name to lie side by side over its column.
-        let max_lines = ((column / (LEADING * TEXT_SIZE)) as usize).max(1);
+        let max_lines = ((column / (LEADING * size)) as usize).max(1);
         let mut room = MIN_ROTATED_HEIGHT;
         let names = loop {
             let names = broken(room);
@@ -68,9 +69,10 @@ impl Header {
             }
             room *= 1.1;
         };
-        let max_width = widest(names.iter().flatten(), TEXT_SIZE, false);
+        let max_width = widest(names.iter().flatten(), size, false);
         Self {
             names,
+            size,
             rotated: true,
             height: max_width + 2.0 * PAD,
         }
@@ -86,13 +88,13 @@ impl Header {
     ) {
         for (i, lines) in self.names.iter().enumerate() {
             let middle = left + (i as f64 + 0.5) * column;
-            let high = LEADING * TEXT_SIZE * lines.len() as f64;
+            let high = LEADING * self.size * lines.len() as f64;
             if !self.rotated {
                 let y = match below {
                     true => top + PAD,
                     false => top + self.height - PAD - high,
                 };
-                let style = TextStyle::new(TEXT_SIZE, INK, Align::Middle);
+                let style = TextStyle::new(self.size, INK, Align::Middle);
                 draw_lines(canvas, lines, [middle, y], style);
                 continue;
             }
@@ -103,8 +105,8 @@ impl Header {
             };
             for (k, line) in lines.iter().enumerate() {
                 let baseline =
-                    middle - 0.5 * high + ((k as f64 + 0.5) * LEADING + 0.365) * TEXT_SIZE;
-                canvas.text_upwards(line, [baseline, y], TextStyle::new(TEXT_SIZE, INK, align));
+                    middle - 0.5 * high + ((k as f64 + 0.5) * LEADING + 0.365) * self.size;
+                canvas.text_upwards(line, [baseline, y], TextStyle::new(self.size, INK, align));
             }
         }
     }
@@ -116,12 +118,16 @@ mod tests {
 
     #[test]
     fn names_that_do_not_fit_across_are_turned_and_lie_side_by_side() {
-        let short = Header::new(&["tape".to_owned(), "dense rows".to_owned()], 500.0);
+        let short = Header::new(&["tape".to_owned(), "dense rows".to_owned()], 500.0, 25.0);
         assert!(!short.rotated);
-        let long = Header::new(&["a quadrature of the energy over a turn".to_owned()], 70.0);
+        let long = Header::new(
+            &["a quadrature of the energy over a turn".to_owned()],
+            70.0,
+            25.0,
+        );
         assert!(long.rotated);
         for lines in &long.names {
-            assert!(lines.len() as f64 * LEADING * TEXT_SIZE <= 70.0);
+            assert!(lines.len() as f64 * LEADING * 25.0 <= 70.0);
         }
     }
 }

@@ -2,24 +2,19 @@
 
 use crate::axis_range::AxisRange;
 use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
-use crate::cell_marks::{failed_border, hatched_cell};
+use crate::cell_marks::hatched_cell;
 use crate::color_bar::{CellMark, ColorBar};
 use crate::colormap;
 use crate::fonts::{widest, width, wrapped_anywhere};
 use crate::grid::{Cell, Grid, Row};
-use crate::header::{Header, LEADING, TEXT_SIZE, draw_lines};
+use crate::header::{Header, LEADING, draw_lines};
 use crate::rect::Rect;
-use crate::theme::{EDGE, GREY, INK, PANEL_TITLE_SIZE, WHITE};
+use crate::theme::{EDGE, FAILED, GREY, INK, PANEL_TITLE_SIZE, WHITE};
 use crate::wrapped_text::{self, WrappedText};
 
-/// Letters that do not fit their cells are all set smaller, down to this size.
-const MIN_TEXT_SIZE: f64 = 18.0;
-/// Height of a row whose words need one line.
-const ROW_HEIGHT: f64 = 40.0;
-/// What is left free above a heading.
-const HEADING_GAP: f64 = 14.0;
-/// Between the edge of a cell and its letters, and between names and cells.
-const PAD: f64 = 7.0;
+/// What is left free above a heading, as a share of a row.
+const HEADING_GAP: f64 = 0.35;
+/// Between names and cells.
 const NAME_GAP: f64 = 14.0;
 /// Largest share of the width that names of rows take.
 const MAX_NAMES_SHARE: f64 = 0.36;
@@ -27,6 +22,33 @@ const MAX_NAMES_SHARE: f64 = 0.36;
 const MAX_STRIPS_FOR_ONE_HEADER: usize = 45;
 /// White between cells.
 const CELL_GAP: f64 = 2.0;
+
+/// Sizes of a grid.
+#[derive(Clone, Copy)]
+struct Sizes {
+    /// Letters, and the size down to which those that do not fit their cells are all set.
+    text: f64,
+    min_text: f64,
+    /// Height of a row whose words need one line.
+    row: f64,
+    /// Between the edge of a cell and its letters.
+    pad: f64,
+}
+
+impl Sizes {
+    fn of(grid: &Grid) -> Self {
+        let [text, min_text, row, pad] = match grid.compact {
+            true => [20.0, 16.0, 24.0, 3.0],
+            false => [25.0, 18.0, 40.0, 7.0],
+        };
+        Self {
+            text,
+            min_text,
+            row,
+            pad,
+        }
+    }
+}
 
 /// A heading or a row with its words broken into lines.
 struct Strip<'a> {
@@ -46,16 +68,19 @@ pub(crate) struct HeatMap<'a> {
     /// Width of the names of rows and of each column.
     names_width: f64,
     column_width: f64,
+    compact: bool,
+    sizes: Sizes,
     /// Size of the letters in cells.
     text_size: f64,
 }
 
 impl<'a> HeatMap<'a> {
     pub(crate) fn new(grid: &'a Grid, total_width: f64) -> Self {
-        let names = names_width(grid, total_width);
+        let sizes = Sizes::of(grid);
+        let names = names_width(grid, total_width, sizes);
         let columns = grid.columns.len();
         let column = (total_width - names) / columns.max(1) as f64;
-        let size = text_size(grid, column - 2.0 * PAD);
+        let size = text_size(grid, column - 2.0 * sizes.pad, sizes);
         let values = || cells(grid).flatten().filter_map(|cell| cell.value);
         let range = AxisRange::of(&grid.values, values(), 0.0);
         let bar_range = values()
@@ -69,10 +94,12 @@ impl<'a> HeatMap<'a> {
             title: wrapped_text::title(&grid.title, &Rect::sized(0.0, 0.0, total_width, 0.0)),
             bar: ColorBar::new(&grid.values, bar_range, key.collect(), total_width),
             range,
-            header: Header::new(&grid.columns, column),
-            strips: strips(grid, total_width, names, column, size),
+            header: Header::new(&grid.columns, column, sizes.text),
+            strips: strips(grid, total_width, [names, column, size], sizes),
             names_width: names,
             column_width: column,
+            compact: grid.compact,
+            sizes,
             text_size: size,
         }
     }
@@ -94,7 +121,8 @@ impl<'a> HeatMap<'a> {
     }
 
     fn repeats_header(&self) -> bool {
-        self.strips.len() > MAX_STRIPS_FOR_ONE_HEADER
+        // Compact rows are all in sight of it.
+        !self.compact && self.strips.len() > MAX_STRIPS_FOR_ONE_HEADER
     }
 
     pub(crate) fn draw(&self, canvas: &mut Canvas<'_>, area: &Rect) {
@@ -110,15 +138,16 @@ impl<'a> HeatMap<'a> {
         for strip in &self.strips {
             let lines = strip.lines.len() as f64;
             let Some(row) = strip.row else {
-                let top =
-                    y + strip.height - 0.5 * (ROW_HEIGHT - TEXT_SIZE) - LEADING * TEXT_SIZE * lines;
-                let style = TextStyle::new(TEXT_SIZE, INK, Align::Start).bold();
+                let top = y + strip.height
+                    - 0.5 * (self.sizes.row - self.sizes.text)
+                    - LEADING * self.sizes.text * lines;
+                let style = TextStyle::new(self.sizes.text, INK, Align::Start).bold();
                 draw_lines(canvas, &strip.lines, [area.x0, top], style);
                 y += strip.height;
                 continue;
             };
-            let style = TextStyle::new(TEXT_SIZE, INK, Align::End);
-            let top = y + 0.5 * (strip.height - LEADING * TEXT_SIZE * lines);
+            let style = TextStyle::new(self.sizes.text, INK, Align::End);
+            let top = y + 0.5 * (strip.height - LEADING * self.sizes.text * lines);
             draw_lines(canvas, &strip.lines, [left - NAME_GAP, top], style);
             for i in 0..self.header.names.len() {
                 let x = left + i as f64 * self.column_width;
@@ -137,20 +166,20 @@ impl<'a> HeatMap<'a> {
     fn draw_cell(&self, canvas: &mut Canvas<'_>, area: &Rect, cell: Option<&Cell>) {
         let Some(cell) = cell else {
             hatched_cell(canvas, area);
-            let style = TextStyle::new(TEXT_SIZE, GREY, Align::Middle);
+            let style = TextStyle::new(self.sizes.text, GREY, Align::Middle);
             return canvas.text_centred("–", area.centre(), style);
         };
         let fraction = cell.value.and_then(|value| self.range.fraction(value));
-        let background = fraction.map_or(WHITE, colormap::color);
-        if fraction.is_some() {
-            canvas.rect(area, background);
-        } else {
+        let background = match fraction {
+            _ if cell.failed => FAILED,
+            None => WHITE,
+            Some(fraction) => colormap::color(fraction),
+        };
+        canvas.rect(area, background);
+        if background == WHITE {
             canvas.rect_outline(&area.grown(-0.75), LineStyle::solid(EDGE, 1.5));
         }
-        if cell.failed {
-            failed_border(canvas, area);
-        }
-        let (size, room) = (self.text_size, self.column_width - 2.0 * PAD);
+        let (size, room) = (self.text_size, self.column_width - 2.0 * self.sizes.pad);
         let lines = wrapped_anywhere(&cell.text, size, cell.failed, room);
         let [x, middle] = area.centre();
         let top = middle - 0.5 * LEADING * size * lines.len() as f64;
@@ -170,9 +199,9 @@ fn cells(grid: &Grid) -> impl Iterator<Item = Option<&Cell>> {
 }
 
 /// Width of the names of rows, with the gap to the cells.
-fn names_width(grid: &Grid, total_width: f64) -> f64 {
+fn names_width(grid: &Grid, total_width: f64, sizes: Sizes) -> f64 {
     let rows = grid.groups.iter().flat_map(|group| &group.rows);
-    let widest = widest(rows.map(|row| row.name.trim()), TEXT_SIZE, false);
+    let widest = widest(rows.map(|row| row.name.trim()), sizes.text, false);
     if widest > 0.0 {
         (widest + NAME_GAP + 1.0).min(MAX_NAMES_SHARE * total_width)
     } else {
@@ -181,26 +210,33 @@ fn names_width(grid: &Grid, total_width: f64) -> f64 {
 }
 
 /// Size at which the letters of every cell fit a width, or else the least.
-fn text_size(grid: &Grid, room: f64) -> f64 {
+fn text_size(grid: &Grid, room: f64, sizes: Sizes) -> f64 {
     let widths = cells(grid)
         .flatten()
-        .map(|cell| width(&cell.text, TEXT_SIZE, cell.failed));
+        .map(|cell| width(&cell.text, sizes.text, cell.failed));
     let widest = widths.fold(0.0, f64::max);
     if widest > room {
-        (TEXT_SIZE * room / widest).max(MIN_TEXT_SIZE)
+        (sizes.text * room / widest).max(sizes.min_text)
     } else {
-        TEXT_SIZE
+        sizes.text
     }
 }
 
 /// Headings and rows from above.
-fn strips(grid: &Grid, total_width: f64, names: f64, column: f64, size: f64) -> Vec<Strip<'_>> {
+/// `widths`: of the names and of a column, and the size of the letters in cells.
+fn strips(
+    grid: &Grid,
+    total_width: f64,
+    [names, column, size]: [f64; 3],
+    sizes: Sizes,
+) -> Vec<Strip<'_>> {
     let mut strips = Vec::new();
     for group in &grid.groups {
-        let text_lines = wrapped_anywhere(&group.heading, TEXT_SIZE, true, total_width);
+        let text_lines = wrapped_anywhere(&group.heading, sizes.text, true, total_width);
         if !text_lines.is_empty() {
-            let height =
-                HEADING_GAP + ROW_HEIGHT + (text_lines.len() as f64 - 1.0) * LEADING * TEXT_SIZE;
+            let height = HEADING_GAP * sizes.row
+                + sizes.row
+                + (text_lines.len() as f64 - 1.0) * LEADING * sizes.text;
             strips.push(Strip {
                 lines: text_lines,
                 row: None,
@@ -208,17 +244,17 @@ fn strips(grid: &Grid, total_width: f64, names: f64, column: f64, size: f64) -> 
             });
         }
         for row in &group.rows {
-            let text_lines = wrapped_anywhere(&row.name, TEXT_SIZE, false, names - NAME_GAP);
+            let text_lines = wrapped_anywhere(&row.name, sizes.text, false, names - NAME_GAP);
             let cells = row.cells.iter().take(grid.columns.len()).flatten();
-            let lines =
-                cells.map(|c| wrapped_anywhere(&c.text, size, c.failed, column - 2.0 * PAD).len());
+            let lines = cells
+                .map(|c| wrapped_anywhere(&c.text, size, c.failed, column - 2.0 * sizes.pad).len());
             let tallest = lines.max().unwrap_or(0) as f64 * LEADING * size;
-            let height = tallest.max(text_lines.len() as f64 * LEADING * TEXT_SIZE) + ROW_HEIGHT
-                - LEADING * TEXT_SIZE;
+            let height = tallest.max(text_lines.len() as f64 * LEADING * sizes.text) + sizes.row
+                - LEADING * sizes.text;
             strips.push(Strip {
                 lines: text_lines,
                 row: Some(row),
-                height: height.max(ROW_HEIGHT),
+                height: height.max(sizes.row),
             });
         }
     }
@@ -251,9 +287,9 @@ mod tests {
     fn the_panel_grows_by_its_rows_and_repeats_far_names() {
         let height = |rows| HeatMap::new(&grid(rows, &["m", "a"]), 1312.0).height();
         // Sums of whole numbers and of measured text: rounding only.
-        assert!((height(40) - height(30) - 10.0 * ROW_HEIGHT).abs() < 1e-9);
+        assert!((height(40) - height(30) - 10.0 * 40.0).abs() < 1e-9);
         let names = HeatMap::new(&grid(120, &["m", "a"]), 1312.0).header.height;
-        assert!((height(120) - height(40) - 80.0 * ROW_HEIGHT - names).abs() < 1e-9);
+        assert!((height(120) - height(40) - 80.0 * 40.0 - names).abs() < 1e-9);
         // As PNG, a hundred rows still are a page.
         assert!(height(120) < 5200.0);
     }
@@ -263,11 +299,8 @@ mod tests {
         let mut wide = grid(1, &["a"; 12]);
         wide.groups[0].rows[0].cells[0] = Some(Cell::text_only("1.234567e−12"));
         let heat_map = HeatMap::new(&wide, 1312.0);
-        assert_eq!(heat_map.text_size, MIN_TEXT_SIZE);
-        assert!(heat_map.strips[0].height > ROW_HEIGHT);
-        assert_eq!(
-            HeatMap::new(&grid(1, &["a"; 12]), 1312.0).text_size,
-            TEXT_SIZE
-        );
+        assert_eq!(heat_map.text_size, 18.0);
+        assert!(heat_map.strips[0].height > 40.0);
+        assert_eq!(HeatMap::new(&grid(1, &["a"; 12]), 1312.0).text_size, 25.0);
     }
 }

@@ -37,6 +37,7 @@
 //! | a path, a mechanism in one or more positions | [`Drawing`], whose axes have equal scales |
 //! | a mechanism that moves | [`Animation`] |
 //! | many cases under many checks | [`Grid`], cells coloured by a value, with a few letters each |
+//! | a verdict, and the few numbers it rests on | [`Tiles`] |
 //!
 //! The example `gallery` draws one of each. Six colours, ink and grey distinguish eight curves, also for colour-blind
 //! readers; from the seventh curve on use [`Stroke::Dashed`] too.
@@ -97,6 +98,7 @@ mod svg;
 mod table;
 mod theme;
 mod ticks;
+mod tile_rows;
 mod typeset;
 mod wrapped_text;
 
@@ -105,7 +107,7 @@ pub use axis::{Axis, Paint, Scale};
 pub use error::ReportError;
 pub use figure::{Chart, Figure, Mark, Panel, Series, Stroke};
 pub use files::Files;
-pub use grid::{Cell, Grid, Group, Row};
+pub use grid::{Cell, Grid, Group, Row, Tile, Tiles};
 pub use html::escaped;
 pub use json::{FindingRecord, Number, json};
 pub use layout::{Label, Layout, NamedCurve};

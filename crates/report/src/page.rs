@@ -10,6 +10,7 @@ use crate::rect::{Insets, Rect};
 use crate::shape::Drawing;
 use crate::stack::Stack;
 use crate::theme::{CAPTION_GREY, CAPTION_SIZE, INK, PROVENANCE_SIZE, TITLE_SIZE, WHITE};
+use crate::tile_rows::TileRows;
 use crate::typeset::typeset;
 use std::slice::from_ref;
 
@@ -37,6 +38,7 @@ enum PreparedPanel<'a> {
     Drawing(&'a Drawing),
     Stack(Stack<'a>),
     Grid(Box<HeatMap<'a>>),
+    Tiles(TileRows<'a>),
 }
 
 impl PreparedPanel<'_> {
@@ -45,8 +47,8 @@ impl PreparedPanel<'_> {
             Self::Chart(chart) => chart.insets(cell),
             Self::Drawing(drawing) => drawing::insets(from_ref(drawing), cell),
             Self::Stack(stack) => stack.insets(cell),
-            // Its cells line up with nothing on the page.
-            Self::Grid(_) => Insets::default(),
+            // Their cells line up with nothing on the page.
+            Self::Grid(_) | Self::Tiles(_) => Insets::default(),
         }
     }
 
@@ -59,6 +61,7 @@ impl PreparedPanel<'_> {
             Self::Drawing(drawing) => drawing::height(from_ref(drawing), width).min(1000.0),
             Self::Stack(stack) => stack.height(width),
             Self::Grid(heat_map) => heat_map.height(),
+            Self::Tiles(tiles) => tiles.height(),
         }
     }
 
@@ -70,6 +73,7 @@ impl PreparedPanel<'_> {
             }
             Self::Stack(stack) => stack.draw(canvas, cell, insets),
             Self::Grid(heat_map) => heat_map.draw(canvas, cell),
+            Self::Tiles(tiles) => tiles.draw(canvas, cell),
         }
     }
 }
@@ -99,6 +103,7 @@ fn prepared(panel: &Panel, width: f64) -> PreparedPanel<'_> {
         Panel::Drawing(drawing) => PreparedPanel::Drawing(drawing),
         Panel::Stack(charts) => PreparedPanel::Stack(Stack::new(charts)),
         Panel::Grid(grid) => PreparedPanel::Grid(Box::new(HeatMap::new(grid, width))),
+        Panel::Tiles(tiles) => PreparedPanel::Tiles(TileRows::new(tiles, width)),
     }
 }
 

@@ -16,6 +16,9 @@ const PALETTE: [Rgb; 6] = [
     [86, 180, 233],
 ];
 
+/// What failed and what passed: vermilion and green of the palette.
+pub(crate) const FAILED: Rgb = PALETTE[1];
+pub(crate) const PASSED: Rgb = PALETTE[2];
 pub(crate) const WHITE: Rgb = [255, 255, 255];
 pub(crate) const INK: Rgb = [32, 32, 36];
 pub(crate) const GREY: Rgb = [120, 120, 126];

@@ -20,7 +20,7 @@
 //! ```
 //!
 //! `cases` reads the references of a case and evaluates its states, `checked` makes all findings, `case_report` writes
-//! them, and `overview` puts all cases into one table.
+//! them, and `overview` is the verdict over all of them.
 
 mod case_report;
 mod cases;
@@ -41,6 +41,6 @@ pub use cases::subject::PlanSubject;
 pub use checked::multibody::{FreeMotionRun, free_motion_run};
 pub use checked::states::{CheckedStates, check_case};
 pub use error::ValidationError;
-pub use overview::{CaseResult, index};
-pub use spatial::{ClaimsIn, ReferencePoses, SpaceClaims, index_in_space, validate_in_space};
+pub use overview::{CaseResult, Judged, JudgedCase, index};
+pub use spatial::{ClaimsIn, ReferencePoses, SpaceClaims, validate_in_space};
 pub use work_precision::work_precision;

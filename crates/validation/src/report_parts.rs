@@ -4,6 +4,7 @@ use dwell_findings::{Finding, all_pass};
 use dwell_report::{Block, Column, Document, Figure, Table, reproducible_text};
 use dwell_study::Outcome;
 use dwell_study::output::Picture;
+use std::cmp::Ordering;
 
 /// The report of a study: `NAME.md` and `NAME.html`, the rounded `NAME.txt`, and its pictures in the folder `NAME/`.
 pub(crate) struct StudyReport<'a> {
@@ -25,8 +26,7 @@ impl StudyReport<'_> {
     /// Adds the report to an outcome.
     pub(crate) fn add_to(self, outcome: &mut Outcome) {
         let (name, title, findings) = (self.name, self.title, self.findings);
-        let result = pass_or_fail(all_pass(&findings));
-        let mut blocks = vec![Block::Text(format!("{result}. {}", self.text))];
+        let mut blocks = vec![Block::Text(verdict_line(&findings)), Block::Text(self.text)];
         blocks.extend(self.blocks);
         blocks.push(Block::Heading("Findings".to_owned()));
         blocks.push(Block::Findings(findings.clone()));
@@ -104,25 +104,74 @@ pub(crate) fn findings_text(name: &str, findings: &[Finding], more: &str) -> Str
     text
 }
 
-/// The difference of a finding as a part of its tolerance.
-pub(crate) fn ratio(finding: &Finding) -> f64 {
+/// Where the tolerance is half a unit and a little more, differences are counted in units of the last printed digit: half of one is rounding.
+const LAST_DIGIT: std::ops::Range<f64> = 0.5..0.6;
+
+/// How many times the difference of a finding is its tolerance: infinite where there is no difference, or none in the printed digits; zero
+/// where it is not a number.
+pub(crate) fn margin(finding: &Finding) -> f64 {
     match finding.relative_difference {
-        0.0 => 0.0,
-        // What is not a number is the worst there is.
-        relative if relative.is_nan() => f64::INFINITY,
-        relative => relative / finding.tolerance,
+        0.0 if finding.pass => f64::INFINITY,
+        _ if finding.pass && LAST_DIGIT.contains(&finding.tolerance) => f64::INFINITY,
+        difference if difference.is_nan() => 0.0,
+        difference => finding.tolerance / difference,
     }
 }
 
-/// The finding nearest to its tolerance.
-pub(crate) fn nearest<'f>(findings: impl Iterator<Item = &'f Finding>) -> Option<&'f Finding> {
-    findings.max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
+/// A margin in at most four letters.
+pub(crate) fn margin_text(margin: f64) -> String {
+    match margin {
+        margin if margin == f64::INFINITY => "=".to_owned(),
+        margin if margin < 9.95 => format!("{margin:.1}"),
+        margin if margin < 999.5 => format!("{margin:.0}"),
+        margin => {
+            let power = margin.log10().floor().to_string();
+            let digits = power
+                .bytes()
+                .map(|digit| SUPERSCRIPTS[usize::from(digit - b'0')]);
+            format!("10{}", digits.collect::<String>())
+        }
+    }
 }
 
-/// How near the nearest of some findings is, and which.
+const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+
+/// The finding with the least margin; one that fails comes before all that pass.
+pub(crate) fn nearest<'f>(findings: impl Iterator<Item = &'f Finding>) -> Option<&'f Finding> {
+    findings.min_by(|a, b| {
+        (a.pass, margin(a))
+            .partial_cmp(&(b.pass, margin(b)))
+            .unwrap_or(Ordering::Equal)
+    })
+}
+
+/// The least margin of some findings, and which has it.
 pub(crate) fn nearness(findings: &[Finding]) -> String {
     let nearest = nearest(findings.iter());
-    nearest.map_or_else(String::new, |f| format!("{:.2} of {}", ratio(f), f.key))
+    nearest.map_or_else(String::new, |f| {
+        format!("{} of {}", margin_text(margin(f)), f.key)
+    })
+}
+
+/// The first line of the page of a case or a study: the verdict, and what is nearest to its tolerance.
+pub(crate) fn verdict_line(findings: &[Finding]) -> String {
+    let passed = findings.iter().filter(|f| f.pass).count();
+    let counts = format!("{passed} of {} findings pass", findings.len());
+    let result = if all_pass(findings) { "PASS" } else { "FAIL" };
+    match nearest(findings.iter()) {
+        None => format!("**{result}**: {counts}."),
+        Some(f) => format!(
+            "**{result}**: {counts}. {} `{}`, check {}: margin {}.",
+            if f.pass {
+                "Nearest to its tolerance:"
+            } else {
+                "The worst:"
+            },
+            f.key,
+            f.check,
+            margin_text(margin(f))
+        ),
+    }
 }
 
 /// `pass` or a bold FAIL.

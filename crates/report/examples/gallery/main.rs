@@ -28,6 +28,7 @@ fn main() -> Result<(), ReportError> {
         kinematics::profile(),
         grids::mutations(),
         grids::digits(),
+        grids::verdict(),
     ];
     let mut files = Files::new();
     for figure in &figures {

@@ -5,7 +5,7 @@ use super::family::Family;
 use super::{dimensions, family_page};
 use crate::cases::reference::Reference;
 use crate::checked::analysis::CaseAnalysis;
-use crate::report_parts::{TextColumn, figure_blocks, table_of};
+use crate::report_parts::{TextColumn, figure_blocks, table_of, verdict_line};
 use dwell_findings::Finding;
 use dwell_report::{Block, Document, Figure};
 use dwell_scene::Scene;
@@ -23,8 +23,8 @@ pub(super) fn document(
     dwell: Option<&Dwell>,
     family: Option<&Family>,
 ) -> Document {
-    let mut blocks: Vec<Block> = scene.note.iter().cloned().map(Block::Words).collect();
-    blocks.push(Block::Text(findings_sentence(reference, analysis)));
+    let mut blocks = vec![Block::Text(findings_sentence(reference, analysis))];
+    blocks.extend(scene.note.iter().cloned().map(Block::Words));
     blocks.push(Block::Text(reference.kinds.sentence()));
     if !reference.source.is_empty() {
         blocks.push(Block::Text(format!("Source: {}.", reference.source)));
@@ -63,14 +63,13 @@ pub(super) fn document(
 }
 
 fn findings_sentence(reference: &Reference, analysis: &CaseAnalysis<'_>) -> String {
-    let passed = analysis.findings.iter().filter(|f| f.pass).count();
     let reference_states = match reference.state_requests().len() {
         0 => String::new(),
         n => format!(" and {n} of the reference"),
     };
     format!(
-        "{passed} of {} findings pass. States were checked at {} instants: {}{reference_states}.",
-        analysis.findings.len(),
+        "{} States were checked at {} instants: {}{reference_states}.",
+        verdict_line(&analysis.findings),
         analysis.states.states.len(),
         analysis.states.motion_text,
     )

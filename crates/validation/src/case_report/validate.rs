@@ -11,7 +11,7 @@ use crate::cases::reference::{Reference, SourceKinds};
 use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis, analyse};
 use crate::error::ValidationError;
 use crate::report_parts::findings_text;
-use dwell_findings::Check;
+use dwell_findings::{Check, Record};
 use dwell_report::{Figure, Files, TableExport as _};
 use dwell_scene::Scene;
 use dwell_study::output::Picture;
@@ -96,11 +96,17 @@ fn validate_case(
         let path = format!("{name}/{}.png", figure.name);
         Picture::figure(scene, path, true, figure)
     };
+    let mut record = Record::default();
+    let motion = analysis.reduced.as_ref().and_then(|r| r.motion.as_ref());
+    if let Some(motion) = motion {
+        record.add("period", "s", motion.orbit.period);
+    }
     Ok(Validation {
         source_kinds: reference.kinds.clone(),
         outcome: Outcome {
             summary: summary(scene, &analysis) + &reference.notes + &reference.tolerances.notes,
             files,
+            record,
             findings: analysis.findings,
             pictures: figures.into_iter().map(picture).collect(),
             ..Outcome::default()
@@ -147,7 +153,7 @@ fn case_figures(
             (figures, None)
         }
     };
-    figures.push(figures::digits(scene, &analysis.findings));
+    figures.push(figures::margins(scene, &analysis.findings));
     figures.push(figures::rounding(scene, states, &analysis.rounding));
     Ok((figures, dwell))
 }

@@ -13,6 +13,8 @@ use dwell_study::{Outcome, StudyError};
 
 /// The case whose runs are exported.
 pub const CASE: &str = "single-dwell";
+/// What the study is called.
+pub const NAME: &str = "exported runs";
 
 /// The study of a scene of one revolving coordinate: `exported-runs.md`, `.txt` and the folder `exported-runs/`.
 ///

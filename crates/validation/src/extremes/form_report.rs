@@ -3,7 +3,7 @@
 use super::check::{check_digits, check_estimates};
 use super::forms::{Form, evaluate};
 use super::series::{ResultCell, SeriesResult};
-use crate::report_parts::{StudyReport, figure_blocks, ratio, table};
+use crate::report_parts::{StudyReport, figure_blocks, nearest, table};
 use dwell_findings::Finding;
 use dwell_report::{Axis, Cell, Figure, Grid, Group, Row};
 use dwell_study::Outcome;
@@ -34,10 +34,7 @@ fn combined(form: Form, what: &str, findings: impl Iterator<Item = Finding>) -> 
         "{}-{what}",
         form.name().replace(", ", "-").replace(' ', "-")
     );
-    let worst = findings.iter().max_by(|a, b| {
-        let rank = |f: &Finding| (!f.pass, ratio(f));
-        (rank(a).0.cmp(&rank(b).0)).then(rank(a).1.total_cmp(&rank(b).1))
-    });
+    let worst = nearest(findings.iter());
     Finding {
         key,
         comparison: "series of the extremes, against their closed forms".to_owned(),
@@ -138,6 +135,7 @@ fn figure(plane: &[SeriesResult], results: &[(Form, Vec<SeriesResult>)]) -> Figu
         }],
         values: Axis::new("digits kept, plus those that the condition takes", "")
             .with_range(0.0, MAX_DIGITS),
+        compact: true,
     };
     Figure {
         name: "forms".to_owned(),

@@ -4,7 +4,9 @@ use super::capabilities::CAPABILITIES;
 use super::key_study::REQUIRED;
 use super::lines::{Line, LineState, digits, numbers};
 use super::machine;
-use crate::report_parts::{TextColumn, nearness, pass_or_fail, ratio, table, table_of};
+use crate::report_parts::{
+    TextColumn, margin, margin_text, nearness, pass_or_fail, table, table_of,
+};
 use dwell_findings::{Check, Finding, all_pass};
 use dwell_report::{Block, Document, markdown_text};
 use std::fmt::Write as _;
@@ -90,7 +92,7 @@ fn summary(contents: &Contents<'_>) -> Block {
 
 fn how_to_read() -> Block {
     Block::Text(format!(
-        "Each line is a capability: a key of the scene description, a command, or an option. It passes where a case uses it, every finding of the checks that apply to it passes on all its cases, and a fault in it is detected by {REQUIRED} checks of different number. For a key the fault is planted now, on this machine: the results are computed from a scene in which the value of this key alone is another, and the checks are given the scene as it is written. For commands and options a fault is one of the committed studies. *Ratio* is the difference of the finding nearest to its tolerance, as a part of it; *digits* are those in which result and target agree there."
+        "Each line is a capability: a key of the scene description, a command, or an option. It passes where a case uses it, every finding of the checks that apply to it passes on all its cases, and a fault in it is detected by {REQUIRED} checks of different number. For a key the fault is planted now, on this machine: the results are computed from a scene in which the value of this key alone is another, and the checks are given the scene as it is written. For commands and options a fault is one of the committed studies. *Margin* is the tolerance over the difference of the finding nearest to its tolerance; *digits* are those in which result and target agree there."
     )
     .replace('*', ""))
 }
@@ -208,7 +210,7 @@ fn line_table(lines: &[Line]) -> Block {
         ("Difference", |line| {
             near(line, |f| format!("{:.1e}", f.relative_difference))
         }),
-        ("Ratio", |line| near(line, |f| format!("{:.2}", ratio(f)))),
+        ("Margin", |line| near(line, |f| margin_text(margin(f)))),
         ("Digits", |line| near(line, |f| format!("{:.1}", digits(f)))),
         ("Checked by", |line| {
             let checks: Vec<String> = line.checks.iter().map(Check::to_string).collect();
@@ -235,7 +237,7 @@ fn extremes(findings: &[Finding]) -> Block {
     let columns: [TextColumn<&Finding>; 5] = [
         ("Series", |f| format!("`{}`", f.key)),
         ("Compared", |f| markdown_text(&f.comparison)),
-        ("Ratio", |f| format!("{:.2}", ratio(f))),
+        ("Margin", |f| margin_text(margin(f))),
         ("Check", |f| f.check.to_string()),
         ("Result", |f| pass_or_fail(f.pass).to_owned()),
     ];

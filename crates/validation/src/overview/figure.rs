@@ -1,56 +1,61 @@
-//! All cases and all checks at once.
+//! The verdict in one picture: what passed, the numbers it rests on, and every case by every check.
 
-use crate::overview::{CaseResult, CheckCell, check_cells};
+use super::{CheckCell, Judged, check_cells, verdict};
+use crate::report_parts::{margin, margin_text};
 use dwell_findings::Check;
-use dwell_report::{Axis, Cell, Figure, Grid, Group, Panel, Row};
-use std::collections::BTreeMap;
+use dwell_report::{Axis, Cell, Figure, Grid, Group, Panel, Row, Tiles};
 
-/// Digits that the colours cover: from those of an integrated motion to the last place.
-const COLOR_RANGE: [f64; 2] = [6.0, 16.0];
+/// Margins that the colours cover.
+const COLOR_RANGE: [f64; 2] = [1.0, 1e4];
 
-/// Digits of agreement, case by check.
-pub(crate) fn overview(results: &[CaseResult<'_>]) -> Figure {
-    // By check and reason: the cases.
-    let mut not_applicable: BTreeMap<(Check, &str), Vec<&str>> = BTreeMap::new();
-    let mut rows = Vec::new();
-    for (name, result) in results {
-        let Ok((scene, validation)) = result else {
-            let failed = Cell::text_only("none").failed();
-            rows.push(Row::new(*name, vec![Some(failed); Check::ALL.len()]));
-            continue;
-        };
-        let cells = Check::ALL.into_iter().zip(check_cells(validation));
-        let cells = cells.map(|(check, cell)| match cell {
-            CheckCell::Digits(digits) => Some(Cell::new(digits, format!("{digits:.1}"))),
-            CheckCell::Failed(_) => Some(Cell::text_only("FAIL").failed()),
-            CheckCell::NotApplicable(why) => {
-                let cases = not_applicable.entry((check, why)).or_default();
-                cases.push(&scene.name);
-                None
-            }
-        });
-        rows.push(Row::new(&scene.name, cells.collect()));
-    }
-    let mut caption =
-        "Agreeing digits of the worst finding of each check; double precision has 15.7. Checks 5, 6 and part of 4 are limited by the integrator's tolerance."
-            .to_owned();
-    for ((check, why), cases) in &not_applicable {
-        caption += &format!("\n{check}, {why}: {}.", cases.join(", "));
-    }
+/// Tiles above a matrix of margins.
+pub(super) fn overview(judged: &Judged<'_>) -> Figure {
+    let group = |in_space: bool| Group {
+        heading: if in_space { "In space" } else { "In the plane" }.to_owned(),
+        rows: (judged.cases.iter())
+            .filter(|case| case.in_space == in_space)
+            .map(|case| {
+                let cells = match &case.result {
+                    Ok(done) => check_cells(done).map(cell).into(),
+                    Err(_) => vec![Some(Cell::text_only("none").failed()); Check::ALL.len()],
+                };
+                Row::new(case.name, cells)
+            })
+            .collect(),
+    };
+    let groups = [false, true].map(group).into_iter();
+    let matrix = Grid {
+        columns: Check::ALL.map(|check| check.to_string()).into(),
+        groups: groups.filter(|group| !group.rows.is_empty()).collect(),
+        values: Axis::log("margin: tolerance over difference", "")
+            .with_range(COLOR_RANGE[0], COLOR_RANGE[1]),
+        compact: true,
+        ..Grid::default()
+    };
+    let rows = verdict::tiles(judged).into_iter();
+    let rows = rows.filter(|tiles| !tiles.is_empty()).map(|tiles| {
+        let columns = tiles.len();
+        Panel::from(Tiles { columns, tiles })
+    });
     Figure {
         name: "index".to_owned(),
-        title: "Every case and every check".to_owned(),
-        caption,
+        title: judged.headline(),
+        caption: "Of each check the finding with the least margin; = where there is no difference. cases.md says why a check does not apply."
+            .to_owned(),
         columns: 1,
-        panels: vec![Panel::from(Grid {
-            columns: Check::ALL.map(|check| check.to_string()).to_vec(),
-            groups: vec![Group {
-                heading: String::new(),
-                rows,
-            }],
-            values: Axis::new("digits of agreement", "").with_range(COLOR_RANGE[0], COLOR_RANGE[1]),
-            ..Grid::default()
-        })],
+        panels: rows.chain([matrix.into()]).collect(),
         provenance: format!("Dwell {}", env!("CARGO_PKG_VERSION")),
+    }
+}
+
+fn cell(cell: CheckCell<'_>) -> Option<Cell> {
+    match cell {
+        CheckCell::Nearest(f) if !f.pass => Some(Cell::text_only("FAIL").failed()),
+        CheckCell::Nearest(f) => {
+            let margin = margin(f);
+            let colored = margin.min(COLOR_RANGE[1]);
+            Some(Cell::new(colored, margin_text(margin)))
+        }
+        CheckCell::NotApplicable(_) => None,
     }
 }

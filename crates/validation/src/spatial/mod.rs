@@ -22,4 +22,4 @@ mod written;
 
 pub use claims::{ClaimsIn, SpaceClaims};
 pub use reference_poses::ReferencePoses;
-pub use report::{index_in_space, validate_in_space};
+pub use report::validate_in_space;

@@ -6,9 +6,8 @@ use super::several::of_several;
 use super::written::written_findings;
 use crate::case_report::validate::Validation;
 use crate::error::ValidationError;
-use crate::overview::{CheckCell, check_cells};
-use crate::report_parts::{figure_blocks, findings_text, pass_or_fail, table};
-use dwell_findings::{Check, Finding, all_pass};
+use crate::report_parts::{figure_blocks, findings_text, verdict_line};
+use dwell_findings::Finding;
 use dwell_kinetostatics::Coefficients;
 use dwell_report::{Block, Document, Figure, Files, markdown_text};
 use dwell_scene::SpaceScene;
@@ -92,19 +91,14 @@ pub fn validate_in_space(
 
 fn document(scene: &SpaceScene, reference: Option<&Reference>, report: &Report) -> Document {
     let findings = &report.findings;
-    let passed = findings.iter().filter(|f| f.pass).count();
-    let mut texts = vec![format!(
-        "{passed} of {} findings pass.{}",
-        findings.len(),
-        report.about
-    )];
+    let mut texts = vec![format!("{}{}", verdict_line(findings), report.about)];
     texts.extend(reference.map(|reference| {
         let source = markdown_text(reference.source());
         format!("{}: {source}.", report.reference)
     }));
     texts.extend(report.more.clone());
-    let mut blocks: Vec<Block> = scene.note.iter().cloned().map(Block::Words).collect();
-    blocks.extend(texts.into_iter().map(Block::Text));
+    let mut blocks: Vec<Block> = texts.into_iter().map(Block::Text).collect();
+    blocks.extend(scene.note.iter().cloned().map(Block::Words));
     blocks.push(Block::Heading("Findings".to_owned()));
     blocks.push(Block::Findings(findings.clone()));
     blocks.push(Block::Heading("Figures".to_owned()));
@@ -212,40 +206,4 @@ pub(super) fn rounded(value: f64, largest: f64) -> String {
         Some(digits) if digits.trim_matches(['0', '.']).is_empty() => digits.to_owned(),
         _ => text,
     }
-}
-
-/// All cases in space in one table, `space.md`: agreeing digits by case and check.
-pub fn index_in_space(results: &[(&SpaceScene, &Validation)]) -> Outcome {
-    let checks: Vec<Check> = Check::ALL
-        .into_iter()
-        .filter(|check| {
-            let all = results.iter().flat_map(|(_, done)| &done.outcome.findings);
-            all.into_iter().any(|finding| finding.check == *check)
-        })
-        .collect();
-    let heads: Vec<String> = checks.iter().map(Check::to_string).collect();
-    let mut header = vec!["Case", "Result"];
-    header.extend(heads.iter().map(String::as_str));
-    let rows = results.iter().map(|(scene, done)| {
-        let cells = check_cells(done);
-        let mut row = vec![
-            format!("[{}]({}.md)", markdown_text(&scene.title), scene.name),
-            pass_or_fail(all_pass(&done.outcome.findings)).to_owned(),
-        ];
-        row.extend(checks.iter().map(|check| match &cells[check.number()] {
-            CheckCell::Digits(digits) => format!("{digits:.1}"),
-            CheckCell::Failed(key) => format!("**FAIL** {key}"),
-            CheckCell::NotApplicable(_) => String::new(),
-        }));
-        row
-    });
-    let text = "Agreeing decimal digits of the worst finding of each check; double precision has 15.7. Check 2 and a part of check 8 are limited by \
-                differences. No digits where the reference has no such value.";
-    let document = Document {
-        title: "Cases in space".to_owned(),
-        blocks: vec![table(&header, rows), Block::Text(text.to_owned())],
-    };
-    let mut outcome = Outcome::default();
-    outcome.files.add_document("space", &document);
-    outcome
 }

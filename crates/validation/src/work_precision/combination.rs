@@ -1,5 +1,6 @@
 //! Combinations of evaluation, integrator and tolerance, and their results: plain data.
 
+use super::commands::CommandRun;
 use super::exported_code::ExportedCode;
 use super::fixed_step::FixedStep;
 use dwell_dynamics::Method;
@@ -211,6 +212,10 @@ pub struct WorkPrecision {
     pub fixed_step: Option<FixedStep>,
     /// The exported code with steps of a millisecond.
     pub exported_code: Vec<ExportedCode>,
+    /// The command at each accuracy that has a name.
+    pub commands: Vec<CommandRun>,
+    /// By number of requested reactions: the time of an evaluation with them, in units of one without.
+    pub requested: Vec<[f64; 2]>,
     /// What was not run or not finished, and why.
     pub omitted: Vec<String>,
     /// The reference of the errors.
@@ -281,16 +286,39 @@ impl WorkPrecision {
         order
     }
 
-    /// The cheapest integrator that reaches an accuracy, as an index of `points`.
+    /// Whether a point and all finer tolerances of its integrator with its evaluation reach an accuracy: what one of them reaches alone
+    /// it reaches by luck.
+    fn reaches(&self, point: &CombinationResult, quantity: ErrorQuantity, accuracy: f64) -> bool {
+        let of = |point: &CombinationResult| match point.combination.integrator {
+            Integrator::Steps(method, tolerance) => (Some(method), tolerance),
+            Integrator::Quadrature => (None, 0.0),
+        };
+        let (method, tolerance) = of(point);
+        let mut finer = self.points.iter().filter(|other| {
+            let (own, finer) = of(other);
+            let alike = other.combination.evaluation == point.combination.evaluation;
+            own == method && alike && finer <= tolerance
+        });
+        finer.all(|other| self.error_bound(other, quantity) <= accuracy)
+    }
+
+    /// The cheapest integrator that reaches an accuracy with its tolerance and all finer ones, as an index of `points`.
     pub fn cheapest(
         &self,
         quantity: ErrorQuantity,
         measure: CostMeasure,
         accuracy: f64,
     ) -> Option<usize> {
-        let front = self.pareto_front(quantity, measure);
-        let enough = |&&k: &&usize| self.error_bound(&self.points[k], quantity) <= accuracy;
-        front.iter().find(enough).copied()
+        let alike = |point: &CombinationResult| {
+            let stepped = matches!(point.combination.integrator, Integrator::Steps(..));
+            let exact = point.combination.evaluation == Evaluation::Exact;
+            stepped && (exact || measure != CostMeasure::Evaluations)
+        };
+        let points = self.points.iter().enumerate();
+        let enough = points.filter(|(_, p)| alike(p) && self.reaches(p, quantity, accuracy));
+        let cost = |point: &CombinationResult| point.cost.of(measure);
+        let cheapest = enough.min_by(|(_, a), (_, b)| cost(a).total_cmp(&cost(b)));
+        cheapest.map(|(k, _)| k)
     }
 
     /// The motion by quadrature of the exact model, where it has one.
@@ -314,7 +342,7 @@ pub struct Effort {
     pub max_steps: usize,
     /// Runs of which the least time counts; at least one.
     pub repetitions: usize,
-    /// Whether exported code is compiled and measured.
+    /// Whether exported code is compiled and measured, and the command with its files.
     pub exported_code: bool,
 }
 

@@ -50,13 +50,14 @@ pub(super) fn figure(scene: &SceneFile, found: &WorkPrecision, name: &str) -> Fi
         (ErrorQuantity::Reaction, CostMeasure::Evaluations),
     ];
     let panels = panels.map(|(quantity, measure)| panel(found, quantity, measure));
+    let panels = panels.into_iter().chain([requested(found)]);
     let (title, provenance) = (
         "Work–precision diagram",
         "all combinations of evaluation, integrator and tolerance",
     );
     Figure {
         columns: 2,
-        ..scene_figure(scene, name, title, &text, panels.into(), provenance)
+        ..scene_figure(scene, name, title, &text, panels.collect(), provenance)
     }
 }
 
@@ -69,6 +70,10 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
     let line = front.iter().map(|point| at(point)).collect();
     let mut series = vec![Series::line("", line).color(Paint::Grey)];
     series.extend(method_series(found, measure, &at));
+    if measure == CostMeasure::Time {
+        let all = commands(found).into_iter();
+        series.extend(all.filter(|series| !series.points.is_empty()));
+    }
     let reference_error = found.reference.error.of(quantity);
     let mut marks = vec![Mark::Band {
         from: reference_error / AXIS_MARGIN.powi(3),
@@ -111,6 +116,35 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
         marks,
         ..chart(title, x, y, series)
     })
+}
+
+/// What is requested, and its cost.
+fn requested(found: &WorkPrecision) -> Panel {
+    let line = Series::line("", found.requested.clone()).stroke(Stroke::LineAndPoints);
+    let x = Axis::new("requested reactions", "");
+    let y = Axis::new("time / one evaluation without reactions", "");
+    let title = "What is requested";
+    Panel::from(chart(title, x, y, vec![line]))
+}
+
+/// The command by its accuracies and the exported code by its steps of a millisecond, over the error of the coordinate.
+fn commands(found: &WorkPrecision) -> [Series; 2] {
+    let (unit, floor) = (found.evaluation_time, found.reference.error.coordinate);
+    let commands = found.commands.iter();
+    let commands = commands.map(|of| [of.errors.coordinate.max(floor), of.computing / unit]);
+    let steps = found
+        .fixed_step
+        .map_or(f64::NAN, |fixed| fixed.steps as f64);
+    let codes = found.exported_code.iter();
+    let codes = codes.map(|code| [code.errors.coordinate.max(floor), steps * code.times[1][0]]);
+    [
+        Series::line("simulate --accuracy", commands.collect())
+            .stroke(Stroke::LineAndPoints)
+            .color(Paint::Ink),
+        Series::line("exported C, 1 ms", codes.collect())
+            .stroke(Stroke::Points)
+            .color(Paint::Grey),
+    ]
 }
 
 /// The runs of every method: those of the mechanism itself and, in time, on tables and in single precision.

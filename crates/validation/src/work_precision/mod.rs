@@ -2,13 +2,14 @@
 //! the motion of a scene; its true error is compared with its cost.
 
 mod combination;
-mod command_times;
+mod commands;
 mod evaluator;
 mod exported_code;
 mod figure;
 mod fixed_step;
 mod reference_solution;
 mod report;
+mod requested;
 mod run;
 mod selected_cases;
 mod studied_scene;
@@ -18,11 +19,12 @@ pub use combination::{
     Combination, CombinationResult, Cost, CostMeasure, Effort, ErrorQuantity, Errors, Evaluation,
     Integrator, ReferenceInfo, WorkPrecision,
 };
+pub use commands::CommandRun;
 pub use evaluator::{Evaluator, ModelEvaluator, ReactionFn};
 pub use exported_code::ExportedCode;
 pub use fixed_step::FixedStep;
 pub use selected_cases::selected_case_reports;
-pub use studied_scene::{PreliminaryRun, StudiedScene};
+pub use studied_scene::{CommandedMotion, PreliminaryRun, StudiedScene};
 
 use dwell_dynamics::{DynamicsError, Method, TabulationError};
 use dwell_geometry::Range;
@@ -56,12 +58,11 @@ pub fn work_precision<S: StudiedScene>(
     progress: Progress<'_>,
 ) -> Result<Outcome, StudyError> {
     let found = measure(scene, &Effort::full(), progress)?;
-    let times = command_times::command_times(scene)?;
     let name = format!("{}-work-precision", scene.name);
     let mut outcome = Outcome {
         summary: report::summary(scene, &found)
             + &report::exported_code_summary(&found)
-            + &report::command_summary(&times),
+            + &report::command_summary(scene, &found),
         record: report::record(&found),
         ..Outcome::default()
     };
@@ -73,7 +74,7 @@ pub fn work_precision<S: StudiedScene>(
     files.add(format!("{name}.npz"), report::table(&found).npz()?);
     let mut document = report::document(scene, &found, &name);
     document.blocks.extend(report::exported_code_blocks(&found));
-    document.blocks.extend(report::command_blocks(&times));
+    document.blocks.extend(report::command_blocks(&found));
     outcome.page = Some((format!("{name}.md"), document));
     Ok(outcome)
 }
@@ -145,9 +146,12 @@ pub fn measure_with<S: StudiedScene>(
         false => Ok(Vec::new()),
     };
     let exported_code = exported_code.map_err(|e| omitted.push(format!("exported code: {e}")));
+    let commands = commands::command_runs(&mut reference, exact, &subject, effort.exported_code)?;
     Ok(WorkPrecision {
         points,
         fixed_step: fixed_step.ok(),
+        requested: requested::requested_costs(&subject, &reference.states)?,
+        commands,
         exported_code: exported_code.unwrap_or_default(),
         omitted,
         reference: reference.info,

@@ -4,7 +4,7 @@ use super::combination::{
     CombinationResult, CostMeasure, ErrorQuantity, Evaluation, Integrator, WorkPrecision,
     digits_or_dash,
 };
-use super::command_times::CommandTime;
+use super::commands::CommandRun;
 use super::exported_code::ExportedCode;
 use crate::report_parts::{self, TextColumn, table_of};
 use dwell_dynamics::Method;
@@ -169,6 +169,7 @@ pub(super) fn document(scene: &SceneFile, found: &WorkPrecision, file: &str) -> 
             caption: String::new(),
         },
         Block::Heading("The cheapest for an accuracy".to_owned()),
+        Block::Text("A combination reaches an accuracy if it and all finer tolerances of its integrator do. Combinations without a table and in double precision are typed as `dwell simulate --method … --rtol …`; tables and single precision are those of the library and of exported code.".to_owned()),
         report_parts::table(
             &[
                 "error of",
@@ -319,42 +320,70 @@ pub(super) fn exported_code_blocks(found: &WorkPrecision) -> Vec<Block> {
     ]
 }
 
-/// The seconds of the whole command, as lines of the summary.
-pub(super) fn command_summary(times: &[CommandTime]) -> String {
-    let line = |of: &CommandTime| {
-        let [computing, files, pictures] =
-            [of.computing, of.with_files, of.with_pictures].map(|s| digits(1e3 * s, 2));
+/// What to type for each accuracy, as lines of the summary.
+pub(super) fn command_summary(scene: &SceneFile, found: &WorkPrecision) -> String {
+    let line = |of: &CommandRun| {
+        let accuracy = format!("{:.0e}", of.preset.1);
+        let errors = errors_text(found, of);
+        if !of.is_reached {
+            return format!("  for {accuracy}: not reached; seen {errors}\n");
+        }
+        let kept = match of.keeps_accuracy(&found.reference.error) {
+            true => "seen",
+            false => "NOT KEPT:",
+        };
+        let whole = of.whole.map_or_else(String::new, |whole| {
+            let [files, pictures] = whole.map(|s| digits(1e3 * s, 2));
+            format!(", with files {files} ms, with the main pictures {pictures} ms")
+        });
         format!(
-            "  simulate --accuracy {}: computing {computing} ms, with files {files} ms, with the main pictures {pictures} ms\n",
-            of.preset.0
+            "  for {accuracy} in coordinate, energy and reactions: dwell simulate {} --accuracy {accuracy}\n    computing {} ms{whole}, {}; {kept} {errors}\n",
+            scene.source.name(),
+            digits(1e3 * of.computing, 2),
+            of.method,
         )
     };
-    times.iter().map(line).collect()
+    found.commands.iter().map(line).collect()
 }
 
-/// The seconds of the whole command, as a part of the document.
-pub(super) fn command_blocks(times: &[CommandTime]) -> [Block; 3] {
-    let columns: [TextColumn<&CommandTime>; 5] = [
-        ("accuracy", |of| {
-            format!("{}, {:.0e}", of.preset.0, of.preset.1)
+/// The true errors of a command: coordinate, energy, worst reaction.
+fn errors_text(found: &WorkPrecision, of: &CommandRun) -> String {
+    let [coordinate, energy, reaction] =
+        ErrorQuantity::ALL.map(|quantity| digits_or_dash(of.errors.of(quantity), 1));
+    format!("{coordinate} {}, {energy}, {reaction}", found.unit)
+}
+
+/// What to type for each accuracy, as a part of the document.
+pub(super) fn command_blocks(found: &WorkPrecision) -> [Block; 3] {
+    let columns: [TextColumn<&CommandRun>; 9] = [
+        ("to type", |of| {
+            format!("`dwell simulate … --accuracy {:.0e}`", of.preset.1)
         }),
+        ("method", |of| of.method.clone()),
         ("estimated error", |of| {
             digits_or_dash(of.estimated_error.unwrap_or(f64::NAN), 2)
         }),
+        ("seen: coordinate", |of| {
+            digits_or_dash(of.errors.coordinate, 2)
+        }),
+        ("energy", |of| digits_or_dash(of.errors.energy, 2)),
+        ("reactions", |of| digits_or_dash(of.errors.reaction, 2)),
         ("computing, s", |of| digits(of.computing, 2)),
-        ("with files, s", |of| digits(of.with_files, 2)),
+        ("with files, s", |of| {
+            digits_or_dash(of.whole.map_or(f64::NAN, |whole| whole[0]), 2)
+        }),
         ("with the main pictures, s", |of| {
-            digits(of.with_pictures, 2)
+            digits_or_dash(of.whole.map_or(f64::NAN, |whole| whole[1]), 2)
         }),
     ];
     [
-        Block::Heading("The whole command".to_owned()),
+        Block::Heading("What to type".to_owned()),
         Block::Text(
-            "`dwell simulate --accuracy`, from the scene as it was read: the motion with its rows, extrema and error; the same with tables and page \
-             written; and with the main pictures. One run each; here the motion has the duration that the scene gives."
+            "`dwell simulate --accuracy` over the motion that is studied: the method that it chooses, the error that it estimates and the errors of its rows against the \
+             reference; computing the motion with its rows, extrema and error; the same with tables and page written; and with the main pictures. One run each."
                 .to_owned(),
         ),
-        table_of(&columns, times.iter()),
+        table_of(&columns, found.commands.iter()),
     ]
 }
 
@@ -412,19 +441,6 @@ pub(super) fn summary(scene: &SceneFile, found: &WorkPrecision) -> String {
         digits(reference_error.energy, 1),
         digits_or_dash(reference_error.reaction, 1)
     );
-    for accuracy in ACCURACIES {
-        let [counted, without_build, with_build] = CostMeasure::ALL
-            .map(|measure| cheapest(found, ErrorQuantity::Coordinate, measure, accuracy));
-        let build_text = match without_build == with_build {
-            true => String::new(),
-            false => format!("; time without build {without_build}"),
-        };
-        let unit = found.unit;
-        let _ = writeln!(
-            text,
-            "  {accuracy:.0e} {unit}: evaluations {counted}; time with build {with_build}{build_text}"
-        );
-    }
     if let Some(point) = found.quadrature() {
         let _ = writeln!(
             text,

@@ -7,6 +7,7 @@ use dwell_dynamics::{
     solve,
 };
 use dwell_export::Export;
+use dwell_findings::Table;
 use dwell_geometry::JointId;
 use dwell_geometry::space::CoordinateFunction;
 use dwell_kinetostatics::TableDomain;
@@ -18,6 +19,7 @@ use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
 use dwell_study::machines::MachineScene;
 use dwell_study::models::with_drive_loads;
 use dwell_study::number_format::digits;
+use dwell_study::trajectory::compute::ComputedTrajectory;
 use dwell_study::{
     ExportRequest, MotionSolver, Outcome, PictureSpan, StudyError, compute_export,
     compute_export_in_space, compute_free_motion, compute_free_motion_in_space,
@@ -38,6 +40,30 @@ pub struct PreliminaryRun {
     pub(super) has_one_chart: bool,
     /// Why it ended early.
     pub(super) failure: Option<DynamicsError>,
+}
+
+/// A motion as the command computes it.
+#[derive(Debug)]
+pub struct CommandedMotion {
+    /// By which method.
+    pub(super) method: String,
+    /// The error that it states.
+    pub(super) estimated_error: Option<f64>,
+    /// Whether it goes to its end within the accuracy.
+    pub(super) is_reached: bool,
+    /// Its rows.
+    pub(super) table: Table,
+}
+
+impl CommandedMotion {
+    fn new(computed: ComputedTrajectory<'_>, estimated_error: Option<f64>) -> Self {
+        Self {
+            method: computed.trajectory.method_text,
+            estimated_error,
+            is_reached: computed.early_stop.is_none(),
+            table: computed.table,
+        }
+    }
 }
 
 /// A scene whose motion is studied, in the plane or in space.
@@ -85,11 +111,14 @@ pub trait StudiedScene: MachineScene<Model: TableModel> + Clone {
     /// [`StudyError::Scene`] where it cannot be exported.
     fn export(&self, asked: &ExportRequest) -> Result<Export, StudyError>;
 
-    /// Computes its motion without files; the estimated error.
+    /// The same scene with a motion of another duration, s.
+    fn lasting(&self, duration: f64) -> Self;
+
+    /// Computes its motion without files, as `dwell simulate --accuracy` does.
     ///
     /// # Errors
     /// [`StudyError`] where the motion cannot be computed.
-    fn estimated_error(&self, accuracy: f64) -> Result<Option<f64>, StudyError>;
+    fn commanded(&self, accuracy: f64) -> Result<CommandedMotion, StudyError>;
 
     /// What `dwell simulate` yields.
     ///
@@ -194,9 +223,18 @@ impl StudiedScene for Scene {
         compute_export(self, asked)
     }
 
-    fn estimated_error(&self, accuracy: f64) -> Result<Option<f64>, StudyError> {
+    fn lasting(&self, duration: f64) -> Self {
+        let mut scene = self.clone();
+        if let Some(motion) = &mut scene.motion {
+            motion.duration = MotionDuration::Seconds(duration);
+        }
+        scene
+    }
+
+    fn commanded(&self, accuracy: f64) -> Result<CommandedMotion, StudyError> {
         let done = compute_free_motion(self, &to_accuracy(accuracy), &no_progress)?;
-        Ok(done.estimated_error)
+        let (computed, estimate) = (done.computed, done.estimated_error);
+        Ok(CommandedMotion::new(computed, estimate))
     }
 
     fn simulated(&self, accuracy: f64) -> Result<Outcome, StudyError> {
@@ -290,9 +328,18 @@ impl StudiedScene for SpaceScene {
         compute_export_in_space(self, asked)
     }
 
-    fn estimated_error(&self, accuracy: f64) -> Result<Option<f64>, StudyError> {
+    fn lasting(&self, duration: f64) -> Self {
+        let mut scene = self.clone();
+        if let Some(motion) = &mut scene.motion {
+            motion.duration = MotionDuration::Seconds(duration);
+        }
+        scene
+    }
+
+    fn commanded(&self, accuracy: f64) -> Result<CommandedMotion, StudyError> {
         let done = compute_free_motion_in_space(self, &to_accuracy(accuracy), &no_progress)?;
-        Ok(done.estimated_error)
+        let (computed, estimate) = (done.computed, done.estimated_error);
+        Ok(CommandedMotion::new(computed, estimate))
     }
 
     fn simulated(&self, accuracy: f64) -> Result<Outcome, StudyError> {

@@ -1,7 +1,8 @@
-//! How accurate a case's results are: digits of agreement, the effect of rounding, errors of finite differences.
+//! How accurate a case's results are: margins of its checks, the effect of rounding, errors of finite differences.
 
 use crate::checked::rounding_check::StateRounding;
 use crate::checked::states::CheckedStates;
+use crate::report_parts::{margin, margin_text, nearest};
 use dwell_findings::{Check, Finding};
 use dwell_report::{Axis, Cell, Chart, Figure, Grid, Group, Mark, Row, Series, Stroke};
 use dwell_scene::Scene;
@@ -10,66 +11,63 @@ use dwell_study::number_format::count;
 use dwell_study::output::{chart, figure};
 use dwell_verify::ErrorCurve;
 
-/// Digits of a number: exact agreement has no more.
-const MAX_DIGITS: f64 = 16.0;
-
-/// Difference, tolerance and their ratio of every finding, by check.
-pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
-    let of_check = |check| findings.iter().filter(move |f| f.check == check);
-    let group = |check: Check| Group {
-        heading: check.to_string(),
-        rows: of_check(check).map(row).collect(),
-    };
-    let groups = Check::ALL.map(group).into_iter();
-    let groups = groups.filter(|group| !group.rows.is_empty()).collect();
-    let columns = [
-        "relative difference",
-        "tolerance",
-        "tolerance over difference",
-    ];
-    let count = count(findings.len(), "finding");
+/// Difference, tolerance and margin of the finding of each check that is nearest to its tolerance, and of all that fail.
+pub(crate) fn margins(scene: &Scene, findings: &[Finding]) -> Figure {
+    let rows = Check::ALL.into_iter().flat_map(|check| {
+        let of_check = move || findings.iter().filter(move |f| f.check == check);
+        let failed = of_check().filter(|f| !f.pass);
+        let nearest = nearest(of_check()).filter(|f| f.pass);
+        failed
+            .chain(nearest)
+            .map(move |f| row(f, of_check().count()))
+    });
     let grid = Grid {
-        columns: columns.map(str::to_owned).into(),
-        groups,
-        values: Axis::new("digits that agree", "").with_range(0.0, MAX_DIGITS),
+        columns: ["difference", "tolerance", "margin"]
+            .map(str::to_owned)
+            .into(),
+        groups: vec![Group {
+            heading: String::new(),
+            rows: rows.collect(),
+        }],
+        values: Axis::log("margin: tolerance over difference", "").with_range(1.0, 1e4),
+        compact: true,
         ..Grid::default()
     };
-    let text =
-        "The largest relative difference of every finding and its tolerance, grouped by check.";
-    let provenance = format!("{count}, each with its own check and tolerance");
+    let text = "Of each check the finding that is nearest to its tolerance, and how many it has; = where there is no difference.";
+    let provenance = format!(
+        "{}, each with its own check and tolerance",
+        count(findings.len(), "finding")
+    );
     figure(
         scene,
-        "digits",
-        "Digits of agreement",
+        "margins",
+        "Margins of all checks",
         text,
         vec![grid.into()],
         provenance,
     )
 }
 
-fn row(finding: &Finding) -> Row {
-    let part = |value: f64| {
-        let text = match value {
-            0.0 => "0".to_owned(),
-            value => format!("{value:.1e}").replace('-', "−"),
-        };
-        // Zero has all digits; what is not a number has no colour.
-        Cell {
-            value: (!value.is_nan()).then(|| (-value.log10()).min(MAX_DIGITS)),
-            ..Cell::text_only(text)
-        }
+fn row(finding: &Finding, of: usize) -> Row {
+    let number = |value: f64| {
+        let text = format!("{value:.1e}").replace('-', "−");
+        Some(Cell::text_only(if value == 0.0 {
+            "0".to_owned()
+        } else {
+            text
+        }))
     };
-    let between = match finding.tolerance / finding.relative_difference {
-        factor if !factor.is_finite() => None,
-        factor if factor < 100.0 => Some(Cell::text_only(format!("{factor:.1}"))),
-        factor if factor < 1e5 => Some(Cell::text_only(format!("{factor:.0}"))),
-        factor => Some(Cell::text_only(format!("{factor:.0e}"))),
+    let margin = margin(finding);
+    let last = match finding.pass {
+        true => Cell::new(margin.min(1e4), margin_text(margin)),
+        false => Cell::text_only("FAIL").failed(),
     };
-    let mut difference = part(finding.relative_difference);
-    difference.failed = !finding.pass;
-    let tolerance = Some(part(finding.tolerance));
-    let cells = vec![Some(difference), tolerance, between];
-    Row::new(finding.key.clone(), cells)
+    let name = format!("{}: {} (of {of})", finding.check, finding.key);
+    let (difference, tolerance) = (finding.relative_difference, finding.tolerance);
+    Row::new(
+        name,
+        vec![number(difference), number(tolerance), Some(last)],
+    )
 }
 
 /// A smaller error is drawn at this value.

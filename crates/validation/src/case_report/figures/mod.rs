@@ -8,7 +8,7 @@ mod motion;
 mod states;
 mod tolerances;
 
-pub(super) use accuracy::{digits, finite_differences, rounding};
+pub(super) use accuracy::{finite_differences, margins, rounding};
 pub(super) use family::family;
 pub(super) use mechanism::mechanism;
 pub(super) use motion::{energies, history};

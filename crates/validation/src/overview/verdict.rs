@@ -1,0 +1,257 @@
+//! The verdict: did it pass, what is nearest to its tolerance, and what the paper's mechanism does.
+
+use super::{Judged, JudgedCase};
+use crate::export_study;
+use crate::report_parts::{margin, margin_text, nearest, table};
+use dwell_findings::{Check, Finding};
+use dwell_report::{Block, Document, Tile};
+
+/// The period that the source paper prints for its mechanism, s.
+const PUBLISHED_PERIOD: &str = "5.42";
+/// The first check of what commands write.
+const FIRST_WRITTEN: Check = Check::WrittenPositions;
+
+/// What was judged of one kind, and how much of it passed.
+pub(super) struct Tally {
+    name: &'static str,
+    passed: usize,
+    of: usize,
+    note: &'static str,
+}
+
+impl Tally {
+    fn of_findings<'f>(
+        name: &'static str,
+        findings: impl Iterator<Item = &'f Finding>,
+        note: &'static str,
+    ) -> Self {
+        let (mut passed, mut of) = (0, 0);
+        for finding in findings {
+            passed += usize::from(finding.pass);
+            of += 1;
+        }
+        Self {
+            name,
+            passed,
+            of,
+            note,
+        }
+    }
+
+    fn of_cases<'a>(
+        name: &'static str,
+        cases: impl Iterator<Item = &'a JudgedCase<'a>>,
+        note: &'static str,
+    ) -> Self {
+        let (mut passed, mut of) = (0, 0);
+        for case in cases {
+            passed += usize::from(case.passes());
+            of += 1;
+        }
+        Self {
+            name,
+            passed,
+            of,
+            note,
+        }
+    }
+
+    fn counts(&self) -> String {
+        format!("{} of {}", self.passed, self.of)
+    }
+
+    fn passes(&self) -> bool {
+        self.passed == self.of
+    }
+}
+
+impl<'a> Judged<'a> {
+    /// All findings with the name of their case or study.
+    fn findings(&self) -> impl Iterator<Item = (&'a str, &'a Finding)> {
+        let cases = self.cases.iter().filter_map(|case| {
+            let done: &'a _ = *case.result.as_ref().ok()?;
+            Some((case.name, &done.outcome.findings[..]))
+        });
+        let studies = self.studies.iter().copied();
+        let all: Vec<(&'a str, &'a [Finding])> = cases.chain(studies).collect();
+        all.into_iter()
+            .flat_map(|(name, findings)| findings.iter().map(move |f| (name, f)))
+    }
+
+    /// What was judged, by kind; kinds of which there is nothing are left out.
+    pub(super) fn tallies(&self) -> Vec<Tally> {
+        let cases = |in_space: bool| self.cases.iter().filter(move |c| c.in_space == in_space);
+        let written = self.findings().map(|(_, f)| f);
+        let written = written.filter(|f| f.check >= FIRST_WRITTEN);
+        let mut tallies = vec![
+            Tally::of_cases(
+                "cases in the plane",
+                cases(false),
+                "each by up to 21 checks",
+            ),
+            Tally::of_cases("cases in space", cases(true), "by the same checks"),
+            Tally::of_findings("written files", written, "read back and judged"),
+        ];
+        for &(name, findings) in &self.studies {
+            let note = match name {
+                export_study::NAME => "tables of other programs",
+                _ => "against closed forms",
+            };
+            tallies.push(Tally::of_findings(name, findings.iter(), note));
+        }
+        tallies.extend(self.manual.map(|[passed, of]| Tally {
+            name: "manual",
+            passed,
+            of,
+            note: "capabilities with evidence",
+        }));
+        tallies.retain(|tally| tally.of > 0);
+        tallies
+    }
+
+    /// The finding nearest to its tolerance, with the name of its case; one that fails comes first.
+    pub(super) fn nearest(&self) -> Option<(&'a str, &'a Finding)> {
+        let worst = nearest(self.findings().map(|(_, f)| f))?;
+        self.findings().find(|(_, f)| std::ptr::eq(*f, worst))
+    }
+
+    /// The verdict in one line; a failure names case and check.
+    pub(super) fn headline(&self) -> String {
+        let lost = self.cases.iter().find(|case| case.result.is_err());
+        let failing = self.nearest().filter(|(_, f)| !f.pass);
+        let tallies = self.tallies();
+        let more = |failed: usize| match failed {
+            0 => String::new(),
+            more => format!(", and {more} more"),
+        };
+        if let Some((name, f)) = failing {
+            let failed = self.findings().filter(|(_, f)| !f.pass).count();
+            let more = more(failed - 1);
+            return format!("FAIL: {name}, check {}, {}{more}", f.check, f.key);
+        }
+        if let Some(case) = lost {
+            return format!("FAIL: {} could not be validated", case.name);
+        }
+        match tallies.iter().find(|tally| !tally.passes()) {
+            Some(tally) => format!("FAIL: {} {}", tally.counts(), tally.name),
+            None => {
+                let tallies = tallies.iter().take(2);
+                let counts = tallies.map(|tally| format!("{} {}", tally.counts(), tally.name));
+                format!("PASS: {}", counts.collect::<Vec<_>>().join(", "))
+            }
+        }
+    }
+
+    /// What the paper's mechanism does, by number: its period, the drift of its energy, the unit runs beside the kinetic energy.
+    pub(super) fn paper(&self) -> Vec<Tile> {
+        let case = self
+            .cases
+            .iter()
+            .find(|case| case.name == export_study::CASE);
+        let Some(done) = case.and_then(|case| case.result.as_ref().ok()) else {
+            return Vec::new();
+        };
+        let finding = |key: &str| done.outcome.findings.iter().find(|f| f.key == key);
+        let mut numbers = done.outcome.record.numbers.iter();
+        let period = numbers.find(|number| number.name == "period");
+        let period = period.zip(finding("period-bdf")).map(|(period, f)| {
+            let note = format!(
+                "quadrature: {:.9} s; adaptive BDF: {:.1e} of it off; the paper prints {PUBLISHED_PERIOD} s",
+                period.value, f.relative_difference
+            );
+            Tile::new("period, paper's case", format!("{:.2} s", period.value), note)
+        });
+        let drift = finding("energy-bdf").map(|f| {
+            let note = "largest change of the energy by adaptive BDF at a tolerance of 1e-13";
+            Tile::new(
+                "energy drift",
+                format!("{:.1e}", f.relative_difference),
+                note,
+            )
+        });
+        let unit_runs = finding("half-dm-differences").zip(finding("m-energy"));
+        let unit_runs = unit_runs.map(|(slope, m)| {
+            let note = format!(
+                "½m′ against differences of the kinetic energy; m against the energy: {:.1e}",
+                m.relative_difference
+            );
+            Tile::new(
+                "unit runs",
+                format!("{:.1e}", slope.relative_difference),
+                note,
+            )
+        });
+        [period, drift, unit_runs].into_iter().flatten().collect()
+    }
+}
+
+/// The verdict in twenty lines: the first says whether all passed, the third what is nearest to its tolerance.
+pub(super) fn document(judged: &Judged<'_>) -> Document {
+    let nearest = judged.nearest().map_or_else(String::new, |(name, f)| {
+        let words = if f.pass { "Nearest to its tolerance" } else { "Worst" };
+        format!(
+            "{words}: **{name}**, check {}, `{}`: margin **{}** (difference {:.1e}, tolerance {:.1e}).",
+            f.check,
+            f.key,
+            margin_text(margin(f)),
+            f.relative_difference,
+            f.tolerance
+        )
+    });
+    let rows = judged.tallies().into_iter().map(|tally| {
+        let result = if tally.passes() { "pass" } else { "**FAIL**" };
+        vec![
+            tally.name.to_owned(),
+            result.to_owned(),
+            tally.counts(),
+            tally.note.to_owned(),
+        ]
+    });
+    let paper = judged.paper().into_iter();
+    let paper = paper.map(|tile| format!("{} **{}** ({})", tile.name, tile.value, tile.note));
+    let paper: Vec<String> = paper.collect();
+    let mut blocks = vec![
+        Block::Text(nearest),
+        table(&["Judged", "Result", "Passed", "How"], rows),
+        Block::Text(format!("{}.", paper.join("; "))),
+        Block::Figure {
+            file: "index.png".to_owned(),
+            alt: "Verdict, and margins of every case and check".to_owned(),
+            caption: String::new(),
+        },
+        Block::Text(format!(
+            "[All cases](cases.md) · [manual](manual.md) · [extremes](extremes.md) · [in other forms](extremes-forms.md) · [pulses](extremes-pulses.md) · [machines](extremes-machines.md) · [exported runs](exported-runs.md) · [mutations](mutations.md) · Dwell {}",
+            env!("CARGO_PKG_VERSION")
+        )),
+    ];
+    if paper.is_empty() {
+        blocks.remove(2);
+    }
+    Document {
+        title: judged.headline(),
+        blocks,
+    }
+}
+
+/// The kinds as tiles, and the numbers.
+pub(super) fn tiles(judged: &Judged<'_>) -> [Vec<Tile>; 2] {
+    let tallies = judged.tallies().into_iter();
+    let tallies = tallies.map(|tally| {
+        let passed = tally.passes();
+        Tile::new(tally.name, tally.counts(), tally.note).verdict(passed)
+    });
+    let nearest = judged.nearest().map(|(name, f)| {
+        let value = if f.pass {
+            margin_text(margin(f))
+        } else {
+            "FAIL".to_owned()
+        };
+        let note = format!("{name}, check {}, {}", f.check, f.key);
+        let words = if f.pass { "least margin" } else { "worst" };
+        Tile::new(words, value, note).verdict(f.pass)
+    });
+    [
+        tallies.collect(),
+        nearest.into_iter().chain(judged.paper()).collect(),
+    ]
+}
