@@ -64,41 +64,30 @@ impl Scene {
     /// The scene with a warning for each number that looks like a slip of units.
     pub(crate) fn with_doubts(mut self) -> Self {
         let mechanism = &self.mechanism;
+        let names = mechanism.bodies.iter().map(|body| body.name.as_str());
         let joints = mechanism.joints.iter().map(|joint| joint.bodies);
-        let held: Vec<_> = joined_to(BodyId(mechanism.ground), joints).collect();
-        let bodies = mechanism.bodies.iter().zip(&self.masses).enumerate();
-        let bodies = bodies.filter(|(b, _)| *b != mechanism.ground);
-        let bodies = bodies.map(|(b, (body, mass))| {
-            let points = self.points[b].iter().map(|(_, p)| [p.x, p.y, 0.0]);
-            let center = (mass.mass > 0.0).then_some([mass.center.x, mass.center.y, 0.0]);
-            BodyFigures {
-                id: BodyId(b),
-                name: &body.name,
-                mass: mass.mass,
-                inertia: mass.inertia,
-                size: diagonal(points.chain(center)),
-                is_held: held.contains(&BodyId(b)),
-            }
+        let body = |b: usize| {
+            let (mass, points) = (&self.masses[b], self.points[b].iter());
+            let [x, y] = [mass.center.x, mass.center.y];
+            let points = points.map(|(_, p)| [p.x, p.y, 0.0]).collect();
+            ([mass.mass, mass.inertia], [x, y, 0.0], points)
+        };
+        let gravities = self.loads.iter().map(|load| {
+            let is_gravity = matches!(load.kind, LoadKind::Gravity { .. });
+            (is_gravity, &load.magnitude)
         });
-        let is_gravity = |kind: &LoadKind| matches!(kind, LoadKind::Gravity { .. });
-        let loads = self
-            .loads
-            .iter()
-            .map(|l| (is_gravity(&l.kind), &l.magnitude));
         let guesses = self.assembly.initial_guess.iter().enumerate();
         let of_bodies = guesses.filter_map(|(b, angle)| {
             let location = SceneLocation::InitialGuess(BodyId(b));
             Some((location, mechanism.bodies[b].name.as_str(), (*angle)?))
         });
-        let actuators = mechanism
-            .actuators
-            .iter()
-            .map(|a| (a.name.as_str(), a.coordinate().is_angle()));
+        let actuators = mechanism.actuators.iter();
+        let actuators = actuators.map(|a| (a.name.as_str(), a.coordinate().is_angle()));
         let figures = Figures {
             file: &self.file,
             size: mechanism.size(),
-            bodies: bodies.collect(),
-            gravities: constant(loads),
+            bodies: body_figures(names, (BodyId(mechanism.ground), joints), body),
+            gravities: constant(gravities),
             angles: of_bodies
                 .chain(starting_angles(actuators, &self.assembly.coordinates))
                 .collect(),
@@ -113,39 +102,29 @@ impl SpaceScene {
     /// The scene with a warning for each number that looks like a slip of units.
     pub(crate) fn with_doubts(mut self) -> Self {
         let mechanism = &self.mechanism;
+        let names = mechanism.bodies.iter().map(|body| body.name.as_str());
         let joints = mechanism.joints.iter().map(|joint| joint.bodies);
-        let held: Vec<_> = joined_to(BodyId(mechanism.ground), joints).collect();
-        let bodies = mechanism.bodies.iter().zip(&self.masses).enumerate();
-        let bodies = bodies.filter(|(b, _)| *b != mechanism.ground);
-        let bodies = bodies.map(|(b, (body, mass))| {
-            let points = self.points[b].iter().map(|(_, p)| [p.x, p.y, p.z]);
-            let center = (mass.mass > 0.0).then_some([mass.center.x, mass.center.y, mass.center.z]);
-            BodyFigures {
-                id: BodyId(b),
-                name: &body.name,
-                mass: mass.mass,
-                inertia: mass.inertia[..3].iter().copied().fold(0.0, f64::max),
-                size: diagonal(points.chain(center)),
-                is_held: held.contains(&BodyId(b)),
-            }
+        let body = |b: usize| {
+            let (mass, points) = (&self.masses[b], self.points[b].iter());
+            let largest = mass.inertia[..3].iter().copied().fold(0.0, f64::max);
+            let points = points.map(|(_, p)| [p.x, p.y, p.z]).collect();
+            let center = [mass.center.x, mass.center.y, mass.center.z];
+            ([mass.mass, largest], center, points)
+        };
+        let gravities = self.loads.iter().map(|load| {
+            let is_gravity = matches!(load.kind, space::LoadKind::Gravity(_));
+            (is_gravity, &load.magnitude)
         });
-        let is_gravity = |kind: &space::LoadKind| matches!(kind, space::LoadKind::Gravity(_));
-        let loads = self
-            .loads
-            .iter()
-            .map(|l| (is_gravity(&l.kind), &l.magnitude));
         let actuators = mechanism.actuators.iter().map(|actuator| {
             let joint = &mechanism.joints[actuator.kind.joint().0];
-            (
-                actuator.name.as_str(),
-                actuator.kind.coordinate(joint).is_angle(),
-            )
+            let is_angle = actuator.kind.coordinate(joint).is_angle();
+            (actuator.name.as_str(), is_angle)
         });
         let figures = Figures {
             file: &self.file,
             size: mechanism.size(),
-            bodies: bodies.collect(),
-            gravities: constant(loads),
+            bodies: body_figures(names, (BodyId(mechanism.ground), joints), body),
+            gravities: constant(gravities),
             angles: starting_angles(actuators, &self.assembly.q).collect(),
         };
         let warnings = figures.warnings();
@@ -154,12 +133,28 @@ impl SpaceScene {
     }
 }
 
-/// The bodies that a joint connects with another.
-fn joined_to(
-    ground: BodyId,
-    joints: impl Iterator<Item = [BodyId; 2]>,
-) -> impl Iterator<Item = BodyId> {
-    joints.filter(move |pair| pair.contains(&ground)).flatten()
+/// The bodies but for the ground; `of` gives mass and inertia, centre of mass and points of one.
+fn body_figures<'s>(
+    names: impl Iterator<Item = &'s str>,
+    (ground, joints): (BodyId, impl Iterator<Item = [BodyId; 2]>),
+    of: impl Fn(usize) -> ([f64; 2], [f64; 3], Vec<[f64; 3]>),
+) -> Vec<BodyFigures<'s>> {
+    let held = joints.filter(|pair| pair.contains(&ground)).flatten();
+    let held: Vec<BodyId> = held.collect();
+    let moving = names.enumerate().map(|(b, name)| (BodyId(b), name));
+    let one = |(id, name): (BodyId, &'s str)| {
+        let ([mass, inertia], center, points) = of(id.0);
+        let center = (mass > 0.0).then_some(center);
+        BodyFigures {
+            id,
+            name,
+            mass,
+            inertia,
+            size: diagonal(points.into_iter().chain(center)),
+            is_held: held.contains(&id),
+        }
+    };
+    moving.filter(|(id, _)| *id != ground).map(one).collect()
 }
 
 /// Diagonal of the box around some points, m.
