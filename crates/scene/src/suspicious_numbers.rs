@@ -195,27 +195,23 @@ fn starting_angles<'s>(
 
 impl Figures<'_> {
     fn warnings(&self) -> Vec<SceneWarning> {
-        let size = self.size();
-        // Lengths in another unit make every inertia look wrong, too.
-        let inertias = match size {
-            Some(_) => [None, None],
-            None => [self.inertias(false), self.inertias(true)],
-        };
-        let gravities = self
-            .gravities
-            .iter()
-            .filter_map(|&(k, value)| self.gravity(k, value));
-        let angles = self.angles.iter().filter_map(|angle| self.angle(angle));
-        let all = gravities
-            .chain(angles)
-            .chain(size)
-            .chain(inertias.into_iter().flatten());
-        all.chain(
-            self.bodies
-                .iter()
-                .filter_map(|body| self.without_mass(body)),
-        )
-        .collect()
+        let gravities = self.gravities.iter();
+        let mut all: Vec<SceneWarning> = gravities
+            .filter_map(|&(k, value)| self.gravity(k, value))
+            .collect();
+        all.extend(self.angles.iter().filter_map(|angle| self.angle(angle)));
+        match self.size() {
+            // Lengths in another unit make every inertia look wrong, too.
+            Some(size) => all.push(size),
+            None => all.extend(
+                [false, true]
+                    .iter()
+                    .filter_map(|large| self.inertias(*large)),
+            ),
+        }
+        let bodies = self.bodies.iter();
+        all.extend(bodies.filter_map(|body| self.without_mass(body)));
+        all
     }
 
     fn warning(&self, message: String, label: &str, at: SceneLocation) -> SceneWarning {
@@ -271,12 +267,10 @@ impl Figures<'_> {
         let is_suspicious = |body: &&BodyFigures<'_>| {
             let radius = body.radius_of_gyration();
             let size = self.size.max(body.size);
+            let narrowest = (NARROWEST[0] * size).max(NARROWEST[1] * body.size);
             match is_large {
                 true => size > 0.0 && radius > WIDEST * size,
-                false => {
-                    radius > 0.0
-                        && (radius < NARROWEST[0] * size || radius < NARROWEST[1] * body.size)
-                }
+                false => radius > 0.0 && radius < narrowest,
             }
         };
         let suspicious = || self.bodies.iter().filter(is_suspicious);
@@ -284,20 +278,15 @@ impl Figures<'_> {
         let names = list(suspicious().map(|body| body.name)).unwrap_or_default();
         let size = self.size.max(body.size);
         let (radius, unit) = self.file.to_scene_unit(body.radius_of_gyration(), false);
+        let (what, extent) = match body.size > 0.0 {
+            true => ("its points are within", body.size),
+            false => ("links are up to", size),
+        };
         let message = format!(
-            "is a unit meant otherwise? By its inertia and mass `{}` has a radius of gyration of {} {unit}, but {} {} {unit}: {} Check {names}",
+            "is a unit meant otherwise? By its inertia and mass `{}` has a radius of gyration of {} {unit}, but {what} {} {unit}: {} Check {names}",
             shorten(body.name),
             short(radius),
-            if body.size > 0.0 {
-                "its points are within"
-            } else {
-                "links are up to"
-            },
-            short(
-                self.file
-                    .to_scene_unit(if body.size > 0.0 { body.size } else { size }, false)
-                    .0
-            ),
+            short(self.file.to_scene_unit(extent, false).0),
             self.meant(body, size),
         );
         Some(self.warning(message, "an inertia", SceneLocation::Inertia(body.id)))
@@ -312,19 +301,15 @@ impl Figures<'_> {
         let nearest = INERTIAS
             .iter()
             .min_by(|a, b| misfit(a.1).total_cmp(&misfit(b.1)));
-        let is_read = format!(
-            "the inertia is read in {}, lengths in {}",
-            inertia.name, length.name
-        );
-        match (nearest, body.inertia > usual) {
+        let guess = match (nearest, body.inertia > usual) {
             (Some((name, factor)), _) if misfit(*factor) < NEAR.ln() => {
-                format!("{is_read}; was the inertia meant in {name}?")
+                format!("was the inertia meant in {name}?")
             }
-            (_, true) => format!("{is_read}; were the lengths meant in a larger unit, such as m?"),
-            (_, false) => {
-                format!("{is_read}; were the lengths meant in a smaller unit, such as mm?")
-            }
-        }
+            (_, true) => "were the lengths meant in a larger unit, such as m?".to_owned(),
+            (_, false) => "were the lengths meant in a smaller unit, such as mm?".to_owned(),
+        };
+        let [inertia, length] = [&inertia.name, &length.name];
+        format!("the inertia is read in {inertia}, lengths in {length}; {guess}")
     }
 
     /// A centre of mass without a mass, or an inertia where the missing mass has an effect.
