@@ -52,7 +52,7 @@ pub(crate) fn integrate(
     system: &mut dyn OdeSystem,
     part: &Part,
     (rates, atol, min_step): (&[f64], &[f64], f64),
-    pieces: Option<&mut TimePieces<'_>>,
+    limits: (Option<&mut TimePieces<'_>>, &mut Pace),
     observer: StepObserver<'_>,
 ) -> Termination {
     let mut stepper = Stepper {
@@ -66,7 +66,7 @@ pub(crate) fn integrate(
         interpolant: Interpolant::new(rates.len()),
         statistics: Statistics::default(),
     };
-    let error = stepper.run(part, pieces, observer).err();
+    let error = stepper.run(part, limits, observer).err();
     stepper.statistics.evaluations = stepper.stages.evaluations;
     Termination {
         state: stepper.from,
@@ -95,7 +95,7 @@ impl Stepper<'_> {
     fn run(
         &mut self,
         part: &Part,
-        mut pieces: Option<&mut TimePieces<'_>>,
+        (mut pieces, pace): (Option<&mut TimePieces<'_>>, &mut Pace),
         observer: StepObserver<'_>,
     ) -> Result<()> {
         let (options, end) = (&part.options, part.end);
@@ -113,7 +113,6 @@ impl Stepper<'_> {
             Some(step) => step.min(first),
             None => self.initial_step(first),
         };
-        let mut pace = Pace::new(part);
         for _ in 0..options.max_steps {
             h = self.step(h.min(longest(self.from.t)?), end)?;
             pace.step_taken(self.to.t)?;

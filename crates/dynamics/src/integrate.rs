@@ -7,7 +7,6 @@
 //! its step or fails, and the caller gets the error of that evaluation.
 
 mod impasse;
-mod progress;
 mod step_loop;
 
 use crate::contact_events::ContactMonitor;
@@ -21,7 +20,6 @@ use crate::switch_monitor::{Crossing, SwitchMonitor};
 use crate::time_pieces::TimePieces;
 use diffsol::{DiffsolError, NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverState, Tableau};
 use impasse::Impasse;
-use progress::Progress;
 use std::cell::{Cell, RefCell};
 use step_loop::{StepLoop, solver_error};
 
@@ -255,16 +253,11 @@ fn integrate_smooth(
 ) -> Result<Termination> {
     let options = &whole.options;
     let weights = (0..system.size()).map(|i| options.atol * system.error_weight(i));
-    let mut impasse = Impasse::new(&whole, weights.collect());
-    let mut progress = Progress::new(&whole, system.own_function());
+    let mut impasse = Impasse::new(&whole, weights.collect(), system.own_function());
     let mut parts = Parts::new(whole);
-    let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
-        progress.step_taken(now)?;
-        observer(before, now, dense)
-    };
     loop {
         let pieces = pieces.as_deref_mut();
-        let part = integrate_part(system, &parts.next, pieces, &mut impasse, &mut observer);
+        let part = integrate_part(system, &parts.next, pieces, &mut impasse, observer);
         let is_ended = parts.add(part)?;
         // A step whose end cannot be evaluated was taken, or one of an explicit method, which does not shorten it: a shorter one is tried.
         let shorter = impasse.failed_step.take();
@@ -297,8 +290,11 @@ fn integrate_part(
     let atol = impasse.absolute.clone();
     let min_step = MIN_STEP / max_rate;
     if options.method == Method::Dop853 {
-        let limits = (&rates[..], &atol[..], min_step);
-        return Ok(dop853::integrate(system, part, limits, pieces, observer));
+        let (of, limits) = (
+            (&rates[..], &atol[..], min_step),
+            (pieces, &mut impasse.pace),
+        );
+        return Ok(dop853::integrate(system, part, of, limits, observer));
     }
     let system = RefCell::new(system);
     let failure: RefCell<Option<DynamicsError>> = RefCell::new(None);

@@ -8,7 +8,7 @@ use crate::machine::{Machine, MachineState, MachineWorkspace, MovingModel};
 use crate::modes::SharedModes;
 use crate::ode::{DualWorkspace, OdeState, OdeSystem};
 use crate::sliding::Sliding;
-use crate::state_switches::{HeldSource, Hidden, signal_value};
+use crate::state_switches::{HeldSource, Hidden};
 use dwell_kinetostatics::{Magnitude, Model};
 use dwell_laws::{Features, SwitchKind};
 use dwell_numerics::Dual;
@@ -195,16 +195,9 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
     }
 
     fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
-        let machine = self.machine;
-        let state = machine.evaluate(t, y, &mut self.workspace)?;
-        let source_state = |load: usize, signals: &mut Vec<f64>| {
-            let of_load = machine.model.compiled_signals(load).iter();
-            signals.extend(of_load.map(|&signal| signal_value(signal, t, |c| state.coordinate(c))));
-            machine.source_state(load, &state, y)
-        };
-        let switches = &machine.state_switches;
-        switches.values((&self.held, &mut self.seen), source_state, out);
-        Ok(())
+        let kept = (&self.held[..], &mut self.seen);
+        self.machine
+            .switch_values((t, y), &mut self.workspace, kept, out)
     }
 
     fn switch_rates(

@@ -1,17 +1,23 @@
 //! Whether an integration comes to its end in the steps that are allowed.
 //!
 //! Steps are counted in windows. Where one window has led so short a way that the rest would take many times the steps allowed, the
-//! integration ends at once: it would end there a little later, after the last step allowed.
+//! integration ends at once: it would end there a little later, after the last step allowed. A long window shows a motion that is too slow.
+//! A short one shows one that makes no progress: at a jump that nobody has named, as of a load that a program computes, the error control of
+//! every method makes its steps so short that the end would never be reached, while each of them is kept.
 
 use crate::error::{DynamicsError, Result};
 use crate::integration_parts::Part;
 
-/// The steps allowed are so many windows.
+/// The steps allowed are so many long windows.
 const WINDOWS: usize = 40;
 /// The pace of fewer steps shows nothing.
 const MIN_WINDOW: usize = 5;
 /// A pace at which the rest takes so many times the steps allowed is too slow: what only begins slowly becomes faster by less.
 const TOO_MANY: f64 = 20.0;
+/// Steps of a short window, without a load that a program computes and with one: that is expected to jump.
+const STEPS: [usize; 2] = [10_000, 1000];
+/// The same of short windows: what is stiff or moves fast for a while needs less.
+const HOPELESS: f64 = 1000.0;
 
 /// The steps of an integration, and how far the last of them have led.
 #[derive(Debug, Clone)]
@@ -19,22 +25,35 @@ pub(crate) struct Pace {
     end: f64,
     max_steps: usize,
     steps: usize,
-    /// When the window began, s.
-    from: f64,
+    /// The first load that a program computes.
+    function: Option<usize>,
+    /// Steps of a short and of a long window; none where it is not looked at.
+    windows: [Option<usize>; 2],
+    /// When the windows began, s.
+    from: [f64; 2],
 }
 
 impl Pace {
-    /// Of an integration that begins.
-    pub(crate) fn new(of: &Part) -> Self {
+    /// Of an integration that begins; `function` is the first load that a program computes.
+    pub(crate) fn new(of: &Part, function: Option<usize>) -> Self {
+        let max_steps = of.options.max_steps;
+        // Where the user has set the longest step, that says how many there are.
+        let short = of.options.max_step.is_none();
+        let long = Some(max_steps / WINDOWS).filter(|window| *window >= MIN_WINDOW);
         Self {
             // Without an end nothing is left that could take too long.
             end: of
                 .end
                 .filter(|end| end.is_finite())
                 .unwrap_or(f64::NEG_INFINITY),
-            max_steps: of.options.max_steps,
+            max_steps,
             steps: 0,
-            from: of.start.t,
+            function,
+            windows: [
+                short.then_some(STEPS[usize::from(function.is_some())]),
+                long,
+            ],
+            from: [of.start.t; 2],
         }
     }
 
@@ -48,26 +67,39 @@ impl Pace {
         (self.end - t) * steps as f64 > advance * times * self.max_steps as f64
     }
 
-    /// After a step that has ended at a time, s. The first window does not count: a method begins with short steps.
+    /// After a step that has ended at a time, s. The first long window does not count: a method begins with short steps.
     ///
     /// # Errors
-    /// [`DynamicsError::TooSlow`].
+    /// [`DynamicsError::NoProgress`], [`DynamicsError::TooSlow`].
     #[inline]
     pub(crate) fn step_taken(&mut self, t: f64) -> Result<()> {
         self.steps += 1;
-        let window = self.max_steps / WINDOWS;
-        if window < MIN_WINDOW || !self.steps.is_multiple_of(window) {
-            return Ok(());
+        let (steps, max_steps) = (self.steps, self.max_steps);
+        if let Some((window, advance)) = self.full(1, t)
+            && steps > window
+            && self.is_too_slow((t, TOO_MANY), window, advance)
+        {
+            let needed = (self.end - t) / advance * window as f64;
+            return Err(DynamicsError::TooSlow {
+                t,
+                steps,
+                needed,
+                max_steps,
+            });
         }
-        let advance = t - std::mem::replace(&mut self.from, t);
-        if self.steps == window || !self.is_too_slow((t, TOO_MANY), window, advance) {
-            return Ok(());
+        if let Some((window, advance)) = self.full(0, t)
+            && self.is_too_slow((t, HOPELESS), window, advance)
+        {
+            let (function, step) = (self.function, advance / window as f64);
+            return Err(DynamicsError::NoProgress { function, t, step });
         }
-        Err(DynamicsError::TooSlow {
-            t,
-            steps: self.steps,
-            needed: (self.end - t) / advance * window as f64,
-            max_steps: self.max_steps,
-        })
+        Ok(())
+    }
+
+    /// Of a window that ends with a step to a time (s), its steps and how far they have led, s.
+    fn full(&mut self, which: usize, t: f64) -> Option<(usize, f64)> {
+        let window = self.windows[which].filter(|window| self.steps.is_multiple_of(*window))?;
+        let advance = t - std::mem::replace(&mut self.from[which], t);
+        Some((window, advance))
     }
 }

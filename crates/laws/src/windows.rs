@@ -103,12 +103,18 @@ impl Course {
             }
         }
         let half = 2.0 * (to - from);
-        let time = Enclosure::variable(Interval::checked(-half, half));
-        let sum = |sum: Enclosure, &c: &f64| {
-            let product = sum.binary(Binary::Multiply, time);
-            product.binary(Binary::Add, Enclosure::constant(c))
+        let [c0, c1, c2, c3, c4] = shifted;
+        // No more than the powers of the half add to the value in the middle, and their sum errs by less than this.
+        let about = |middle: f64, others: &[f64]| {
+            let sum = |sum: f64, c: &f64| (sum + c.abs()) * half;
+            let radius = others.iter().rev().fold(0.0, sum) * (1.0 + 16.0 * f64::EPSILON);
+            Interval::point(middle).add(Interval::checked(-radius, radius))
         };
-        shifted.iter().rev().fold(Enclosure::constant(0.0), sum)
+        Enclosure([
+            about(c0, &[c1, c2, c3, c4]),
+            about(c1, &[2.0 * c2, 3.0 * c3, 4.0 * c4]),
+            about(2.0 * c2, &[6.0 * c3, 12.0 * c4]),
+        ])
     }
 }
 
@@ -177,7 +183,7 @@ impl NarrowTerm {
         let mut open: Vec<usize> = ops.len().checked_sub(1).into_iter().collect();
         while let Some(last) = open.pop() {
             let (start, of) = (tree.starts[last], &tree.operands[last]);
-            if !tree.depends[last][1] || !ops[start..=last].iter().any(|op| is_narrow(*op)) {
+            if !tree.depends[last][1] || !(start..=last).any(|i| is_narrow(ops, tree, i)) {
                 continue;
             }
             match ops[last] {
@@ -224,21 +230,27 @@ impl NarrowTerm {
     }
 }
 
-/// Whether an operation can make a narrow feature of what varies slowly.
-fn is_narrow(op: Op) -> bool {
-    matches!(
-        op,
+/// Whether an operation can make a narrow feature of what varies slowly. A quotient by what does not vary is a multiple, and a low power a
+/// product: they cannot.
+fn is_narrow(ops: &[Op], tree: &Operands, i: usize) -> bool {
+    match ops[i] {
         Op::Unary(
             Unary::Exp
-                | Unary::Tanh
-                | Unary::Tan
-                | Unary::Sinh
-                | Unary::Cosh
-                | Unary::Atan
-                | Unary::Ln
-                | Unary::Log10
-        ) | Op::Binary(Binary::Divide | Binary::Power | Binary::Atan2)
-    )
+            | Unary::Tanh
+            | Unary::Tan
+            | Unary::Sinh
+            | Unary::Cosh
+            | Unary::Atan
+            | Unary::Ln
+            | Unary::Log10,
+        )
+        | Op::Binary(Binary::Atan2) => true,
+        Op::Binary(Binary::Divide) => tree.depends[tree.operands[i][1]] != [false; 2],
+        Op::Binary(Binary::Power) => {
+            !matches!(ops[tree.operands[i][1]], Op::Number(n) if [1.0, 2.0, 3.0].contains(&n))
+        }
+        _ => false,
+    }
 }
 
 /// Whether a function may be beyond a bound between points at which it is not.

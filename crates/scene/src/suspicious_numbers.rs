@@ -64,41 +64,30 @@ impl Scene {
     /// The scene with a warning for each number that looks like a slip of units.
     pub(crate) fn with_doubts(mut self) -> Self {
         let mechanism = &self.mechanism;
+        let names = mechanism.bodies.iter().map(|body| body.name.as_str());
         let joints = mechanism.joints.iter().map(|joint| joint.bodies);
-        let held: Vec<_> = joined_to(BodyId(mechanism.ground), joints).collect();
-        let bodies = mechanism.bodies.iter().zip(&self.masses).enumerate();
-        let bodies = bodies.filter(|(b, _)| *b != mechanism.ground);
-        let bodies = bodies.map(|(b, (body, mass))| {
-            let points = self.points[b].iter().map(|(_, p)| [p.x, p.y, 0.0]);
-            let center = (mass.mass > 0.0).then_some([mass.center.x, mass.center.y, 0.0]);
-            BodyFigures {
-                id: BodyId(b),
-                name: &body.name,
-                mass: mass.mass,
-                inertia: mass.inertia,
-                size: diagonal(points.chain(center)),
-                is_held: held.contains(&BodyId(b)),
-            }
+        let body = |b: usize| {
+            let (mass, points) = (&self.masses[b], self.points[b].iter());
+            let [x, y] = [mass.center.x, mass.center.y];
+            let points = points.map(|(_, p)| [p.x, p.y, 0.0]).collect();
+            ([mass.mass, mass.inertia], [x, y, 0.0], points)
+        };
+        let gravities = self.loads.iter().map(|load| {
+            let is_gravity = matches!(load.kind, LoadKind::Gravity { .. });
+            (is_gravity, &load.magnitude)
         });
-        let is_gravity = |kind: &LoadKind| matches!(kind, LoadKind::Gravity { .. });
-        let loads = self
-            .loads
-            .iter()
-            .map(|l| (is_gravity(&l.kind), &l.magnitude));
         let guesses = self.assembly.initial_guess.iter().enumerate();
         let of_bodies = guesses.filter_map(|(b, angle)| {
             let location = SceneLocation::InitialGuess(BodyId(b));
             Some((location, mechanism.bodies[b].name.as_str(), (*angle)?))
         });
-        let actuators = mechanism
-            .actuators
-            .iter()
-            .map(|a| (a.name.as_str(), a.coordinate().is_angle()));
+        let actuators = mechanism.actuators.iter();
+        let actuators = actuators.map(|a| (a.name.as_str(), a.coordinate().is_angle()));
         let figures = Figures {
             file: &self.file,
             size: mechanism.size(),
-            bodies: bodies.collect(),
-            gravities: constant(loads),
+            bodies: body_figures(names, (BodyId(mechanism.ground), joints), body),
+            gravities: constant(gravities),
             angles: of_bodies
                 .chain(starting_angles(actuators, &self.assembly.coordinates))
                 .collect(),
@@ -113,39 +102,29 @@ impl SpaceScene {
     /// The scene with a warning for each number that looks like a slip of units.
     pub(crate) fn with_doubts(mut self) -> Self {
         let mechanism = &self.mechanism;
+        let names = mechanism.bodies.iter().map(|body| body.name.as_str());
         let joints = mechanism.joints.iter().map(|joint| joint.bodies);
-        let held: Vec<_> = joined_to(BodyId(mechanism.ground), joints).collect();
-        let bodies = mechanism.bodies.iter().zip(&self.masses).enumerate();
-        let bodies = bodies.filter(|(b, _)| *b != mechanism.ground);
-        let bodies = bodies.map(|(b, (body, mass))| {
-            let points = self.points[b].iter().map(|(_, p)| [p.x, p.y, p.z]);
-            let center = (mass.mass > 0.0).then_some([mass.center.x, mass.center.y, mass.center.z]);
-            BodyFigures {
-                id: BodyId(b),
-                name: &body.name,
-                mass: mass.mass,
-                inertia: mass.inertia[..3].iter().copied().fold(0.0, f64::max),
-                size: diagonal(points.chain(center)),
-                is_held: held.contains(&BodyId(b)),
-            }
+        let body = |b: usize| {
+            let (mass, points) = (&self.masses[b], self.points[b].iter());
+            let largest = mass.inertia[..3].iter().copied().fold(0.0, f64::max);
+            let points = points.map(|(_, p)| [p.x, p.y, p.z]).collect();
+            let center = [mass.center.x, mass.center.y, mass.center.z];
+            ([mass.mass, largest], center, points)
+        };
+        let gravities = self.loads.iter().map(|load| {
+            let is_gravity = matches!(load.kind, space::LoadKind::Gravity(_));
+            (is_gravity, &load.magnitude)
         });
-        let is_gravity = |kind: &space::LoadKind| matches!(kind, space::LoadKind::Gravity(_));
-        let loads = self
-            .loads
-            .iter()
-            .map(|l| (is_gravity(&l.kind), &l.magnitude));
         let actuators = mechanism.actuators.iter().map(|actuator| {
             let joint = &mechanism.joints[actuator.kind.joint().0];
-            (
-                actuator.name.as_str(),
-                actuator.kind.coordinate(joint).is_angle(),
-            )
+            let is_angle = actuator.kind.coordinate(joint).is_angle();
+            (actuator.name.as_str(), is_angle)
         });
         let figures = Figures {
             file: &self.file,
             size: mechanism.size(),
-            bodies: bodies.collect(),
-            gravities: constant(loads),
+            bodies: body_figures(names, (BodyId(mechanism.ground), joints), body),
+            gravities: constant(gravities),
             angles: starting_angles(actuators, &self.assembly.q).collect(),
         };
         let warnings = figures.warnings();
@@ -154,12 +133,28 @@ impl SpaceScene {
     }
 }
 
-/// The bodies that a joint connects with another.
-fn joined_to(
-    ground: BodyId,
-    joints: impl Iterator<Item = [BodyId; 2]>,
-) -> impl Iterator<Item = BodyId> {
-    joints.filter(move |pair| pair.contains(&ground)).flatten()
+/// The bodies but for the ground; `of` gives mass and inertia, centre of mass and points of one.
+fn body_figures<'s>(
+    names: impl Iterator<Item = &'s str>,
+    (ground, joints): (BodyId, impl Iterator<Item = [BodyId; 2]>),
+    of: impl Fn(usize) -> ([f64; 2], [f64; 3], Vec<[f64; 3]>),
+) -> Vec<BodyFigures<'s>> {
+    let held = joints.filter(|pair| pair.contains(&ground)).flatten();
+    let held: Vec<BodyId> = held.collect();
+    let moving = names.enumerate().map(|(b, name)| (BodyId(b), name));
+    let one = |(id, name): (BodyId, &'s str)| {
+        let ([mass, inertia], center, points) = of(id.0);
+        let center = (mass > 0.0).then_some(center);
+        BodyFigures {
+            id,
+            name,
+            mass,
+            inertia,
+            size: diagonal(points.into_iter().chain(center)),
+            is_held: held.contains(&id),
+        }
+    };
+    moving.filter(|(id, _)| *id != ground).map(one).collect()
 }
 
 /// Diagonal of the box around some points, m.
@@ -200,27 +195,23 @@ fn starting_angles<'s>(
 
 impl Figures<'_> {
     fn warnings(&self) -> Vec<SceneWarning> {
-        let size = self.size();
-        // Lengths in another unit make every inertia look wrong, too.
-        let inertias = match size {
-            Some(_) => [None, None],
-            None => [self.inertias(false), self.inertias(true)],
-        };
-        let gravities = self
-            .gravities
-            .iter()
-            .filter_map(|&(k, value)| self.gravity(k, value));
-        let angles = self.angles.iter().filter_map(|angle| self.angle(angle));
-        let all = gravities
-            .chain(angles)
-            .chain(size)
-            .chain(inertias.into_iter().flatten());
-        all.chain(
-            self.bodies
-                .iter()
-                .filter_map(|body| self.without_mass(body)),
-        )
-        .collect()
+        let gravities = self.gravities.iter();
+        let mut all: Vec<SceneWarning> = gravities
+            .filter_map(|&(k, value)| self.gravity(k, value))
+            .collect();
+        all.extend(self.angles.iter().filter_map(|angle| self.angle(angle)));
+        match self.size() {
+            // Lengths in another unit make every inertia look wrong, too.
+            Some(size) => all.push(size),
+            None => all.extend(
+                [false, true]
+                    .iter()
+                    .filter_map(|large| self.inertias(*large)),
+            ),
+        }
+        let bodies = self.bodies.iter();
+        all.extend(bodies.filter_map(|body| self.without_mass(body)));
+        all
     }
 
     fn warning(&self, message: String, label: &str, at: SceneLocation) -> SceneWarning {
@@ -276,12 +267,10 @@ impl Figures<'_> {
         let is_suspicious = |body: &&BodyFigures<'_>| {
             let radius = body.radius_of_gyration();
             let size = self.size.max(body.size);
+            let narrowest = (NARROWEST[0] * size).max(NARROWEST[1] * body.size);
             match is_large {
                 true => size > 0.0 && radius > WIDEST * size,
-                false => {
-                    radius > 0.0
-                        && (radius < NARROWEST[0] * size || radius < NARROWEST[1] * body.size)
-                }
+                false => radius > 0.0 && radius < narrowest,
             }
         };
         let suspicious = || self.bodies.iter().filter(is_suspicious);
@@ -289,20 +278,15 @@ impl Figures<'_> {
         let names = list(suspicious().map(|body| body.name)).unwrap_or_default();
         let size = self.size.max(body.size);
         let (radius, unit) = self.file.to_scene_unit(body.radius_of_gyration(), false);
+        let (what, extent) = match body.size > 0.0 {
+            true => ("its points are within", body.size),
+            false => ("links are up to", size),
+        };
         let message = format!(
-            "is a unit meant otherwise? By its inertia and mass `{}` has a radius of gyration of {} {unit}, but {} {} {unit}: {} Check {names}",
+            "is a unit meant otherwise? By its inertia and mass `{}` has a radius of gyration of {} {unit}, but {what} {} {unit}: {} Check {names}",
             shorten(body.name),
             short(radius),
-            if body.size > 0.0 {
-                "its points are within"
-            } else {
-                "links are up to"
-            },
-            short(
-                self.file
-                    .to_scene_unit(if body.size > 0.0 { body.size } else { size }, false)
-                    .0
-            ),
+            short(self.file.to_scene_unit(extent, false).0),
             self.meant(body, size),
         );
         Some(self.warning(message, "an inertia", SceneLocation::Inertia(body.id)))
@@ -317,19 +301,15 @@ impl Figures<'_> {
         let nearest = INERTIAS
             .iter()
             .min_by(|a, b| misfit(a.1).total_cmp(&misfit(b.1)));
-        let is_read = format!(
-            "the inertia is read in {}, lengths in {}",
-            inertia.name, length.name
-        );
-        match (nearest, body.inertia > usual) {
+        let guess = match (nearest, body.inertia > usual) {
             (Some((name, factor)), _) if misfit(*factor) < NEAR.ln() => {
-                format!("{is_read}; was the inertia meant in {name}?")
+                format!("was the inertia meant in {name}?")
             }
-            (_, true) => format!("{is_read}; were the lengths meant in a larger unit, such as m?"),
-            (_, false) => {
-                format!("{is_read}; were the lengths meant in a smaller unit, such as mm?")
-            }
-        }
+            (_, true) => "were the lengths meant in a larger unit, such as m?".to_owned(),
+            (_, false) => "were the lengths meant in a smaller unit, such as mm?".to_owned(),
+        };
+        let [inertia, length] = [&inertia.name, &length.name];
+        format!("the inertia is read in {inertia}, lengths in {length}; {guess}")
     }
 
     /// A centre of mass without a mass, or an inertia where the missing mass has an effect.

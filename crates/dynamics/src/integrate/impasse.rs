@@ -40,14 +40,14 @@ pub(super) struct Impasse {
 }
 
 impl Impasse {
-    /// Of an integration, to an absolute tolerance by state.
-    pub(super) fn new(of: &Part, absolute: Vec<f64>) -> Self {
+    /// Of an integration, to an absolute tolerance by state; `function` is the first load that a program computes.
+    pub(super) fn new(of: &Part, absolute: Vec<f64>, function: Option<usize>) -> Self {
         Self {
             start: of.start.t,
             relative: of.options.rtol,
             absolute,
             failed: 0,
-            pace: Pace::new(of),
+            pace: Pace::new(of, function),
             slow: (0, 0, of.start.t),
             is_slow: false,
             before: None,

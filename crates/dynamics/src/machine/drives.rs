@@ -4,7 +4,7 @@ use super::workspace::EquationWorkspace;
 use super::{Machine, MachineState, MachineWorkspace, MovingModel};
 use crate::drive::CompiledDrive;
 use crate::error::Result;
-use crate::state_switches::{HeldSource, SourceState, StateSwitches};
+use crate::state_switches::{HeldSource, SourceState, StateSwitches, signal_value};
 use dwell_kinetostatics::{ForceState, KinematicState, KinetostaticsError, LoadedState, Signal};
 use dwell_numerics::Scalar;
 
@@ -20,11 +20,41 @@ pub(super) fn state_switches<M: MovingModel>(
 }
 
 impl<M: MovingModel> Machine<M> {
+    /// The values of all switching functions on the pieces that are held, and the variables of the loads: for them no force is computed.
+    pub(crate) fn switch_values(
+        &self,
+        (t, y): (f64, &[f64]),
+        workspace: &mut MachineWorkspace<f64, M>,
+        kept: (&[HeldSource], &mut Vec<f64>),
+        out: &mut [f64],
+    ) -> Result<()> {
+        let values = |state: &KinematicState<'_, f64, M>| {
+            let source_state = |load: usize, signals: &mut Vec<f64>| {
+                let of_load = self.model.compiled_signals(load).iter();
+                let value = |&signal| signal_value(signal, t, |c| state.coordinate(c));
+                signals.extend(of_load.map(value));
+                self.source_state(load, state, y)
+            };
+            self.state_switches.values(kept, source_state, out);
+        };
+        if !self.fit_windows.is_empty() {
+            values(&*self.evaluate(t, y, workspace)?);
+            return Ok(());
+        }
+        let MachineWorkspace {
+            inner, equation, ..
+        } = workspace;
+        self.set_actuator_motion(t, y, equation);
+        let at = [&equation.q[..], &equation.q_dot[..]];
+        values(&KinematicState::new(&self.model, at, inner)?);
+        Ok(())
+    }
+
     /// A load, or the drive that acts by it, at a state.
-    pub(crate) fn source_state(
+    fn source_state(
         &self,
         load: usize,
-        state: &MachineState<'_, f64, M>,
+        state: &KinematicState<'_, f64, M>,
         y: &[f64],
     ) -> SourceState<'_, M> {
         let drive = self.drives.iter().find(|drive| drive.load == load);

@@ -212,10 +212,12 @@ pub(crate) fn enclose_ops(
 ) -> Enclosure {
     let mut stack: Vec<Enclosure> = Vec::new();
     for (i, &op) in ops.iter().enumerate() {
-        let of = stack.split_off(stack.len().saturating_sub(op.arity()));
-        let held = sides.get(i).copied().unwrap_or_default();
-        let number = exact(op, &of, held).map(Enclosure::constant);
-        stack.push(number.unwrap_or_else(|| enclose_op(op, &of, held, &variable)));
+        let first = stack.len().saturating_sub(op.arity());
+        let (of, held) = (&stack[first..], sides.get(i).copied().unwrap_or_default());
+        let number = exact(op, of, held).map(Enclosure::constant);
+        let found = number.unwrap_or_else(|| enclose_op(op, of, held, &variable));
+        stack.truncate(first);
+        stack.push(found);
     }
     stack.pop().unwrap_or(Enclosure::UNKNOWN)
 }
@@ -297,16 +299,16 @@ fn exact(op: Op, operands: &[Enclosure], sides: Sides) -> Option<f64> {
     if op.arity() == 0 {
         return None;
     }
-    let numbers: Option<Vec<f64>> = operands.iter().map(|o| o.number()).collect();
-    let Some(numbers) = numbers else {
+    if operands.iter().any(|o| o.number().is_none()) {
         // Nothing times zero varies.
         let is_zero = |o: &Enclosure| o.number() == Some(0.0);
         let is_product = op == Op::Binary(Binary::Multiply);
         return (is_product && operands.iter().any(is_zero)).then_some(0.0);
-    };
-    let mut held = vec![Sides::default(); numbers.len()];
+    }
+    let mut held = vec![Sides::default(); operands.len()];
     held.push(sides);
-    let mut ops: Vec<Op> = numbers.into_iter().map(Op::Number).collect();
+    let numbers = operands.iter().filter_map(|o| o.number());
+    let mut ops: Vec<Op> = numbers.map(Op::Number).collect();
     ops.push(op);
     Some(run_held_parts(&ops, |_| f64::NAN, &held)).filter(|value: &f64| value.is_finite())
 }

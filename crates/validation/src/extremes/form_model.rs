@@ -133,30 +133,21 @@ fn in_space(
             Component::Y => along(1, SpaceComponent::Force),
             Component::Moment => along(2, SpaceComponent::Moment),
             // The normals of a slide are oblique to the plane.
-            _ => [-0.6, -0.8]
-                .into_iter()
-                .enumerate()
-                .map(|(k, part)| (SpaceComponent::Force(Axes::Joint, k), part))
-                .collect(),
+            _ => vec![
+                (SpaceComponent::Force(Axes::Joint, 0), -0.6),
+                (SpaceComponent::Force(Axes::Joint, 1), -0.8),
+            ],
         };
-        let first = all.len();
-        let joint = reaction.joint;
-        sums.push(
-            (first..)
-                .zip(&parts)
-                .map(|(k, (_, part))| (k, *part))
-                .collect(),
-        );
-        all.extend(
-            parts
-                .into_iter()
-                .map(|(component, _)| SpaceReaction { joint, component }),
-        );
+        let (joint, mut sum) = (reaction.joint, Vec::new());
+        for (component, part) in parts {
+            sum.push((all.len(), part));
+            all.push(SpaceReaction { joint, component });
+        }
+        sums.push(sum);
     }
-    let compile = if planes {
-        SpaceModel::new
-    } else {
-        SpaceModel::without_planes
+    let compile = match planes {
+        true => SpaceModel::new,
+        false => SpaceModel::without_planes,
     };
     let model = compile(&lifted.mechanism, &lifted.masses, &lifted.assembly, &all)?;
     Ok((model, sums))
@@ -190,12 +181,8 @@ impl FormModel {
         let interval = interval.or(unbounded.then_some((0.0, TAU)));
         let (evaluate, statement) = match form.evaluated {
             Evaluated::Plane => {
-                let own = |k| vec![(k, 1.0)];
-                of_model(
-                    form,
-                    plane.model().clone(),
-                    (0..reactions.len()).map(own).collect(),
-                )
+                let own = (0..reactions.len()).map(|k| vec![(k, 1.0)]);
+                of_model(form, plane.model().clone(), own.collect())
             }
             Evaluated::Space | Evaluated::Loops => {
                 let planes = form.evaluated == Evaluated::Space;

@@ -155,40 +155,46 @@ impl Form {
 
     /// Why a series is not run in it, by its key.
     pub fn not_run(self, key: &str) -> Option<&'static str> {
-        let is = |evaluated: &[Evaluated], keys: &[&str]| {
+        let own = NOT_RUN.iter().find(|(evaluated, keys, _)| {
             evaluated.contains(&self.evaluated) && keys.contains(&key)
-        };
-        let space = [Evaluated::Space, Evaluated::Loops];
-        let reasons = [
-            (
-                is(&space, &["placement"]),
-                "an oblique plane rounds the points of what is far from the origin",
-            ),
-            (
-                is(&space, &["light-crank", "gear-ratio", "cam-steepness"]),
-                "the lift has revolute and prismatic joints alone: no slot, teeth or cam",
-            ),
-            (
-                is(&[Evaluated::Operations], &["cam-steepness"]),
-                "refused: a law known by its values alone has no operations",
-            ),
-            (
-                is(&[Evaluated::Operations], &["large-group"]),
-                "refused: positions that Newton's method searches have no operations",
-            ),
-            (
-                is(&[Evaluated::Table], &["cam-steepness"]),
-                "refused: a table's cells are of one width, and its first 64 samples miss a steep cam",
-            ),
-            (
-                !(key.starts_with("tolerance-") || IN_FORMS.contains(&key)),
-                "motions under loads, results of commands and places in space run in one form alone",
-            ),
-        ];
-        let reason = reasons.into_iter().find(|(applies, _)| *applies);
-        reason.map(|(_, reason)| reason)
+        });
+        let is_run = key.starts_with("tolerance-") || IN_FORMS.split(' ').any(|other| other == key);
+        let alone =
+            "motions under loads, results of commands and places in space run in one form alone";
+        let reason = own.map(|(_, _, reason)| *reason);
+        reason.or((!is_run).then_some(alone))
     }
 }
+
+/// What has no counterpart in a form, or is refused there, by the keys of the series; and why.
+const NOT_RUN: [(&[Evaluated], &[&str], &str); 5] = [
+    (
+        SPACE,
+        &["placement"],
+        "an oblique plane rounds the points of what is far from the origin",
+    ),
+    (
+        SPACE,
+        &["light-crank", "gear-ratio", "cam-steepness"],
+        "the lift has revolute and prismatic joints alone: no slot, teeth or cam",
+    ),
+    (
+        &[Evaluated::Operations],
+        &["cam-steepness"],
+        "refused: a law known by its values alone has no operations",
+    ),
+    (
+        &[Evaluated::Operations],
+        &["large-group"],
+        "refused: positions that Newton's method searches have no operations",
+    ),
+    (
+        &[Evaluated::Table],
+        &["cam-steepness"],
+        "refused: a table's cells are of one width, and its first 64 samples miss a steep cam",
+    ),
+];
+const SPACE: &[Evaluated] = &[Evaluated::Space, Evaluated::Loops];
 
 /// Whether the cells of a series are those of a motion.
 fn is_motion(series: &ParameterSeries) -> bool {
@@ -245,21 +251,5 @@ pub fn evaluate(forms: &[Form]) -> Vec<(Form, Vec<SeriesResult>)> {
 }
 
 /// What is evaluated in the form that is asked for, besides the series of tolerances; all else runs once.
-const IN_FORMS: [&str; 16] = [
-    "limit-four-bar",
-    "limit-slider-crank",
-    "flat-parallelogram",
-    "mass-ratio",
-    "length",
-    "power-of-two",
-    "placement",
-    "speed",
-    "revolutions",
-    "light-crank",
-    "short-crank",
-    "guide-near-path",
-    "gear-ratio",
-    "cam-steepness",
-    "long-links",
-    "large-group",
-];
+const IN_FORMS: &str = "limit-four-bar limit-slider-crank flat-parallelogram mass-ratio length power-of-two placement speed revolutions \
+                        light-crank short-crank guide-near-path gear-ratio cam-steepness long-links large-group";

@@ -64,19 +64,18 @@ impl<M: MovingModel> Watch<'_, M> {
         Ok([kinetic, kinetic + potential - works])
     }
 
-    /// Whether a balance differs from that of the last good state by more than a part of the largest kinetic energy.
-    fn is_broken(&self, balance: f64, part: f64) -> bool {
+    /// Whether a balance differs from that of the last good state by more than this, J.
+    fn is_broken(&self, balance: f64, allowed: f64) -> bool {
         // Impacts lose energy that is no work.
-        !self.machine.has_contacts()
-            && self
-                .good
-                .is_some_and(|(_, [largest, before])| (balance - before).abs() > part * largest)
+        let differs = |(_, [_, before]): (f64, [f64; 2])| (balance - before).abs() > allowed;
+        !self.machine.has_contacts() && self.good.is_some_and(differs)
     }
 
     /// Whether a state can be evaluated, and keeps its balance.
     fn is_true(&mut self, at: &OdeState) -> bool {
+        let largest = self.good.map_or(0.0, |(_, [largest, _])| largest);
         let found = self.energies(at);
-        found.is_ok_and(|[_, balance]| !self.is_broken(balance, KEPT))
+        found.is_ok_and(|[_, balance]| !self.is_broken(balance, KEPT * largest))
     }
 
     /// Why a state cannot be one of the motion, whose steps lead to it.
@@ -88,14 +87,15 @@ impl<M: MovingModel> Watch<'_, M> {
         let (from, largest) = self
             .good
             .map_or((at.t, 0.0), |(t, [largest, _])| (t, largest));
-        if self.is_broken(balance, LARGE_ERROR) {
+        let largest = largest.max(kinetic);
+        if self.is_broken(balance, LARGE_ERROR * largest) {
             let begun = steps.partition_point(|step| step.t < from);
             let between = steps[begun..].iter().take_while(|step| step.t <= at.t);
             if let Some(error) = between.chain([at]).find_map(|step| self.missing_near(step)) {
                 return Some(error);
             }
         }
-        self.good = Some((at.t, [largest.max(kinetic), balance]));
+        self.good = Some((at.t, [largest, balance]));
         None
     }
 

@@ -72,6 +72,8 @@ struct Views<'a> {
     positions: &'a SpacePositions<'a>,
     drawing: SpaceDrawing<'a>,
     axonometric: View,
+    /// What is seen there of the points: for all of its pictures.
+    axonometric_bounds: [[f64; 2]; 2],
     /// Everything that must be in view.
     points: Vec<Vec3>,
     /// Width of the part of space that each view shows, m.
@@ -146,9 +148,10 @@ impl<'a> Views<'a> {
         let mut points: Vec<Vec3> = all.iter().flat_map(|(p, _)| points_of(scene, p)).collect();
         points.extend(points_of(scene, &positions.drawn));
         let axonometric = best_view(&points_of(scene, &positions.drawn));
+        let axonometric_bounds = bounds(axonometric, &points);
+        let views = [View::TOP, View::FRONT, View::SIDE].map(|view| bounds(view, &points));
         let mut width = 0.0_f64;
-        for view in [View::TOP, View::FRONT, View::SIDE, axonometric] {
-            let [[x0, x1], [y0, y1]] = bounds(view, &points);
+        for [[x0, x1], [y0, y1]] in views.into_iter().chain([axonometric_bounds]) {
             width = width.max(x1 - x0).max((y1 - y0) / HEIGHT);
         }
         let size = if width > 0.0 {
@@ -160,6 +163,7 @@ impl<'a> Views<'a> {
             drawing: SpaceDrawing::new(scene, all, size),
             positions,
             axonometric,
+            axonometric_bounds,
             points,
             width: if width > 0.0 { width } else { ABOUT * size },
         }
@@ -173,7 +177,7 @@ impl<'a> Views<'a> {
             with_words: true,
         };
         let shapes = self.shapes(view, &self.positions.drawn, detail);
-        let [horizontal, vertical] = self.ranges(view);
+        let [horizontal, vertical] = self.ranges(bounds(view, &self.points));
         Panel::from(Drawing {
             title: title.to_owned(),
             x: Axis::new(x, "m").with_range(horizontal[0], horizontal[1]),
@@ -186,7 +190,7 @@ impl<'a> Views<'a> {
     /// The axonometric view, with the bodies in the legend and the axes of the ground in a corner.
     fn axonometric_panel(&self, placements: &[Placement], with_words: bool) -> Drawing {
         let view = self.axonometric;
-        let [[x0, x1], [y0, y1]] = self.ranges(view);
+        let [[x0, x1], [y0, y1]] = self.ranges(self.axonometric_bounds);
         // Left of and below everything, centres of mass included, which may be beside the bodies.
         let centers = self.positions.scene.masses.iter().zip(placements);
         let centers = centers.filter(|(mass, _)| mass.mass > 0.0);
@@ -246,9 +250,8 @@ impl<'a> Views<'a> {
         shapes
     }
 
-    /// What a view shows: as wide as the others.
-    fn ranges(&self, view: View) -> [[f64; 2]; 2] {
-        let [[x0, x1], [y0, y1]] = bounds(view, &self.points);
+    /// What a view with these bounds of the points shows: as wide as the others.
+    fn ranges(&self, [[x0, x1], [y0, y1]]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
         let about = |a: f64, b: f64, width: f64| {
             let middle = 0.5 * (a + b);
             [middle - 0.5 * width, middle + 0.5 * width]

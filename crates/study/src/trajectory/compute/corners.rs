@@ -2,7 +2,7 @@
 //! one, and at a jump, as where friction changes its sign. Three points about such a place do not show it; the straight lines through
 //! the points before it and behind it do.
 
-use super::maximum::{Bracket, Point, between_events};
+use super::maximum::{Bracket, Point};
 
 /// A slope changes so many times more between two points than next to them where it has a corner there, and a value where it jumps. A smooth
 /// function's slope changes about twice as much.
@@ -21,17 +21,19 @@ pub(super) enum Sharp {
     Jump([Point; 2]),
 }
 
-/// Of `sign` times the values the corner and the jump at which it may be highest, each with a value next to it, where it may be higher there than
+/// Of `sign` times the values in parts between events the corner and the jump at which it may be highest, each with a value next to it, where it may be higher there than
 /// what is the largest so far. `scale` is the largest size of a value.
 pub(super) fn sharp_maxima(
-    points: &[Point],
+    parts: &[&[Point]],
     sign: f64,
     (largest, scale): (f64, f64),
 ) -> Vec<(f64, Sharp)> {
     let slope = |[a, b]: [Point; 2]| sign * (b[1] - a[1]) / (b[0] - a[0]);
     let mut best: [Option<(f64, f64, Sharp)>; 2] = [None; 2];
     let wanted = largest + MIN_GAIN * scale;
-    for six in between_events(points).flat_map(|part| part.windows(6)) {
+    // By `for_each`, which is a loop for each part.
+    let all = parts.iter().flat_map(|part| part.windows(6));
+    all.for_each(|six| {
         let [low, high] = [six[2], six[3]];
         // Nearly all places are decided by differences alone: no corner without a rise before and a fall behind it, no jump that is
         // smaller than the changes next to it.
@@ -39,7 +41,7 @@ pub(super) fn sharp_maxima(
         let [ahead, within, behind] = [[six[1], low], [low, high], [high, six[4]]].map(step);
         let may_be_corner = ahead > 0.0 && behind < 0.0;
         if !may_be_corner && within.abs() <= ahead.abs().max(behind.abs()) {
-            continue;
+            return;
         }
         let [low_value, high_value] = [sign * low[1], sign * high[1]];
         let [before, rise, after] = [[six[1], low], [low, high], [high, six[4]]].map(slope);
@@ -71,7 +73,7 @@ pub(super) fn sharp_maxima(
             let found = (reach, low_value.max(high_value), Sharp::Corner(bracket));
             take(&mut best[0], found, wanted);
         }
-    }
+    });
     let found = best.into_iter().flatten();
     found.map(|(_, value, sharp)| (value, sharp)).collect()
 }
@@ -115,21 +117,21 @@ mod tests {
     #[test]
     fn a_corner_between_points_is_found() {
         let all = points(|u| -(u + 0.3).sin().abs());
-        let found = sharp_maxima(&all, 1.0, (-0.05, 1.0));
+        let found = sharp_maxima(&[&all], 1.0, (-0.05, 1.0));
         let [(_, Sharp::Corner((a, _, b)))] = found[..] else {
             panic!("{found:?}");
         };
         let at = std::f64::consts::PI - 0.3;
         assert!(a[0] < at && at < b[0], "{a:?} {b:?}");
-        assert!(sharp_maxima(&points(f64::sin), 1.0, (0.9, 1.0)).is_empty());
-        assert!(sharp_maxima(&points(f64::sin), -1.0, (-2.0, 1.0)).is_empty());
+        assert!(sharp_maxima(&[&points(f64::sin)], 1.0, (0.9, 1.0)).is_empty());
+        assert!(sharp_maxima(&[&points(f64::sin)], -1.0, (-2.0, 1.0)).is_empty());
     }
 
     /// A curve that rises to 1 at u = 1.234 and falls to −1 there.
     #[test]
     fn the_side_of_a_jump_is_found() {
         let f = |u: f64| if u < 1.234 { u / 1.234 } else { -1.0 };
-        let found = sharp_maxima(&points(f), 1.0, (f(1.2), 1.0));
+        let found = sharp_maxima(&[&points(f)], 1.0, (f(1.2), 1.0));
         let [(_, Sharp::Jump(pair))] = found[..] else {
             panic!("{found:?}");
         };

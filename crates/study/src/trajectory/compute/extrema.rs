@@ -5,7 +5,7 @@
 //! parabolas and golden sections, each of whose points is evaluated like a row.
 
 use crate::trajectory::compute::corners::{Sharp, sharp_maxima, side_of_jump};
-use crate::trajectory::compute::maximum::{NO_GAIN, promising, refine_maximum};
+use crate::trajectory::compute::maximum::{NO_GAIN, between_events, promising, refine_maximum};
 use crate::trajectory::compute::{
     BALANCE, Column, Point, Quantity, RowEvaluator, Trajectory, TrajectorySample,
 };
@@ -168,7 +168,8 @@ impl<E: RowEvaluator> ExtremaSearch<'_, E> {
             };
             let column = |&(i, k): &(usize, usize)| {
                 let points = points.of_column(i, (self.values)(k)?, self.columns[k].unwraps());
-                let mut found = |sign| search.largest(k, sign, (&points, refined));
+                let parts: Vec<&[Point]> = between_events(&points).collect();
+                let mut found = |sign| search.largest(k, sign, (&points, &parts), refined);
                 io::Result::Ok((k, [found(-1.0), found(1.0)]))
             };
             columns.iter().map(column).collect::<io::Result<Vec<_>>>()
@@ -297,12 +298,13 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         Some(columns.map(|k| evaluator.value(self.columns[k].quantity, &sample)))
     }
 
-    /// The largest value times `sign` of a column; `points` are some of its values.
+    /// The largest value times `sign` of a column; `points` are some of its values, `parts` those between events.
     fn largest(
         &mut self,
         k: usize,
         sign: f64,
-        (points, refined): (&[Point], usize),
+        (points, parts): (&[Point], &[&[Point]]),
+        refined: usize,
     ) -> Option<Extremum> {
         limit(&mut self.evaluators, (self.columns, &[k, self.abscissa]));
         let (mut largest, mut scale) = (None::<Point>, 0.0);
@@ -319,11 +321,11 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         // Each with its abscissa, where that is known.
         let mut found: Vec<(Point, Option<f64>)> = vec![(largest, None)];
         let unwraps = self.columns[k].unwraps();
-        let smooth = promising(points, sign, largest[1], refined);
+        let smooth = promising(parts, sign, largest[1], refined);
         let smooth = smooth
             .into_iter()
             .map(|(near, bracket)| (near, Sharp::Corner(bracket)));
-        let sharp = sharp_maxima(points, sign, (largest[1], scale));
+        let sharp = sharp_maxima(parts, sign, (largest[1], scale));
         for (near, place) in smooth.chain(sharp) {
             let columns = [k, self.abscissa];
             let mut value = |u: f64, precision: SamplePrecision| {
