@@ -141,7 +141,7 @@ fn describe(
         DynamicsError::NoFullRevolution { from, to } => (
             format!(
                 "{phi} is limited to {} to {}, so the motion has no period of rotation",
-                own(*from),
+                number(scene.to_scene_unit(*from, is_angle).0),
                 own(*to)
             ),
             "give `duration` (s) instead of `periods`",
