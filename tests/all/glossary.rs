@@ -29,7 +29,7 @@ fn retired_words() -> Vec<RetiredWord> {
     .collect()
 }
 
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+pub(crate) fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
         if path.is_dir() && path.file_name().is_some_and(|name| name != "tests") {
@@ -43,7 +43,7 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 /// The code of a file and its string literals: without comments, and without what follows the first `#[cfg(test)]`.
-fn split(text: &str) -> (String, Vec<String>) {
+pub(crate) fn split(text: &str) -> (String, Vec<String>) {
     let text = text.split("#[cfg(test)]").next().unwrap_or(text);
     let (mut code, mut strings) = (String::new(), Vec::new());
     let mut rest = text;

@@ -7,6 +7,7 @@
 )]
 
 mod accuracy;
+mod advised_keys;
 mod batches;
 mod branch_hints;
 mod branches;

@@ -251,6 +251,57 @@ await test('a number has a slider, which everything follows', async page => {
   same(changed.slice(0, at), scene.slice(0, at), 'text before the number');
 });
 
+await test('a step of the slider is one step of undo', async page => {
+  const scene = await text(page);
+  await page.focus(area);
+  await page.keyboard.press('Control+Home');
+  await page.keyboard.type('# mine\n');
+  const typed = await text(page);
+  const at = typed.search(/mass = \d/) + 'mass = '.length;
+  await page.evaluate(([selector, place]) => {
+    const field = document.querySelector(selector);
+    field.setSelectionRange(place, place);
+    field.click();
+  }, [area, at]);
+  await page.focus('[data-part=slider] input');
+  await page.keyboard.press('ArrowRight');
+  await settled(page);
+  expect(await text(page) !== typed, 'nothing is slid');
+  await page.focus(area);
+  await page.keyboard.press('Control+z');
+  same(await text(page), typed, 'after one step back');
+  for (let k = 0; k < 20 && await text(page) !== scene; k++) await page.keyboard.press('Control+z');
+  same(await text(page), scene, 'after all steps back');
+});
+
+// As from a file.
+async function openScene(page, scene) {
+  await page.setInputFiles('#live-file', { name: 'mine.toml', mimeType: 'text/plain', buffer: Buffer.from(scene) });
+  await page.waitForFunction(([selector, value]) => document.querySelector(selector).value === value, [area, scene]);
+  await settled(page);
+}
+
+await test('another scene opens at its first position', async page => {
+  const slider = '.dwell-page .slider';
+  await page.focus(slider);
+  await page.keyboard.press('End');
+  expect(Number(await page.inputValue(slider)) > 0, 'the last position');
+  await openScene(page, caseText('jansen'));
+  same(await page.inputValue(slider), '0', 'the position of the scene that was opened');
+});
+
+await test('what belongs to another text is not saved', async page => {
+  const first = await text(page);
+  const isSaved = () => page.isVisible(SAVE_CSV);
+  expect(await isSaved(), 'a scene without errors');
+  await write(page, first.replace('[joints]', '[jonts]'));
+  expect(!await isSaved(), 'after an edit with an error');
+  await write(page, first);
+  expect(await isSaved(), 'after the edit was taken back');
+  await openScene(page, 'title = "My own mechanism"\n[bodies.ground]\n');
+  expect(!await isSaved() && !await page.isVisible('.dwell-page h1'), 'a file with an error');
+});
+
 await test('keys are completed and explained', async page => {
   await write(page, '[bodies.crank]\n');
   await page.focus(area);

@@ -101,6 +101,18 @@ pub enum AssemblyError {
         /// Two joints whose axes are nearly parallel, and the angle between the axes, rad.
         nearly_parallel: Option<([JointId; 2], f64)>,
     },
+    /// Axes that are nearly parallel hold what parallel ones let move.
+    #[error(
+        "the axes of two joints are {angle} rad from parallel: {degrees_of_freedom} degrees of freedom are left"
+    )]
+    NearlyParallel {
+        /// The two joints.
+        joints: [JointId; 2],
+        /// The angle between their axes, rad.
+        angle: f64,
+        /// How many are left.
+        degrees_of_freedom: usize,
+    },
     /// Gears, or a rack and its pinion, do not stand at the distance that their radii require.
     #[error("the gears are {distance} m apart, but their pitch radii require {required} m")]
     NotMeshing {

@@ -151,6 +151,14 @@ pub enum TableError {
         /// What was asked for.
         accuracy: f64,
     },
+    /// A coefficient varies within too small a part of the interval.
+    #[error(
+        "no table: something varies within so small a part of the interval that {most} cells, all of one width, are too few"
+    )]
+    TooNarrow {
+        /// The most cells that a table has.
+        most: usize,
+    },
     /// The exact model has no pose, or a load no direction, within the extent.
     #[error(transparent)]
     Exact(#[from] KinetostaticsError),

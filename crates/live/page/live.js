@@ -145,7 +145,7 @@ class Live {
     this.say('not computed');
   }
 
-  // What is shown belongs to the text before the change: it is dimmed. Of the scene before nothing is shown, and nothing can be saved, once another is opened.
+  // What is shown belongs to the text before the change: it is dimmed, and cannot be saved. Of the scene before nothing is shown once another is opened.
   old() {
     document.body.classList.add('live-old');
     document.body.classList.toggle('live-none', this.isOther);

@@ -2,7 +2,7 @@
 
 use crate::branch_note::branch_note;
 use crate::contents::describe_contents;
-use crate::explain::{NamedScene, StudyError, describe_ends, describe_limit};
+use crate::explain::{NamedScene, StudyError, describe_ends, describe_limit, own_coordinate};
 use crate::models::{loaded_model, requested_reaction_bodies};
 use crate::number_format::{coordinate_unit, count, digits, number};
 #[cfg(feature = "output")]
@@ -205,9 +205,13 @@ fn describe_range(
     };
     let limits = plan.range_limits().into_iter().flatten();
     let limits = limits.map(|limit| {
-        let beyond = match limit.change_point {
-            true => ", where another assembly mode begins",
-            false => "",
+        let beyond = match (limit.change_point, limit.separation) {
+            (true, Some(half_width)) => {
+                let width = own_coordinate(file, half_width, is_angle);
+                format!(": they are {width} apart, too little for positions beyond it")
+            }
+            (true, None) => ", where another assembly mode begins".to_owned(),
+            (false, _) => String::new(),
         };
         format!(
             "    {}{beyond}\n",

@@ -159,3 +159,51 @@ fn nearly_parallel_axes_and_nearly_planar_loops_keep_their_digits() {
         }
     }
 }
+
+/// However far from the origin, in single precision too: a coefficient is a number, or there is none.
+#[test]
+fn far_from_the_origin_nothing_is_not_a_number() {
+    let mut found = 0;
+    for exponent in 0..40 {
+        let distance = 10_f64.powi(exponent);
+        let far = |point: [f64; 3]| {
+            format!(
+                "[{:?}, {:?}, {:?}]",
+                point[0] + distance,
+                point[1] - distance,
+                point[2]
+            )
+        };
+        let scene = varied(
+            "rssr",
+            &[
+                (
+                    "A = [0, 0, 0], D = [0.25, 0.06, -0.04]",
+                    format!("A = {}, D = {}", far([0.0; 3]), far([0.25, 0.06, -0.04])),
+                ),
+                ("at = [0.1, 0, 0]", format!("at = {}", far([0.1, 0.0, 0.0]))),
+                (
+                    "at = [0.25, 0.06, -0.04]",
+                    format!("at = {}", far([0.25, 0.06, -0.04])),
+                ),
+            ],
+        );
+        let Ok(model) = model(&scene) else {
+            continue;
+        };
+        let (mut workspace, mut out) =
+            (model.workspace::<f32>(), model.coefficient_buffer::<f32>());
+        for q in [-1.0, 0.3, 1.125] {
+            if model.reduce(q, &mut workspace, &mut out).is_ok() {
+                let all = [out.m, out.half_dm];
+                let mut all = all.iter().chain(&out.a).chain(&out.b);
+                assert!(
+                    all.all(|value| value.is_finite()),
+                    "{q} at {distance:e}: {out:?}"
+                );
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 10, "{found}");
+}

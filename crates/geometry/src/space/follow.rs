@@ -330,7 +330,7 @@ impl Plan {
 }
 
 /// The first two joints whose axes are the farthest from parallel among those that are nearly so, with the angle between them, rad.
-fn nearly_parallel(
+pub(super) fn nearly_parallel(
     mechanism: &Mechanism,
     joints: &[JointId],
     rotation: impl Fn(usize) -> Rotation,

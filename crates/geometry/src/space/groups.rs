@@ -185,6 +185,16 @@ impl Plan {
         self.groups = groups;
     }
 
+    /// The freedoms between the ground and a body.
+    fn freedoms_above(&self, mut body: usize) -> Vec<usize> {
+        let mut freedoms = Vec::new();
+        while let Some(link) = self.tree.link_of[body] {
+            freedoms.extend(self.tree.links[link].freedoms.clone());
+            body = self.tree.links[link].parent;
+        }
+        freedoms
+    }
+
     /// Replaces the one group of everything by the groups that the structure has, in order, after idle freedoms are held.
     ///
     /// # Errors
@@ -211,12 +221,21 @@ impl Plan {
             rows.iter().map(of_row).collect()
         };
         let (dependencies, moving) = (on_path(false), on_path(true));
+        // Beyond its path, what carries the whole loop moves no row, but has to be placed before it, too.
+        let carried = |(&(c, _), of_row): (&(usize, usize), &Vec<usize>)| {
+            let above = self.closures[c]
+                .bodies
+                .map(|body| self.freedoms_above(body));
+            let above = above.iter().flatten().filter_map(position);
+            of_row.iter().copied().chain(above).collect()
+        };
+        let placed: Vec<Vec<usize>> = rows.iter().zip(&dependencies).map(carried).collect();
         let independent: Vec<usize> = analysed.independent;
         let chosen = |of: &[Vec<usize>]| -> Vec<Vec<usize>> {
             independent.iter().map(|r| of[*r].clone()).collect()
         };
         let (of_equation, of_unknown) = match_equations(&chosen(&moving), unknowns.len());
-        let components = strong_components(&of_equation, &chosen(&dependencies), &of_unknown);
+        let components = strong_components(&of_equation, &chosen(&placed), &of_unknown);
         let mut groups: Vec<Members> = components
             .into_iter()
             .map(|equations| {

@@ -214,6 +214,11 @@ impl Lowered {
             }
             AssemblyError::Inconsistent { joints, .. }
             | AssemblyError::NotThroughout { joints, .. } => own_joints(joints),
+            AssemblyError::NearlyParallel { joints: pair, .. } => {
+                for joint in pair.iter_mut().filter(|j| j.0 >= joints) {
+                    *joint = self.split[joint.0 - joints];
+                }
+            }
             AssemblyError::NotMeshing { .. } => {}
             AssemblyError::Structure(structure) => match structure {
                 StructureError::UnderActuated { bodies, .. }

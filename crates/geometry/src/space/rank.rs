@@ -3,12 +3,13 @@
 
 use super::assemble::RANK_TOLERANCE;
 use super::closure::{Closure, RowKind};
+use super::follow::nearly_parallel;
 use super::groups::Group;
 use super::mechanism::{JointKind, Mechanism};
 use super::plan::{Plan, Pose};
 use super::vector::Vec3;
 use crate::error::{AssemblyError, StructureError};
-use crate::mechanism::{ActuatorId, BodyId};
+use crate::mechanism::{ActuatorId, BodyId, JointId};
 use dwell_numerics::dense::Svd;
 
 /// A twist or a force is none below this.
@@ -117,6 +118,15 @@ impl Plan {
         let redundant_count = self.actuators().saturating_sub(left);
         if redundant_count == 0 {
             return Ok(());
+        }
+        let rotation = |body| self.placement(pose, body).rotation;
+        let all: Vec<JointId> = (0..mechanism.joints.len()).map(JointId).collect();
+        if let Some((joints, angle)) = nearly_parallel(mechanism, &all, rotation) {
+            return Err(AssemblyError::NearlyParallel {
+                joints,
+                angle,
+                degrees_of_freedom: left,
+            });
         }
         let error = StructureError::OverConstrained {
             redundant_count,

@@ -116,6 +116,8 @@ pub(super) fn build_to_accuracy<S: ?Sized, P: Piecewise<S>>(
     }
     match best {
         Some((piecewise, bounds, _)) => Ok((piecewise, bounds)),
+        // The samples ask for too many cells, or miss where most of a function is.
+        None if smallest.0 >= 1.0 => Err(TableError::TooNarrow { most: MAX_CELLS }),
         None => Err(TableError::NotReached {
             what: smallest.1,
             reached: smallest.0,

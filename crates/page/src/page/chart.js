@@ -11,7 +11,7 @@ function createChart(number, state, units, actions) {
   const picker = el('details', { class: 'picker' }, el('summary', {}, 'curves'));
   const pickerList = el('div', { class: 'picker-list' });
   picker.append(pickerList);
-  const save = el('button', { type: 'button', class: 'quiet', title: 'this chart as an SVG file', onclick: () => actions.saveSvg(picture, `chart-${number + 1}`) }, 'SVG ↓');
+  const save = el('button', { type: 'button', class: 'quiet saves', title: 'this chart as an SVG file', onclick: () => actions.saveSvg(picture, `chart-${number + 1}`) }, 'SVG ↓');
   const root = el('section', { class: 'card chart-card', 'aria-label': `chart ${number + 1}` }, el('div', { class: 'chart-head' }, chooser, picker, save), legend, picture);
 
   let run = null;

@@ -8,8 +8,8 @@ function createPeaks(units, actions, later) {
   const chips = el('div', { class: 'chips' });
   const chipCard = card('Largest', 'largest', chips);
   const filter = el('input', { type: 'search', placeholder: 'filter', 'aria-label': 'filter quantities', oninput: () => sift() });
-  const copy = el('button', { type: 'button', onclick: () => actions.copyPeaks() }, 'copy as CSV');
-  const all = el('button', { type: 'button', onclick: () => actions.saveData() }, 'all data, CSV ↓');
+  const copy = el('button', { type: 'button', class: 'saves', onclick: () => actions.copyPeaks() }, 'copy as CSV');
+  const all = el('button', { type: 'button', class: 'saves', onclick: () => actions.saveData() }, 'all data, CSV ↓');
   const body = el('tbody');
   const note = el('p', { class: 'note' });
   const head = el('thead', {}, el('tr', {}, ['quantity', 'curve', 'min', 'at', 'max', 'at', 'now'].map((t, k) => el('th', { scope: 'col', class: k > 1 ? 'number' : null }, t))));

@@ -107,7 +107,7 @@ fn explain_assembly(scene: &Scene, error: &AssemblyError) -> StudyError {
             inconsistent(scene, joints, (*redundant_count, *gap), help)
         }
         // Only mechanisms in space yield it.
-        AssemblyError::NotThroughout { .. } => {
+        AssemblyError::NotThroughout { .. } | AssemblyError::NearlyParallel { .. } => {
             scene_error(scene, error.to_string(), "", [(SceneLocation::Whole, "")])
         }
         AssemblyError::SingularAssembly { bodies, joints } => {

@@ -6,7 +6,7 @@ use super::contacts::{
 };
 use crate::explain::{
     NamedScene, StudyError, body_names, explain_position, joint_labels, labels, own_coordinate,
-    scene_error,
+    own_speed, scene_error,
 };
 use crate::number_format::{digits, force_unit, number};
 use dwell_dynamics::DynamicsError;
@@ -111,6 +111,8 @@ fn describe(
     error: &DynamicsError,
 ) -> (String, &'static str, SceneLocation, &'static str) {
     let phi = scene.quoted_coordinate();
+    let is_angle = scene.is_first_angle();
+    let own = |q| own_coordinate(scene, q, is_angle);
     let speed = SceneLocation::InitialVelocity(ActuatorId(0));
     let start = scene.initial_state_location();
     match error {
@@ -122,15 +124,15 @@ fn describe(
         ),
         DynamicsError::AtRest => (
             "the free motion starts at rest, and no force moves the mechanism".to_owned(),
-            "give a `speed` in [motion]",
+            "give an `initial-velocity` in [motion]",
             speed,
             "no speed",
         ),
         DynamicsError::EnergyOutOfRange { q_dot, energy } => (
             format!(
-                "the kinetic energy {} J at {} rad/s is outside the computable range",
+                "the kinetic energy {} J at {} is outside the computable range",
                 number(*energy),
-                number(*q_dot)
+                own_speed(scene, *q_dot, is_angle)
             ),
             "choose a realistic speed; without loads it only scales time and reactions",
             speed,
@@ -138,9 +140,9 @@ fn describe(
         ),
         DynamicsError::NoFullRevolution { from, to } => (
             format!(
-                "{phi} is limited to {} to {} rad, so the motion has no period of rotation",
-                number(*from),
-                number(*to)
+                "{phi} is limited to {} to {}, so the motion has no period of rotation",
+                number(scene.to_scene_unit(*from, is_angle).0),
+                own(*to)
             ),
             "give `duration` (s) instead of `periods`",
             SceneLocation::Duration,
@@ -215,14 +217,14 @@ fn describe(
         ),
         DynamicsError::NeverBalances { work, q_dot, tried } => (
             format!(
-                "there is no steady cycle of {phi}: the machine {} {} J per cycle at {} rad/s, and {} energy at every \
-                 speed that was tried, from {} to {} rad/s",
+                "there is no steady cycle of {phi}: the machine {} {} J per cycle at {}, and {} energy at every \
+                 speed that was tried, from {} to {}",
                 if *work > 0.0 { "gains" } else { "loses" },
                 digits(work.abs(), 3),
-                digits(*q_dot, 3),
+                own_speed(scene, *q_dot, is_angle),
                 if *work > 0.0 { "gains" } else { "loses" },
-                digits(tried[0], 3),
-                digits(tried[1], 3)
+                own_speed(scene, tried[0], is_angle),
+                own_speed(scene, tried[1], is_angle)
             ),
             "add a loss or a drive that depends on the speed, such as a damper or a motor, so that the works of a cycle \
              balance at some speed",
@@ -231,8 +233,8 @@ fn describe(
         ),
         DynamicsError::ComesToRest { q } => (
             format!(
-                "the mechanism comes to rest at {phi} = {} rad and does not complete the revolution",
-                number(*q)
+                "the mechanism comes to rest at {phi} = {} and does not complete the revolution",
+                own(*q)
             ),
             "use a stronger drive or a larger flywheel, so that it passes the position of largest resistance",
             start,
@@ -268,7 +270,8 @@ fn explain_limit_position(scene: &Scene, plan: &Plan, t: f64, q: f64) -> StudyEr
         let revolutions = TAU * ((q - from) / TAU).floor();
         let is_lower = q - revolutions - from < to + revolutions - q;
         let nearest = if is_lower { from } else { to };
-        format!(", {} rad,", number(nearest + revolutions))
+        let limit = own_coordinate(scene, nearest + revolutions, plan.is_angle(0));
+        format!(", {limit},")
     });
     let message = format!(
         "the motion reaches a limit position of {phi}{} soon after t = {} s, and enters another assembly mode \
@@ -306,8 +309,8 @@ fn explain_near_branches(
         own(q),
         own(half_width),
     );
-    let help = "make the lengths exactly those of a change point, which the motion crosses; or change one by more than 1e-9 \
-                of the mechanism's size, so that the modes are apart; or end the motion earlier";
+    let help = "make the lengths exactly those of a change point, which the motion crosses; or change one so that the modes are \
+                farther apart than 3e-5 rad, or than that part of the mechanism's size; or end the motion earlier";
     let joints = group.map(|near| plan.group_joints(near.group));
     let places = match joints {
         Some(joints) if !joints.is_empty() => joint_labels(&joints, "their lengths nearly fit"),
@@ -342,10 +345,10 @@ fn explain_unbalanced(
 
 fn explain_no_inertia(scene: &impl NamedScene, q: f64) -> StudyError {
     let message = format!(
-        "the generalised inertia m is zero at {} = {} rad: no body with mass moves there, so the acceleration is \
+        "the generalised inertia m is zero at {} = {}: no body with mass moves there, so the acceleration is \
          undefined",
         scene.quoted_coordinate(),
-        number(q)
+        own_coordinate(scene, q, scene.is_first_angle())
     );
     let moving = scene.moving_bodies().into_iter();
     let bodies = moving.take(8).map(SceneLocation::Body);

@@ -45,6 +45,11 @@ pub trait NamedScene: Deref<Target = SceneFile> {
         }
     }
 
+    /// Whether the first coordinate is an angle.
+    fn is_first_angle(&self) -> bool {
+        self.actuator(0).is_none_or(|(_, is_angle)| is_angle)
+    }
+
     /// The name of the first coordinate, quoted.
     fn quoted_coordinate(&self) -> String {
         match self.actuator(0) {

@@ -21,6 +21,12 @@ pub(crate) fn own_coordinate(file: &SceneFile, q: f64, is_angle: bool) -> String
     format!("{} {unit}", number(value))
 }
 
+/// A speed, rad/s or m/s, to three digits in the scene's own unit: `34.4 deg/s`.
+pub(crate) fn own_speed(file: &SceneFile, speed: f64, is_angle: bool) -> String {
+    let (value, unit) = file.to_scene_unit(speed, is_angle);
+    format!("{} {unit}/s", digits(value, 3))
+}
+
 /// A coordinate with its name: `phi = 2.046915388 rad (117.28°)`, a length in the scene's own unit. What is finer is rounding at the end
 /// of a range.
 pub(crate) fn describe_coordinate(file: &SceneFile, name: &str, q: f64, is_angle: bool) -> String {
@@ -42,10 +48,10 @@ pub(crate) fn describe_limit(
     limit: RangeLimit,
     revolutions: f64,
 ) -> String {
-    let kind = if limit.change_point {
-        "change point"
-    } else {
-        "limit position"
+    let kind = match (limit.change_point, limit.separation) {
+        (true, Some(_)) => "narrow passage between assembly modes",
+        (true, None) => "change point",
+        (false, _) => "limit position",
     };
     let bodies = match plan.group_methods().is_empty() {
         true => Vec::new(),

@@ -3,6 +3,7 @@
 pub(crate) mod description;
 #[cfg(feature = "fmu")]
 mod fmu_archive;
+mod hidden_motion;
 #[cfg(feature = "output")]
 pub(crate) mod output;
 pub(crate) mod sampler;
@@ -19,6 +20,7 @@ use dwell_dynamics::DynamicsError;
 use dwell_export::{Export, FitError, Function, MachineDescription, RecordingError, Request};
 use dwell_geometry::ActuatorId;
 use dwell_scene::{Scene, SceneFile, SceneLocation};
+use hidden_motion::reject_hidden_motion;
 use sampler::{SceneSampler, recorded};
 use std::fmt::Display;
 
@@ -68,6 +70,7 @@ pub fn compute_export(scene: &Scene, asked: &ExportRequest) -> Result<Export, St
 /// As [`compute_export`].
 pub fn compute_export_in_cells(scene: &Scene, asked: &ExportRequest) -> Result<Export, StudyError> {
     let exported = ExportedScene::new(scene, asked.interval)?;
+    reject_hidden_motion(scene, &exported)?;
     let machine = exported.description.clone();
     let export = Export::new(machine, asked.request, &mut SceneSampler::new(&exported));
     export.map_err(|error| explain_export(scene, &exported, asked, error))

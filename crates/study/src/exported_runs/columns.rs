@@ -1,6 +1,6 @@
 //! Which columns of the exported tables are the coordinate, its speed and acceleration, the drive's moment and reactions.
 
-use super::text_table::{ExportedColumn, ExportedTable};
+use super::text_table::{ExportedColumn, ExportedTable, by_name};
 use dwell_scene::SceneError;
 use std::f64::consts::PI;
 use toml::{Table, Value};
@@ -134,11 +134,12 @@ impl ColumnNames {
             let own = |column: &&ExportedColumn| is_reaction(column, coordinate);
             return Ok(table.columns.iter().filter(own).cloned().collect());
         }
+        let columns = by_name(&table.columns);
         let of = |(name, column): &(String, String)| {
-            let column = find(table, column)?;
+            let known = columns.get(&column[..]).map(|&column| column.clone());
             Ok(ExportedColumn {
                 name: name.clone(),
-                ..column
+                ..known.map_or_else(|| find(table, column), Ok)?
             })
         };
         self.reactions.iter().map(of).collect()

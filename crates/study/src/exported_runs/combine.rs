@@ -9,7 +9,7 @@
 //! other positions, it is interpolated.
 
 use super::columns::ColumnNames;
-use super::text_table::{ExportedColumn, ExportedTable};
+use super::text_table::{ExportedColumn, ExportedTable, by_name};
 use super::timed_run::{SAME_POSITION, TimedRun, with_speeds, wrong};
 use dwell_kinetostatics::Coefficients;
 use dwell_scene::SceneError;
@@ -81,8 +81,9 @@ pub fn combine_runs(
     let inertia = pair.solve([&one.run.force, &two.run.force]);
     let mut reactions = Vec::new();
     let mut solved = Vec::new();
+    let of_two = by_name(&two.run.reactions);
     for of_one in &one.run.reactions {
-        let Some(of_two) = two.run.reactions.iter().find(|r| r.name == of_one.name) else {
+        let Some(of_two) = of_two.get(of_one.name.as_str()) else {
             let (file, name) = (&two.run.file, &of_one.name);
             let message = format!("`{file}` has no column of the reaction `{name}`");
             return Err(wrong(message, "export the same reactions in both runs"));

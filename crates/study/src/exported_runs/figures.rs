@@ -48,7 +48,7 @@ fn panel(runs: &ExportedRuns, model: &SampledModel, (title, symbol, unit, index)
     };
     let between = (0..=POINTS).filter_map(|k| {
         let q = first + (end - first) * k as f64 / POINTS as f64;
-        Some([x(q), *model.values(q).ok()?.get(index)?])
+        Some([x(q), model.value(q, index)?])
     });
     let line = Series::line("between the positions", between.collect());
     let stride = runs.q.len().div_ceil(MARKS).max(1);

@@ -384,3 +384,37 @@ fn runs_of_exudyn_give_the_reduced_model() {
         }
     }
 }
+
+/// Of ten thousand columns each costs as one of few: positions between the rows are evaluated for what is drawn alone.
+#[test]
+fn thousands_of_columns_take_seconds() {
+    let rows = 37;
+    let table = |accelerates: bool| {
+        let q: Vec<f64> = (0..rows)
+            .map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(rows - 1))
+            .collect();
+        let a = f64::from(u8::from(accelerates));
+        let v = |q: f64| if accelerates { (2.0 * q).sqrt() } else { 1.0 };
+        let of = |f: &dyn Fn(f64) -> f64| q.iter().map(|q| f(*q)).collect::<Vec<f64>>();
+        let force = |q: f64| (2.0 + q.cos()) * a - 0.5 * q.sin() * v(q).powi(2);
+        let mut columns = vec![
+            ("phi [rad]".to_owned(), q.clone()),
+            ("phi.velocity [rad/s]".to_owned(), of(&v)),
+            ("phi.acceleration [rad/s2]".to_owned(), of(&|_| a)),
+            ("phi.actuator_force [N m]".to_owned(), of(&force)),
+        ];
+        columns.extend((0..10_000).map(|k| (format!("joint{k}.x [N]"), of(&force))));
+        ExportedTable::of_columns("run.npz", columns)
+    };
+    let tables = [table(false), table(true)];
+    let begun = std::time::Instant::now();
+    let found = super::reduce_runs(
+        "run",
+        [&tables[0], &tables[1]],
+        &ColumnNames::default(),
+        None,
+    );
+    assert!(found.is_ok());
+    let took = begun.elapsed().as_secs_f64();
+    assert!(took < 10.0, "{took} s");
+}

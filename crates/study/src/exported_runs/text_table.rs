@@ -1,6 +1,7 @@
 //! Tables as mechanism programs export them: a header, a separator and a decimal mark of their choice, lines of comment.
 
 use dwell_scene::SceneError;
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// Marks with which programs begin a line of comment.
@@ -120,6 +121,12 @@ impl ExportedTable {
     pub fn column(&self, name: &str) -> Option<&ExportedColumn> {
         self.columns.iter().find(|column| column.name == name)
     }
+}
+
+/// The first column of each name: tables may have very many.
+pub(super) fn by_name(columns: &[ExportedColumn]) -> HashMap<&str, &ExportedColumn> {
+    let columns = columns.iter().rev();
+    columns.map(|column| (&column.name[..], column)).collect()
 }
 
 /// The lines of a text that are not empty.

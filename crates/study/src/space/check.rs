@@ -1,6 +1,7 @@
 //! `dwell check` of a scene in space: degrees of freedom, range, groups, placements and reactions, before anything moves.
 
 use super::contents::describe_contents;
+use super::explain::with_loads;
 use super::prepared::{compile, is_angle, sort_reactions};
 use crate::check::{
     describe_parts, describe_redundant, describe_start, list, list_or, range_text, rounded,
@@ -41,6 +42,8 @@ pub fn describe_scene_in_space(scene: &SpaceScene) -> Result<String, StudyError>
 fn description(scene: &SpaceScene, record: &mut Record) -> Result<String, StudyError> {
     let mechanism = &scene.mechanism;
     let model = compile(scene, &scene.reactions)?;
+    // What forces refuse is said before anything moves.
+    with_loads(scene, model.clone())?;
     let sorted = sort_reactions(scene, &model)?;
     let plan = model.plan();
     scene.reject_unknown_columns()?;

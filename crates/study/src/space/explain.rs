@@ -5,7 +5,6 @@ use crate::explain::{
     inconsistent, joint_labels, labels, missing_section_label, not_connected, own_coordinate,
     own_length, scene_error,
 };
-use crate::number_format::digits;
 use dwell_geometry::space::{JointKind, Plan};
 use dwell_geometry::{ActuatorId, AssemblyError, BodyId, JointId, PositionError, StructureError};
 use dwell_kinetostatics::space::{Model, ModelError};
@@ -97,6 +96,14 @@ fn explain_assembly(scene: &SpaceScene, error: &AssemblyError) -> StudyError {
             gap,
             nearly_parallel,
         } => explain_not_throughout(scene, joints, [*q, *gap], *nearly_parallel),
+        AssemblyError::NearlyParallel {
+            joints,
+            angle,
+            degrees_of_freedom,
+        } => {
+            let freedoms = freedom_text(*degrees_of_freedom, scene.mechanism.actuators.len());
+            explain_nearly_parallel(scene, freedoms, *joints, *angle)
+        }
         AssemblyError::SingularAssembly { joints, .. } => {
             let message = "the start is a singular position: the actuator does not determine the motion there";
             let help = "start a little away from it, or drive another joint";
@@ -119,7 +126,7 @@ fn explain_not_throughout(
     let name = scene.mechanism.actuators.first().map_or("", |a| &a.name);
     let at = own_coordinate(scene, q, super::prepared::is_angle(scene));
     let gap = own_length(scene, gap, 3);
-    let mut message = format!(
+    let message = format!(
         "redundant constraints agree at the start, but not along the motion: at `{name}` = {at} they leave a gap of {gap}"
     );
     let Some((pair, angle)) = nearly_parallel else {
@@ -128,11 +135,19 @@ fn explain_not_throughout(
         let labels = joint_labels(joints, "among the redundant constraints");
         return scene_error(scene, message, help, labels);
     };
+    explain_nearly_parallel(scene, message, pair, angle)
+}
+
+/// What follows from two axes that are nearly parallel.
+fn explain_nearly_parallel(
+    scene: &SpaceScene,
+    consequence: String,
+    pair: [JointId; 2],
+    angle: f64,
+) -> StudyError {
     let [a, b] = pair.map(|joint| &scene.mechanism.joints[joint.0].name);
-    message += &format!(
-        "; the axes of `{a}` and `{b}` are {} rad from parallel",
-        digits(angle, 3)
-    );
+    let angle = own_coordinate(scene, angle, true);
+    let message = format!("{consequence}; the axes of `{a}` and `{b}` are {angle} from parallel");
     let help = "give both joints the same axis to the last digit, or replace one by a joint with more freedoms";
     scene_error(scene, message, help, joint_labels(&pair, "nearly parallel"))
 }

@@ -67,3 +67,22 @@ fn an_interval_outside_the_range_is_refused() {
     let found = message("single-dwell", &asked);
     assert!(found.contains("beyond its beginning"), "{found}");
 }
+
+/// A rise of 3 mm within a millionth of a radian, between all points at which functions are sampled.
+#[test]
+fn a_cam_that_rises_between_the_points_of_a_fit_is_refused() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../validation/cam/scene.toml"
+    );
+    let text = std::fs::read_to_string(path).expect("the file");
+    let law = "0.04 + 0.012*(1 - cos(x)) + 0.003*(1 - cos(2*x))";
+    assert!(text.contains(law));
+    for width in [1e-5, 1e-6, 1e-8] {
+        let steep = text.replace(law, &format!("0.04 + 0.0015*tanh((x - 1.2345678)/{width})"));
+        let scene = dwell_scene::Scene::parse("cam.toml", &steep).expect("a scene");
+        let error = compute_export(&scene, &request(1e-6, Precision::Double));
+        let found = error.map(drop).expect_err("a refusal").to_string();
+        assert!(found.contains("no export"), "{found}");
+    }
+}

@@ -22,4 +22,5 @@ mod rounding;
 mod structures;
 mod table;
 mod time_loads;
+mod unit_loads;
 mod variables;

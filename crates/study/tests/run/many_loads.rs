@@ -63,3 +63,11 @@ fn the_work_of_many_loads_is_that_of_two() {
         assert!(balance < 1e-6 * largest(&works), "{balance}");
     }
 }
+
+/// A table of w and c that a computer does not hold is refused before it is computed, with how many positions it may have.
+#[test]
+fn a_reduced_table_of_very_many_loads_is_refused() {
+    let refused = dwell_study::reduce(&scene(&pendulum(20_000)), None, None);
+    let message = refused.map(drop).unwrap_err().to_string();
+    assert!(message.contains("20001 loads"), "{message}");
+}

@@ -2,7 +2,7 @@
 
 use crate::table::scene;
 use dwell_scene::SpaceScene;
-use dwell_study::{compute_period, compute_period_in_space};
+use dwell_study::{TableRequest, compute_period, compute_period_in_space, reduce};
 use std::f64::consts::{PI, TAU};
 
 /// ∫ √(of(x′, y′)) dz from 0 to π, where tan x = √c tan z and tan y = tan z / √c: the trapezoidal rule.
@@ -108,6 +108,34 @@ fn a_period_holds_the_swing_of_a_hooke_joint_near_a_right_angle() {
         assert!(
             error < 1e-12 + 1e-15 / c,
             "{c:e} {output:e}: {found} {period} {error:e}"
+        );
+    }
+}
+
+/// A follower that rises within a hundredth or a thousandth of a radian: a table says that its cells are too wide, in no absurd number.
+#[test]
+fn a_table_of_a_steep_cam_is_refused_for_its_steepness() {
+    for width in [1e-2, 1e-3, 1e-5] {
+        let text = format!(
+            "[bodies]\nground = {{ points = {{ O = [0, 0] }} }}\n\
+             cam = {{ points = {{ O = [0, 0] }}, inertia = 0.001 }}\n\
+             follower = {{ points = {{ F = [0, 0] }}, mass = 0.4, center = \"F\" }}\n\
+             [joints]\nO = {{ revolute = [\"ground.O\", \"cam.O\"] }}\n\
+             guide = {{ prismatic = [\"ground.O\", \"follower.F\"], axis = [0, 1] }}\n\
+             contact = {{ coupling = [\"rise\", \"phi\"], expression = \"0.01*tanh((x - 1.57)/{width})\" }}\n\
+             [coordinates]\nrise = {{ travel = \"guide\" }}\n\
+             [actuators]\nphi = {{ angle = [\"ground\", \"cam\"] }}\n[assembly]\nphi = 0\nfollower = 0\n"
+        );
+        let request = TableRequest {
+            accuracy: 1e-9,
+            interval: None,
+            required: true,
+        };
+        let refused = reduce(&scene(&text), Some(5), Some(request)).map(drop);
+        let message = refused.unwrap_err().to_string();
+        assert!(
+            message.contains("varies within so small a part"),
+            "{message}"
         );
     }
 }

@@ -8,6 +8,7 @@
 
 mod accuracy;
 mod as_in_the_plane;
+mod carried_loops;
 mod motors;
 mod pictures;
 mod revolutions;

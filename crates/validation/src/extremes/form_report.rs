@@ -55,6 +55,7 @@ pub fn add_to(outcome: &mut Outcome, plane: &[SeriesResult], name: &str) {
     for form in Form::OTHERS {
         let without = plane
             .iter()
+            .filter(|s| Form::of_grid(&s.series.key) != form)
             .filter_map(|s| Some((s, form.not_run(&s.series.key)?)));
         for (series, reason) in without {
             let key = &series.series.key;
@@ -116,13 +117,15 @@ fn figure(plane: &[SeriesResult], results: &[(Form, Vec<SeriesResult>)]) -> Figu
     };
     let row = |series: &SeriesResult| {
         let key = &series.series.key;
-        let others = results.iter().map(|(_, all)| {
+        let own = Form::of_grid(key);
+        let others = results.iter().map(|(form, all)| {
             let same = all.iter().find(|other| other.series.key == *key);
-            same.map(cell)
+            same.or_else(|| (*form == own).then_some(series)).map(cell)
         });
+        let in_plane = (own == Form::PLANE).then(|| cell(series));
         Row {
             name: key.clone(),
-            cells: std::iter::once(Some(cell(series))).chain(others).collect(),
+            cells: std::iter::once(in_plane).chain(others).collect(),
         }
     };
     let forms = std::iter::once(Form::PLANE).chain(results.iter().map(|(form, _)| *form));

@@ -77,6 +77,15 @@ impl Form {
         }
     }
 
+    /// The form in which the grid itself runs a series, by its key.
+    pub(super) fn of_grid(key: &str) -> Self {
+        match key {
+            "place-in-space" => Self::of(Evaluated::Loops, Precision::Double),
+            "place-in-space-single" => Self::of(Evaluated::Loops, Precision::Float),
+            _ => Self::PLANE,
+        }
+    }
+
     /// Its name in tables.
     pub fn name(self) -> String {
         let evaluated = match self.evaluated {

@@ -86,7 +86,12 @@ impl FreeMotionProblem<'_> {
         }
         text += &cost_line(&motion.statistics, &mut record);
         let turning_point_errors = |points| Some(self.turning_point_errors(points));
-        text += &class_line(self, &motion.segments, turning_point_errors, &mut record);
+        text += &class_line(
+            self,
+            (&motion.segments, second),
+            turning_point_errors,
+            &mut record,
+        );
         text += &self.describe_energy_balance(motion, duration, &mut record);
         (text, record)
     }

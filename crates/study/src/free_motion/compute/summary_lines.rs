@@ -11,8 +11,12 @@ use dwell_findings::Record;
 
 /// Of many changes so many are listed.
 const MAX_LISTED: usize = 6;
-/// Part of its way by which a motion may miss its orbit in the first period.
+/// Part of its way by which a motion without a second run may miss its orbit in the first period.
 const MISSED: f64 = 0.05;
+/// Part of it that is rounding of an integration.
+const ROUNDING: f64 = 1e-10;
+/// Steps of a period that are compared with an orbit.
+const COMPARED: usize = 8;
 
 /// The first of some changes, and how many more there are.
 pub(crate) fn first_changes(mut all: Vec<String>) -> Vec<String> {
@@ -100,11 +104,11 @@ pub(crate) fn cost_line(cost: &Statistics, record: &mut Record) -> String {
 }
 
 /// The class of a conservative motion of one degree of freedom, from its energy, and its period; the turning points with their errors
-/// (rad or m), where these are known. The period is that of `parts`, unless these are not followed by its orbit. A motion that an event
+/// (rad or m), where these are known. The period is that of `parts`, unless the orbit does not follow these and their second run. A motion that an event
 /// ended before it could turn back is no libration.
 pub(crate) fn class_line(
     problem: &impl MotionProblem,
-    parts: &[(usize, Solution)],
+    (parts, second): (&[(usize, Solution)], Option<&[(usize, Solution)]>),
     turning_point_errors: impl Fn([f64; 2]) -> Option<[f64; 2]>,
     record: &mut Record,
 ) -> String {
@@ -148,32 +152,52 @@ pub(crate) fn class_line(
     };
     format!(
         "  by energy: {class}{}\n",
-        period_text(problem, parts, record)
+        period_text(problem, (parts, second), record)
     )
 }
 
-/// Whether a motion in one part, without impacts, is on an orbit at its last step in the first period. A coarse integration may be some
-/// per cent off at the end of its steps; a quadrature that missed a peak of the inertia is wrong by a large part of the period.
-fn is_followed(orbit: &Orbit, parts: &[(usize, Solution)]) -> bool {
+/// How far a motion in one part, without impacts, is from an orbit during the first period, how fast it is, and how far it moves; none
+/// where it cannot be compared.
+fn missed(orbit: &Orbit, parts: &[(usize, Solution)]) -> Option<[f64; 3]> {
     let [(_, solution)] = parts else {
-        return true;
+        return None;
     };
     let start = orbit.initial_state();
     let begins = solution.steps.first().and_then(|step| step.y.first());
     // It may have begun in another coordinate, next to a dead point.
     if begins != Some(&start.q) || !solution.contact_events.is_empty() {
-        return true;
+        return None;
     }
     let in_first = |step: &&OdeState| step.t - start.t <= orbit.period;
-    let steps = solution.steps.iter().filter(in_first);
-    let coordinates = steps.filter_map(|step| Some((step.t, step.y.first().copied()?)));
-    let (mut moved, mut last) = (0.0_f64, None);
-    for (t, q) in coordinates {
-        moved = moved.max((q - start.q).abs());
-        last = Some((t, q));
+    let steps: Vec<&OdeState> = solution.steps.iter().take_while(in_first).collect();
+    let moved = steps.iter().filter_map(|step| step.y.first());
+    let moved = moved.fold(0.0_f64, |most, q| most.max((q - start.q).abs()));
+    let [mut far, mut fast] = [0.0_f64; 2];
+    for step in steps.iter().rev().step_by(steps.len().div_ceil(COMPARED)) {
+        let there = orbit.state_at(step.t);
+        far = far.max((there.q - step.y.first()?).abs());
+        fast = fast.max(there.q_dot.abs());
     }
-    let missed = last.map_or(0.0, |(t, q)| (orbit.state_at(t).q - q).abs());
-    missed <= MISSED * moved
+    Some([far, fast, moved])
+}
+
+/// Whether a motion is on an orbit, within the estimated errors of both. A second run at a smaller tolerance comes closer to the orbit,
+/// unless that missed a peak of the inertia: then both runs are as far from it.
+fn is_followed(
+    orbit: &Orbit,
+    (parts, second): (&[(usize, Solution)], Option<&[(usize, Solution)]>),
+    period_error: f64,
+) -> bool {
+    let Some([far, fast, moved]) = missed(orbit, parts) else {
+        return true;
+    };
+    match second.and_then(|parts| missed(orbit, parts)) {
+        Some([finer, ..]) => {
+            let rounding = fast * period_error + ROUNDING * moved;
+            finer <= estimate::over_motion(&[far], &[finer], rounding)
+        }
+        None => far <= MISSED * moved,
+    }
 }
 
 /// Whether an event ended a motion within half its period.
@@ -189,7 +213,7 @@ fn is_ended_before_it_turns(problem: &impl MotionProblem, parts: &[(usize, Solut
 /// The period of a motion with its error, where it has one.
 fn period_text(
     problem: &impl MotionProblem,
-    parts: &[(usize, Solution)],
+    (parts, second): (&[(usize, Solution)], Option<&[(usize, Solution)]>),
     record: &mut Record,
 ) -> String {
     let orbit = match problem.orbit(1.0) {
@@ -200,11 +224,12 @@ fn period_text(
         }
         Err(_) => return String::new(),
     };
-    if !is_followed(&orbit, parts) {
+    let error = estimate::of_period(&orbit, |factor| problem.orbit(factor));
+    if !is_followed(&orbit, (parts, second), *error.as_ref().unwrap_or(&0.0)) {
         return "; its period is not known: the quadrature and the integrated motion disagree"
             .to_owned();
     }
-    let period = match estimate::of_period(&orbit, |factor| problem.orbit(factor)) {
+    let period = match error {
         Ok(error) => {
             record.add_within("period", "s", orbit.period, error);
             let period = digits_within(orbit.period, error, 13);

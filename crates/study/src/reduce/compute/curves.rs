@@ -8,11 +8,14 @@ use crate::reduce::compute::{ReducedScene, UnitLoadCurves};
 use crate::trajectory::compute::{force_scales, reject_unknown_variables};
 use dwell_findings::{Column, Table};
 use dwell_kinetostatics::Coefficients;
-use dwell_scene::Scene;
+use dwell_scene::{Scene, SceneError};
 use rayon::prelude::*;
 
 /// Positions of the table if their number is not given: half a degree apart over a revolution.
 const DEFAULT_POINTS: usize = 721;
+
+/// Numbers that a table may have: they take some seconds and two gigabytes.
+const MAX_NUMBERS: usize = 30_000_000;
 
 /// The reduced coefficients over the range.
 #[derive(Debug, Clone)]
@@ -187,6 +190,27 @@ pub(crate) fn coefficient_units(unit: &str, is_angle: bool) -> [&'static str; 2]
     }
 }
 
+/// Each load has a column of w and one of c for each reaction: many of them are more than a computer holds.
+fn reject_large_table(
+    prepared: &dyn ReducedScene,
+    points: Option<usize>,
+) -> Result<(), StudyError> {
+    let (reactions, loads) = (prepared.reaction_units().len(), prepared.load_names().len());
+    let columns = 4 + 2 * reactions + loads * (1 + reactions);
+    let rows = points.unwrap_or(DEFAULT_POINTS);
+    if columns.saturating_mul(rows) <= MAX_NUMBERS {
+        return Ok(());
+    }
+    let message = format!(
+        "a table of {rows} positions and {columns} columns is too large: {loads} loads have a w each, and a c for each of {reactions} reactions"
+    );
+    let help = format!(
+        "reduce the number of positions with --points (here at most {}), or list the reactions that are needed in [requests]",
+        MAX_NUMBERS / columns
+    );
+    Err(SceneError::without_labels(message, Some(help)).into())
+}
+
 /// The reduced parameters of a scene over its range.
 pub struct Reduction<P> {
     /// The scene and its model.
@@ -217,6 +241,7 @@ impl<P: ReducedScene> Reduction<P> {
     /// # Errors
     /// [`StudyError`] when a position of the range cannot be evaluated.
     pub(crate) fn new(prepared: P, points: Option<usize>) -> Result<Self, StudyError> {
+        reject_large_table(&prepared, points)?;
         let curves = ReducedCurves::new(&prepared, points)?;
         let unit_loads = prepared.unit_loads(&curves.q)?;
         let errors = RoundingErrors::new(&prepared, &curves)?;

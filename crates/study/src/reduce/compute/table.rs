@@ -157,7 +157,7 @@ fn explain_table_error(
                 help,
             )
         }
-        TableError::NotSmooth { .. } => (
+        TableError::NotSmooth { .. } | TableError::TooNarrow { .. } => (
             error.to_string(),
             "require less accuracy, or a smaller part of the range with --table-from and --table-to, away from limit positions",
         ),

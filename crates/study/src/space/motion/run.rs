@@ -37,11 +37,13 @@ pub(crate) struct Run {
     pub(super) found: Option<(Difference, (String, Record))>,
 }
 
-/// By free coordinate: its error, and whether that is no result; then the error of the energy as a part of the largest.
+/// By free coordinate: its error, and whether that is no result; then the errors of the energy balance and of the kinetic energy as parts of the largest.
 #[derive(Default)]
 pub(super) struct Errors {
     pub(super) coordinates: Vec<f64>,
     pub(super) energy: f64,
+    /// The same of the kinetic energy itself, which differs in phase, too.
+    pub(super) kinetic: f64,
     /// The largest, of angles in rad, of lengths relative to their change.
     pub(super) largest: f64,
 }
@@ -282,6 +284,8 @@ impl SpaceMotionProblem<'_> {
             );
             errors.energy = drift / kinetic + 4.0 * f64::EPSILON;
             errors.largest = errors.largest.max(errors.energy);
+            let difference = error_of(&pairs, |s| s.extra_values[0], 0.0) / kinetic;
+            errors.kinetic = errors.energy.max(difference);
         }
         Some(errors)
     }

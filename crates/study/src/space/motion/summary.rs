@@ -37,7 +37,7 @@ impl SpaceMotionProblem<'_> {
         text += &NamedContacts::new(self).describe(parts, second, &mut record);
         text += &self.describe_changes(run);
         text += &cost_line(&run.motion.statistics(), &mut record);
-        text += &class_line(self, parts, |_| None, &mut record);
+        text += &class_line(self, (parts, second), |_| None, &mut record);
         text += &self.describe_energy(run, &mut record);
         text += &self.describe_errors(run, &mut record);
         (text, record)
@@ -93,14 +93,14 @@ impl SpaceMotionProblem<'_> {
             record.add(format!("error.{name}"), unit, *error);
             text += &format!(" {error:.1e} {unit} in {name},");
         }
-        record.add("error.kinetic_energy", "", errors.energy);
+        record.add("error.kinetic_energy", "", errors.kinetic);
         let from = match run.orbit {
             Some(_) => "from the rounding of its start",
             None => "from a second run at a tenth of the tolerance",
         };
         format!(
             "{text} {:.1e} of the largest kinetic energy, {from}\n",
-            errors.energy
+            errors.kinetic
         )
     }
 

@@ -223,9 +223,10 @@ impl<'a> EarlyStop<'a> {
             Some(_) => String::new(),
             None => format!(" at t = {} s", digits(self.last_reached.t, 6)),
         };
-        let why = match limit.change_point {
-            true => "another assembly mode begins there",
-            false => "the actuator cannot move on there",
+        let why = match (limit.change_point, limit.separation) {
+            (true, Some(_)) => "they are too close for positions beyond it",
+            (true, None) => "another assembly mode begins there",
+            (false, _) => "the actuator cannot move on there",
         };
         let joints = match limit.group < plan.group_methods().len() {
             true => plan.group_joints(limit.group),
