@@ -13,6 +13,11 @@ const MIN_WINDOW: usize = 5;
 /// A pace at which the rest takes so many times the steps allowed is too slow: what only begins slowly becomes faster by less.
 const TOO_MANY: f64 = 20.0;
 
+/// Switches are counted by so many.
+const SWITCHES: usize = 2000;
+/// As `TOO_MANY` steps, each of which costs less than a switch.
+const TOO_MANY_SWITCHES: f64 = 5.0;
+
 /// The steps of an integration, and how far the last of them have led.
 #[derive(Debug, Clone)]
 pub(crate) struct Pace {
@@ -54,13 +59,25 @@ impl Pace {
     /// [`DynamicsError::TooSlow`].
     #[inline]
     pub(crate) fn step_taken(&mut self, t: f64) -> Result<()> {
+        self.count((t, TOO_MANY), self.max_steps / WINDOWS)
+    }
+
+    /// The same after a switch, where switches are counted instead of steps: next to where they accumulate there is one in each step.
+    ///
+    /// # Errors
+    /// [`DynamicsError::TooSlow`].
+    pub(crate) fn switch_passed(&mut self, t: f64) -> Result<()> {
+        self.count((t, TOO_MANY_SWITCHES), SWITCHES)
+    }
+
+    #[inline]
+    fn count(&mut self, (t, times): (f64, f64), window: usize) -> Result<()> {
         self.steps += 1;
-        let window = self.max_steps / WINDOWS;
         if window < MIN_WINDOW || !self.steps.is_multiple_of(window) {
             return Ok(());
         }
         let advance = t - std::mem::replace(&mut self.from, t);
-        if self.steps == window || !self.is_too_slow((t, TOO_MANY), window, advance) {
+        if self.steps == window || !self.is_too_slow((t, times), window, advance) {
             return Ok(());
         }
         Err(DynamicsError::TooSlow {

@@ -172,27 +172,6 @@ impl SwitchMonitor {
         self.switches.iter().map(|s| s.piece).collect()
     }
 
-    /// Growth of a switch's margin in a small step along the rates.
-    fn margin_growth(
-        &mut self,
-        k: usize,
-        system: &mut dyn OdeSystem,
-        at: &OdeState,
-    ) -> Result<f64> {
-        let mut margin = |system: &mut dyn OdeSystem, t: f64, y: &[f64]| -> Result<f64> {
-            system.switch_values(t, y, &mut self.values)?;
-            let margin = self.switches[k].margin(self.values[k]);
-            Ok(margin.unwrap_or(f64::NAN))
-        };
-        let before = margin(system, at.t, &at.y)?;
-        let mut rates = vec![0.0; at.y.len()];
-        system.rhs(at.t, &at.y, &mut rates)?;
-        let h = PROBE * self.step;
-        let y = at.y.iter().zip(&rates).map(|(y, rate)| y + h * rate);
-        let after = margin(system, at.t + h, &y.collect::<Vec<_>>())?;
-        Ok(after - before)
-    }
-
     /// Where the integration begins anew because of what happened in a step: a switch was passed, or one that was not
     /// held now is.
     ///
@@ -354,14 +333,21 @@ impl SwitchMonitor {
         if self.sliding.is_some() {
             return self.pass_while_sliding(crossing, &all, system);
         }
-        self.settle(&mut changed, system, &crossing.state)?;
+        let none = self.marked(std::iter::empty());
+        self.settle(&none, &mut changed, system, &crossing.state)?;
         if self.slide_from_crossing(before, crossing, system)? {
             return Ok(());
         }
         let at = &crossing.state;
         self.hold(system);
-        for &(k, _) in &crossing.passed {
-            let returns = self.margin_growth(k, system, at)? < 0.0;
+        let rates = self.rates_at(system, at)?;
+        for &(k, upward) in &crossing.passed {
+            // Not by a step along the rates: it may lead through a window.
+            let returns = if upward {
+                rates[k][1] < 0.0
+            } else {
+                rates[k][1] > 0.0
+            };
             let switch = &mut self.switches[k];
             let again = |last: f64| are_together(at.t, last);
             if returns || switch.switched.is_some_and(again) {
