@@ -15,8 +15,8 @@ const TOO_MANY: f64 = 20.0;
 
 /// Switches are counted by so many.
 const SWITCHES: usize = 2000;
-/// As `TOO_MANY` steps, each of which costs less than a switch.
-const TOO_MANY_SWITCHES: f64 = 5.0;
+/// As `TOO_MANY`, of switches, each of which costs more than a step.
+const TOO_MANY_SWITCHES: f64 = 1.0;
 
 /// The steps of an integration, and how far the last of them have led.
 #[derive(Debug, Clone)]

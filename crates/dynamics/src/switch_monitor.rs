@@ -260,6 +260,10 @@ impl SwitchMonitor {
             beyond.get_or_insert(values[k]);
             Ok(switch.margin(values[k]).unwrap_or(f64::NAN))
         };
+        if margin < 0.0 && !was_inside && margin == earlier[0].1 {
+            // It rests on its bound, but for the rounding of where it was passed.
+            return Ok(None);
+        }
         let found = if margin < 0.0 && !was_inside {
             // It was passed, within a rounding, where the integration began, or soon behind.
             match first_inside([earlier[0].0, t], &mut margin_at)? {
@@ -341,6 +345,7 @@ impl SwitchMonitor {
         let at = &crossing.state;
         self.hold(system);
         let rates = self.rates_at(system, at)?;
+        let mut released = self.marked(std::iter::empty());
         for &(k, upward) in &crossing.passed {
             // Not by a step along the rates: it may lead through a window.
             let returns = if upward {
@@ -354,8 +359,16 @@ impl SwitchMonitor {
                 switch.piece = None;
                 switch.observed = (None, 0);
                 switch.chatter = Some(0);
+                released[k] = true;
             }
             switch.switched = Some(at.t);
+        }
+        // What depends on it would hold what it has released.
+        for (k, switch) in self.switches.iter_mut().enumerate() {
+            if switch.depends_on(&released) {
+                (switch.piece, switch.observed) = (None, (None, 0));
+                released[k] = true;
+            }
         }
         self.hold(system);
         Ok(())

@@ -164,6 +164,26 @@ fn decisions_at_rest_agree_with_the_motion_that_follows() {
     }
 }
 
+/// A speed that rests where its couple ends, whichever side of that its rounding is on.
+#[test]
+fn a_speed_rests_on_the_switch_that_ends_its_couple() {
+    let machine = wheel_under("2*abs(sign(floor(v - 1.5)))");
+    for method in Method::ALL {
+        for k in 0..20 {
+            let options = Options::new(method, 1e-9 * 0.7_f64.powi(k));
+            let y = machine.initial_state(&[0.0], &[0.0]);
+            let start = OdeState { t: 0.0, y };
+            let solution = solve(&machine, machine.model(), &start, 2.0, &options, &[]);
+            let solution = solution.expect("a start").completed().expect("a motion");
+            let [q, v] = end_state(&solution);
+            assert!(
+                (v - 1.5).abs() < 1e-7 && (q - 1.875).abs() < 1e-7,
+                "{method:?} {k}: {q} {v}"
+            );
+        }
+    }
+}
+
 /// What switches exactly where the motion begins has switched.
 #[test]
 fn a_switch_at_the_start_has_switched() {
