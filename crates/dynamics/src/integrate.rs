@@ -15,6 +15,7 @@ use crate::error::{DynamicsError, Result};
 use crate::integration_parts::{Part, Parts, check_interval};
 use crate::ode::{DenseOutput, OdeState, OdeSystem, Step, StepControl, StepObserver, Termination};
 use crate::options::{Method, Options};
+use crate::pace::Pace;
 use crate::sliding_system::{SharedSystem, SlidingSystem};
 use crate::switch_monitor::{Crossing, SwitchMonitor};
 use crate::time_pieces::TimePieces;
@@ -113,7 +114,7 @@ fn integrate_held(
         contacts.settle(system, &mut whole.start)?;
     }
     let mut monitor = SwitchMonitor::new(system, &whole.start, span)?;
-    let longest = whole.options.max_step;
+    let (longest, mut pace) = (whole.options.max_step, Pace::of_switches(&whole));
     system.record_mode(&whole.start, &monitor.pieces(), monitor.sliding());
     let shared = SharedSystem::new(system);
     let mut parts = Parts::new(whole);
@@ -161,13 +162,18 @@ fn integrate_held(
         let Some(event) = event.filter(|_| !is_ended) else {
             break;
         };
-        if matches!(event, HeldEvent::Switch(_)) || event.state().t <= from {
+        let is_switch = matches!(event, HeldEvent::Switch(_));
+        if is_switch || event.state().t <= from {
             // Behind a switch of a load the rates may be those of another time scale; and with the step that has led beyond
             // an event at its very start it would be met again.
             step.set(None);
         }
+        let counted = match is_switch {
+            true => pace.step_taken(event.state().t),
+            false => Ok(()),
+        };
         let passed = pass_event(&shared, &mut monitor, contacts.as_mut(), event);
-        match (passed, &mut parts.whole) {
+        match (counted.and(passed), &mut parts.whole) {
             (Ok(state), _) => {
                 let mut passed = SlidingSystem::new(&shared, None);
                 passed.record_mode(&state, &monitor.pieces(), monitor.sliding());

@@ -18,6 +18,10 @@ const TOO_MANY: f64 = 20.0;
 const STEPS: [usize; 2] = [10_000, 1000];
 /// The same of short windows: what is stiff or moves fast for a while needs less.
 const HOPELESS: f64 = 1000.0;
+/// Switches of a window where switches are counted instead of steps: next to where they accumulate there is one in each step.
+const SWITCHES: usize = 2000;
+/// As `TOO_MANY`, of switches, each of which costs more than a step.
+const TOO_MANY_SWITCHES: f64 = 1.0;
 
 /// The steps of an integration, and how far the last of them have led.
 #[derive(Debug, Clone)]
@@ -31,6 +35,8 @@ pub(crate) struct Pace {
     windows: [Option<usize>; 2],
     /// When the windows began, s.
     from: [f64; 2],
+    /// As `TOO_MANY`, of what is counted.
+    too_many: f64,
 }
 
 impl Pace {
@@ -54,6 +60,16 @@ impl Pace {
                 long,
             ],
             from: [of.start.t; 2],
+            too_many: TOO_MANY,
+        }
+    }
+
+    /// The pace of the switches of an integration: each counts as a step.
+    pub(crate) fn of_switches(of: &Part) -> Self {
+        Self {
+            windows: [None, Some(SWITCHES)],
+            too_many: TOO_MANY_SWITCHES,
+            ..Self::new(of, None)
         }
     }
 
@@ -77,7 +93,7 @@ impl Pace {
         let (steps, max_steps) = (self.steps, self.max_steps);
         if let Some((window, advance)) = self.full(1, t)
             && steps > window
-            && self.is_too_slow((t, TOO_MANY), window, advance)
+            && self.is_too_slow((t, self.too_many), window, advance)
         {
             let needed = (self.end - t) / advance * window as f64;
             return Err(DynamicsError::TooSlow {

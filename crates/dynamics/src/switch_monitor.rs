@@ -172,27 +172,6 @@ impl SwitchMonitor {
         self.switches.iter().map(|s| s.piece).collect()
     }
 
-    /// Growth of a switch's margin in a small step along the rates.
-    fn margin_growth(
-        &mut self,
-        k: usize,
-        system: &mut dyn OdeSystem,
-        at: &OdeState,
-    ) -> Result<f64> {
-        let mut margin = |system: &mut dyn OdeSystem, t: f64, y: &[f64]| -> Result<f64> {
-            system.switch_values(t, y, &mut self.values)?;
-            let margin = self.switches[k].margin(self.values[k]);
-            Ok(margin.unwrap_or(f64::NAN))
-        };
-        let before = margin(system, at.t, &at.y)?;
-        let mut rates = vec![0.0; at.y.len()];
-        system.rhs(at.t, &at.y, &mut rates)?;
-        let h = PROBE * self.step;
-        let y = at.y.iter().zip(&rates).map(|(y, rate)| y + h * rate);
-        let after = margin(system, at.t + h, &y.collect::<Vec<_>>())?;
-        Ok(after - before)
-    }
-
     /// Where the integration begins anew because of what happened in a step: a switch was passed, or one that was not
     /// held now is.
     ///
@@ -281,6 +260,10 @@ impl SwitchMonitor {
             beyond.get_or_insert(values[k]);
             Ok(switch.margin(values[k]).unwrap_or(f64::NAN))
         };
+        if margin < 0.0 && !was_inside && margin == earlier[0].1 {
+            // It rests on its bound, but for the rounding of where it was passed.
+            return Ok(None);
+        }
         let found = if margin < 0.0 && !was_inside {
             // It was passed, within a rounding, where the integration began, or soon behind.
             match first_inside([earlier[0].0, t], &mut margin_at)? {
@@ -354,22 +337,38 @@ impl SwitchMonitor {
         if self.sliding.is_some() {
             return self.pass_while_sliding(crossing, &all, system);
         }
-        self.settle(&mut changed, system, &crossing.state)?;
+        let none = self.marked(std::iter::empty());
+        self.settle(&none, &mut changed, system, &crossing.state)?;
         if self.slide_from_crossing(before, crossing, system)? {
             return Ok(());
         }
         let at = &crossing.state;
         self.hold(system);
-        for &(k, _) in &crossing.passed {
-            let returns = self.margin_growth(k, system, at)? < 0.0;
+        let rates = self.rates_at(system, at)?;
+        let mut released = self.marked(std::iter::empty());
+        for &(k, upward) in &crossing.passed {
+            // Not by a step along the rates: it may lead through a window.
+            let returns = if upward {
+                rates[k][1] < 0.0
+            } else {
+                rates[k][1] > 0.0
+            };
             let switch = &mut self.switches[k];
             let again = |last: f64| are_together(at.t, last);
             if returns || switch.switched.is_some_and(again) {
                 switch.piece = None;
                 switch.observed = (None, 0);
                 switch.chatter = Some(0);
+                released[k] = true;
             }
             switch.switched = Some(at.t);
+        }
+        // What depends on it would hold what it has released.
+        for (k, switch) in self.switches.iter_mut().enumerate() {
+            if switch.depends_on(&released) {
+                (switch.piece, switch.observed) = (None, (None, 0));
+                released[k] = true;
+            }
         }
         self.hold(system);
         Ok(())

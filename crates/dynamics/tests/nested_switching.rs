@@ -135,6 +135,68 @@ fn a_window_of_a_smooth_function_is_met() {
     );
 }
 
+/// A window of a speed that the motion runs through within a millionth of the time of a step.
+#[test]
+fn a_window_of_the_speed_is_met() {
+    let half = 1e-6 * std::f64::consts::LN_2.sqrt();
+    let text = format!("{INERTIA}*if(exp(-((v-0.5)/1e-6)^2) > 0.5, -1000, -1)");
+    let [until, inside] = [0.5 - half, 2.0 * half / 1000.0];
+    let behind = [1.0 - until - inside, 0.5 - half];
+    let at = |t: f64, [q, v]: [f64; 2], a: f64| [q + v * t + 0.5 * a * t * t, v + a * t];
+    let entered = at(until, [0.0, 1.0], -1.0);
+    let left = at(inside, entered, -1000.0);
+    assert!((left[1] - behind[1]).abs() < 1e-12);
+    check(&text, 1.0, 1.0, at(behind[0], left, -1.0), 10.0);
+}
+
+/// Which decisions hold at rest shows in the motion that follows from all of them together.
+#[test]
+fn decisions_at_rest_agree_with_the_motion_that_follows() {
+    for (text, couple) in [
+        ("step(abs(max(0, 2*v)))", 1.0),
+        ("1 - 3*sign(abs(2*v))", -2.0),
+        ("if(max(0, v) + v > 0, 2, 1)", 2.0),
+        ("1 - 5*sign(max(0, v))", 0.0),
+        ("2 - step(-min(0, v))*sign(max(v, 0))", 1.0),
+    ] {
+        let a = couple / INERTIA;
+        check(text, 0.0, 2.0, [2.0 * a, 2.0 * a], 10.0);
+    }
+}
+
+/// A speed that rests where its couple ends, whichever side of that its rounding is on.
+#[test]
+fn a_speed_rests_on_the_switch_that_ends_its_couple() {
+    let machine = wheel_under("2*abs(sign(floor(v - 1.5)))");
+    for method in Method::ALL {
+        for k in 0..20 {
+            let options = Options::new(method, 1e-9 * 0.7_f64.powi(k));
+            let y = machine.initial_state(&[0.0], &[0.0]);
+            let start = OdeState { t: 0.0, y };
+            let solution = solve(&machine, machine.model(), &start, 2.0, &options, &[]);
+            let solution = solution.expect("a start").completed().expect("a motion");
+            let [q, v] = end_state(&solution);
+            assert!(
+                (v - 1.5).abs() < 1e-7 && (q - 1.875).abs() < 1e-7,
+                "{method:?} {k}: {q} {v}"
+            );
+        }
+    }
+}
+
+/// What switches exactly where the motion begins has switched.
+#[test]
+fn a_switch_at_the_start_has_switched() {
+    let a = 1.0 / INERTIA;
+    for text in [
+        "floor(min(sign(sin(6*t)), 3 + q))",
+        "if(t <= 0, 5, 1)",
+        "step(max(0, sign(t)) - 0.5)",
+    ] {
+        check(text, 1.0, 0.5, [0.5 + 0.125 * a, 1.0 + 0.5 * a], 1.0);
+    }
+}
+
 /// A pulse of work W between the points of a step: ½ J v² grows by W.
 #[test]
 fn a_narrow_pulse_of_the_angle_is_met() {

@@ -21,6 +21,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod deciding;
 pub(crate) mod enclosure;
 pub(crate) mod interval;
 mod scan;

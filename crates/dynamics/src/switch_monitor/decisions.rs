@@ -11,6 +11,19 @@ use dwell_laws::SwitchKind;
 /// Within this part of the last step a function that an event leaves beside its bound is on it, but for rounding.
 const ON_BOUND: f64 = 1e-13;
 
+/// So many functions at a time are tried on all pieces on whose bound they are; others where their own rates lead.
+const MOST_TIES: usize = 6;
+
+/// Decisions that are being taken.
+struct Choice<'c> {
+    /// By switch: whether it is to be decided, and whether it has changed.
+    open: &'c [bool],
+    changed: Vec<bool>,
+    /// The functions on a bound with the signs of the rates that agree with their pieces, and how many there may be.
+    ties: Vec<(usize, f64)>,
+    most: usize,
+}
+
 impl SwitchMonitor {
     /// Holds the pieces in which a state is.
     pub(super) fn decide(&mut self, system: &mut dyn OdeSystem, at: &OdeState) -> Result<()> {
@@ -34,10 +47,8 @@ impl SwitchMonitor {
         if self.slide_from_rest(&moving, system, at)? {
             return Ok(());
         }
-        for k in moving {
-            self.decide_at_zero(k, system, at)?;
-        }
-        self.settle(&mut changed, system, at)?;
+        let moving = self.marked(moving.into_iter());
+        self.settle(&moving, &mut changed, system, at)?;
         self.hold(system);
         Ok(())
     }
@@ -56,23 +67,29 @@ impl SwitchMonitor {
         }
     }
 
-    /// Takes the decisions anew that depend on others which have changed; what changes by that is marked, too.
+    /// Takes the decisions anew that are `open` or depend on others which have changed, so that the motion on all pieces agrees with them;
+    /// what changes by that is marked, too. Where no motion agrees, each is decided by its own rate.
     ///
     /// # Errors
     /// Where the state cannot be evaluated.
     pub(super) fn settle(
         &mut self,
+        open: &[bool],
         changed: &mut [bool],
         system: &mut dyn OdeSystem,
         at: &OdeState,
     ) -> Result<()> {
-        for k in 0..changed.len() {
-            if self.switches[k].depends_on(changed) {
-                let before = self.switches[k].piece;
-                self.decide_anew(k, changed[k], system, at)?;
-                changed[k] = self.switches[k].piece != before;
-            }
+        let mut choice = Choice {
+            open,
+            changed: changed.to_vec(),
+            ties: Vec::new(),
+            most: MOST_TIES,
+        };
+        if !self.choose(0, &mut choice, system, at)? {
+            choice.most = 0;
+            self.choose(0, &mut choice, system, at)?;
         }
+        changed.copy_from_slice(&choice.changed);
         Ok(())
     }
 
@@ -88,7 +105,7 @@ impl SwitchMonitor {
         let near = ON_BOUND * self.step.max(crossing.state.t.abs());
         let inner = |(k, _): &(usize, bool)| self.switches[*k].inner.clone();
         for j in crossing.passed.iter().flat_map(inner).collect::<Vec<_>>() {
-            let [value, rate] = self.motion_of(j, system, &crossing.state)?;
+            let [value, rate] = self.rates_at(system, &crossing.state)?[j];
             let soon = value + near * rate;
             let is_beyond = self.switches[j]
                 .margin(soon)
@@ -100,31 +117,95 @@ impl SwitchMonitor {
         Ok(())
     }
 
-    /// Decides a switch by its value on the pieces of its operands; one that is on its bound, or was passed, by where it
-    /// leads.
-    fn decide_anew(
+    /// Decides the switches from one on; whether the motion agrees.
+    fn choose(
+        &mut self,
+        from: usize,
+        choice: &mut Choice<'_>,
+        system: &mut dyn OdeSystem,
+        at: &OdeState,
+    ) -> Result<bool> {
+        let is_due = |k: &usize| choice.open[*k] || self.switches[*k].depends_on(&choice.changed);
+        let Some(k) = (from..self.switches.len()).find(is_due) else {
+            return Ok(choice.most == 0 || self.agrees(&choice.ties, system, at)?);
+        };
+        let (before, was_passed, ties) =
+            (self.switches[k].piece, choice.changed[k], choice.ties.len());
+        self.switches[k].piece = None;
+        let pieces = self.possible_pieces(k, was_passed, system, at)?;
+        let is_tie = pieces.len() > 1;
+        let tried = if ties < choice.most { pieces.len() } else { 1 };
+        for &(piece, rate_sign) in &pieces[..tried] {
+            self.switches[k].piece = piece;
+            choice.changed[k] = piece != before;
+            choice.ties.extend(is_tie.then_some((k, rate_sign)));
+            if self.choose(k + 1, choice, system, at)? {
+                let switch = &mut self.switches[k];
+                (switch.switched, switch.chatter, switch.is_inside) = (None, None, false);
+                return Ok(true);
+            }
+            choice.ties.truncate(ties);
+        }
+        (self.switches[k].piece, choice.changed[k]) = (before, was_passed);
+        Ok(false)
+    }
+
+    /// The pieces on which a function may be, with the sign of its rate there: by its value on the pieces of its operands; on its bound, or
+    /// where it was passed, that to which it leads first.
+    fn possible_pieces(
         &mut self,
         k: usize,
         is_passed: bool,
         system: &mut dyn OdeSystem,
         at: &OdeState,
-    ) -> Result<()> {
-        self.switches[k].piece = None;
+    ) -> Result<Vec<(Option<f64>, f64)>> {
         self.hold(system);
         let near = if is_passed { PROBE } else { ON_BOUND };
-        let [value, rate] = self.motion_of(k, system, at)?;
-        let step = near * self.step;
-        let switch = &mut self.switches[k];
-        let by_value = switch.kind.piece_at(value + step * rate);
-        switch.piece = by_value;
-        // There a rounding would choose the piece whose rates are asked.
-        if switch.kind == SwitchKind::Zero && value.abs() <= step * rate.abs() {
-            self.decide_at_zero(k, system, at)?;
+        let [value, rate] = self.rates_at(system, at)?[k];
+        let reach = near * self.step * rate;
+        let kind = &self.switches[k].kind;
+        let by_rate = kind.piece_at(value + reach);
+        let whole = value.round();
+        Ok(match kind {
+            SwitchKind::Zero if value.abs() <= reach.abs() => {
+                let sides = match by_rate {
+                    Some(side) => [side, -side, 0.0],
+                    None => [0.0, 1.0, -1.0],
+                };
+                sides.map(|side| (Some(side), side)).to_vec()
+            }
+            SwitchKind::Integers if (value - whole).abs() <= reach.abs() => {
+                let mut sides = vec![(Some(whole), 1.0), (Some(whole - 1.0), -1.0)];
+                if by_rate < Some(whole) {
+                    sides.reverse();
+                }
+                sides
+            }
+            _ => vec![(by_rate, 0.0)],
+        })
+    }
+
+    /// Whether the rates of some functions soon behind a state, on the pieces that are held, have these signs.
+    fn agrees(
+        &mut self,
+        ties: &[(usize, f64)],
+        system: &mut dyn OdeSystem,
+        at: &OdeState,
+    ) -> Result<bool> {
+        if ties.is_empty() {
+            return Ok(true);
         }
-        let switch = &mut self.switches[k];
-        switch.piece = switch.piece.or(by_value);
-        (switch.switched, switch.chatter, switch.is_inside) = (None, None, false);
-        Ok(())
+        self.hold(system);
+        let rates = self.soon_behind(system, at)?;
+        // A function that rests on a whole number is on the piece above it.
+        Ok(ties.iter().all(|&(k, sign)| {
+            let [_, rate] = rates[k];
+            match self.switches[k].kind {
+                SwitchKind::Integers => (rate < 0.0) == (sign < 0.0),
+                _ if sign == 0.0 => rate == 0.0,
+                _ => rate * sign > 0.0,
+            }
+        }))
     }
 
     /// Holds a function that is zero on zero if it does not move there on either side; whether it does.
@@ -141,27 +222,6 @@ impl SwitchMonitor {
         Ok(rests)
     }
 
-    /// Holds the side of zero on which its own rates lead further into it; where both do, the one to which the operation at
-    /// zero leads, and zero itself where that holds it there.
-    fn decide_at_zero(
-        &mut self,
-        k: usize,
-        system: &mut dyn OdeSystem,
-        at: &OdeState,
-    ) -> Result<()> {
-        let mut rate = |side: f64| self.rate_on(side, k, system, at);
-        let [below, level, above] = [rate(-1.0)?, rate(0.0)?, rate(1.0)?];
-        let on_zero = (level == 0.0).then_some(0.0);
-        self.switches[k].piece = match [below < 0.0, above > 0.0] {
-            [true, false] => Some(-1.0),
-            [false, true] => Some(1.0),
-            [true, true] => on_zero.or((!level.is_nan()).then_some(level.signum())),
-            [false, false] => on_zero,
-        };
-        self.hold(system);
-        Ok(())
-    }
-
     /// The rate of a function soon behind a state, where it is held on a side of zero.
     fn rate_on(
         &mut self,
@@ -172,26 +232,30 @@ impl SwitchMonitor {
     ) -> Result<f64> {
         self.switches[k].piece = Some(side);
         self.hold(system);
+        let [_, rate] = self.soon_behind(system, at)?[k];
+        Ok(rate)
+    }
+
+    /// The values and the rates of all functions soon behind a state, on the pieces that are held.
+    fn soon_behind(&mut self, system: &mut dyn OdeSystem, at: &OdeState) -> Result<Vec<[f64; 2]>> {
         let mut rates = vec![0.0; at.y.len()];
         system.rhs(at.t, &at.y, &mut rates)?;
         let h = PROBE * self.step;
         let y = at.y.iter().zip(&rates).map(|(y, rate)| y + h * rate);
         let (t, y) = (at.t + h, y.collect());
-        let [_, rate] = self.motion_of(k, system, &OdeState { t, y })?;
-        Ok(rate)
+        self.rates_at(system, &OdeState { t, y })
     }
 
-    /// The value and the rate of a function on the pieces that are held.
-    fn motion_of(
+    /// The values and the rates of all functions on the pieces that are held.
+    pub(super) fn rates_at(
         &mut self,
-        k: usize,
         system: &mut dyn OdeSystem,
         at: &OdeState,
-    ) -> Result<[f64; 2]> {
+    ) -> Result<Vec<[f64; 2]>> {
         let mut rates = vec![0.0; at.y.len()];
         system.rhs(at.t, &at.y, &mut rates)?;
         let mut functions = vec![[f64::NAN; 2]; self.switches.len()];
         system.switch_rates(at.t, &at.y, &rates, &mut functions)?;
-        Ok(functions[k])
+        Ok(functions)
     }
 }

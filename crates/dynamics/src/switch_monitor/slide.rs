@@ -1,6 +1,6 @@
 //! Where a motion begins to slide along a switch, and where it leaves it.
 
-use super::{Crossing, SwitchMonitor};
+use super::{Crossing, PROBE, SwitchMonitor};
 use crate::error::{DynamicsError, Result};
 use crate::ode::{OdeState, OdeSystem, Step};
 use crate::sliding::{SideRates, Sliding};
@@ -96,7 +96,8 @@ impl SwitchMonitor {
         for side in &mut sides {
             self.take(side);
             let mut changed = self.marked(switches.iter().copied());
-            self.settle(&mut changed, system, at)?;
+            let none = self.marked(std::iter::empty());
+            self.settle(&none, &mut changed, system, at)?;
             *side = self.pieces();
         }
         self.take(&before);
@@ -106,11 +107,15 @@ impl SwitchMonitor {
     /// Slides along switches, if both sides lead back to the first of them and the others stay with it.
     fn slide(
         &mut self,
-        sides: [Vec<Option<f64>>; 2],
+        mut sides: [Vec<Option<f64>>; 2],
         (switches, value): (Vec<usize>, f64),
         system: &mut dyn OdeSystem,
         at: &mut OdeState,
     ) -> Result<bool> {
+        let Some(both) = BothSides::at(&sides, system, at)? else {
+            return Ok(false);
+        };
+        self.decide_beside(&mut sides, (&switches, &both), system, at)?;
         let Some(both) = BothSides::at(&sides, system, at)? else {
             return Ok(false);
         };
@@ -132,6 +137,46 @@ impl SwitchMonitor {
         self.hold(system);
         self.sliding = Some(sliding);
         Ok(true)
+    }
+
+    /// Decides what depends on a switch by its values beside it, on each side: the motions there may both lead back.
+    fn decide_beside(
+        &self,
+        sides: &mut [Vec<Option<f64>>; 2],
+        (switches, both): (&[usize], &BothSides),
+        system: &mut dyn OdeSystem,
+        at: &OdeState,
+    ) -> Result<()> {
+        // Across the switch, along the difference of the rates on its sides.
+        let [lower, upper] = &both.rates;
+        let across = |y: &f64, k: usize, h: f64| y + h * (upper[k] - lower[k]);
+        let h = PROBE * self.step;
+        let beside = [-h, h].map(|h| {
+            let all = at.y.iter().enumerate();
+            all.map(|(k, y)| across(y, k, h)).collect::<Vec<f64>>()
+        });
+        let mut values = [(); 2].map(|()| vec![f64::NAN; self.switches.len()]);
+        for (number, pieces) in sides.iter_mut().enumerate() {
+            let mut changed = self.marked(switches.iter().copied());
+            for (k, switch) in self.switches.iter().enumerate() {
+                if changed[k] || !switch.depends_on(&changed) {
+                    continue;
+                }
+                changed[k] = true;
+                system.hold_pieces(pieces);
+                for (y, values) in beside.iter().zip(&mut values) {
+                    system.switch_values(at.t, y, values)?;
+                }
+                let [below, above] = [&values[0], &values[1]];
+                let first = switches[0];
+                let is_above = (number == 1) == (above[first] > below[first]);
+                let own = [below[k], above[k]].map(|value| switch.kind.piece_at(value));
+                if own[0] != own[1] {
+                    pieces[k] = own[usize::from(is_above)].or(pieces[k]);
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Watches the switches that are the same on both sides alone.
@@ -216,7 +261,8 @@ impl SwitchMonitor {
                 *piece = if decided[k] { *piece } else { beside[k] };
             }
             self.take(side);
-            self.settle(&mut passed.to_vec(), system, at)?;
+            let none = self.marked(std::iter::empty());
+            self.settle(&none, &mut passed.to_vec(), system, at)?;
             *side = self.pieces();
         }
         self.watch_others(&sliding);

@@ -161,6 +161,7 @@ fn held_piece<S: TapeScalar>(op: Op, operands: &[S], [side, second]: Sides) -> S
     let side = side.unwrap_or(0.0);
     let choose = |above: S, below: S| if side > 0.0 { above } else { below };
     match op {
+        Op::Unary(Unary::Abs) if side == 0.0 => S::constant(0.0),
         Op::Unary(Unary::Abs) => choose(operands[0], operands[0].negate()),
         Op::Unary(Unary::Sign | Unary::Floor) => S::constant(side),
         Op::Unary(Unary::Step) => S::constant(f64::from(u8::from(side >= 0.0))),

@@ -1,24 +1,19 @@
 //! The smooth pieces of an interval, found from left to right by halving.
 
 use super::Features;
+use super::deciding::{Decision, ROUNDINGS, bracket, decide, side_within};
 use super::interval::Interval;
-use super::switching::{Pieces, Switch};
+use super::switching::{NOTHING, Pieces, Switch};
 use crate::expression::Sides;
 
 /// A piece is smooth if a parabola is as good as its terms, to this part of their largest values.
 const SMOOTHNESS: f64 = 1e-3;
-/// What is below this is nothing in any unit: the tail of a pulse where it underflows.
-const NOTHING: f64 = 1e-280;
 /// Shortest piece, relative to the ends of the whole interval.
 const MIN_WIDTH: f64 = 64.0 * f64::EPSILON;
 /// Parts of the interval in which the largest values of the terms are looked for.
 const SCALE_PARTS: usize = 128;
 /// Most cells that may be tried for one piece.
 const MAX_TRIALS: usize = 100_000;
-/// So far from where it touches a level a function is apart from it by more than a rounding, as a part of time.
-const TOUCH: f64 = 1e-7;
-/// Roundings of time on both sides of a switch in which its value is not trusted.
-const ROUNDINGS: f64 = 2.0;
 
 /// A part of the interval in which everything is smooth.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,6 +50,8 @@ pub struct Scan<'f> {
     next_knot: usize,
     from: f64,
     to: f64,
+    /// Where the whole interval begins.
+    start: f64,
     min_width: f64,
     /// By expression and term: its largest value.
     scales: Vec<Vec<f64>>,
@@ -105,6 +102,7 @@ impl<'f> Scan<'f> {
             next_knot: features.knots.partition_point(|knot| knot.x <= from),
             from,
             to,
+            start: from,
             min_width: MIN_WIDTH * from.abs().max(to.abs()),
             held: None,
             failed: false,
@@ -152,13 +150,14 @@ impl<'f> Scan<'f> {
         for (e, (source, pieces)) in self.features.expressions.iter().enumerate() {
             let sides = &mut cell.sides[e];
             for switch in &pieces.switches {
-                if sides[switch.op][switch.function].is_some() {
+                let is_decided = sides[switch.op][switch.function].is_some();
+                if is_decided || pieces.is_unused(switch.op, sides) {
                     continue;
                 }
-                match decide(pieces, switch, over, sides) {
+                match decide(pieces, switch, (over, self.start), sides) {
                     Decision::Side(side) => sides[switch.op][switch.function] = Some(side),
                     Decision::Unknown if is_short => {
-                        let side = side_within(pieces, switch, over);
+                        let side = side_within(pieces, switch, (over, self.start));
                         sides[switch.op][switch.function] = Some(side);
                     }
                     Decision::Unknown => return Examined::Halve(*source),
@@ -200,6 +199,26 @@ impl<'f> Scan<'f> {
             }
         }
         Examined::Smooth(narrowest)
+    }
+
+    /// The first instant of the first cell at which its switches are on their sides: one may switch exactly where it begins.
+    fn first_instant(&self, cell: &Cell) -> f64 {
+        const GROWTH: f64 = 16.0;
+        let rounding = (f64::EPSILON * cell.from.abs()).max(NOTHING);
+        let shifts = std::iter::successors(Some(rounding), |shift| Some(GROWTH * shift));
+        let shifts = shifts.take_while(|&shift| shift < self.min_width);
+        let instants = || std::iter::once(cell.from).chain(shifts.clone().map(|s| cell.from + s));
+        let mut first = cell.from;
+        for ((_, pieces), sides) in self.features.expressions.iter().zip(&cell.sides) {
+            for switch in &pieces.switches {
+                let Some(side) = sides[switch.op][switch.function] else {
+                    continue;
+                };
+                let is_there = |x: &f64| switch.side(pieces.switch_value(switch, *x)) == side;
+                first = instants().find(is_there).unwrap_or(first).max(first);
+            }
+        }
+        first.min(cell.to)
     }
 
     /// The piece of a smooth cell, with the laws that are smooth over shorter lengths.
@@ -298,6 +317,9 @@ impl Scan<'_> {
             }
             match self.examine(&mut cell) {
                 Examined::Smooth(source) => {
+                    if cell.from == self.start {
+                        cell.from = self.first_instant(&cell);
+                    }
                     let piece = self.piece(&cell, source);
                     return Ok(Some((piece, cell.sides)));
                 }
@@ -341,121 +363,4 @@ impl Scan<'_> {
             at,
         })
     }
-}
-
-enum Decision {
-    /// Throughout.
-    Side(f64),
-    /// One switch within, where the function has this value; its values at the ends, less that.
-    Root {
-        level: f64,
-        values: [f64; 2],
-    },
-    Unknown,
-}
-
-fn decide(pieces: &Pieces, switch: &Switch, over: Interval, sides: &[Sides]) -> Decision {
-    let enclosure = pieces.enclose_switch(switch, over, sides);
-    let [value, slope, _] = enclosure.0;
-    if let Some(number) = enclosure.number() {
-        return Decision::Side(switch.side(number));
-    }
-    let level = if switch.at_integers {
-        let (low, high) = (value.lo.floor(), value.hi.floor());
-        if low == high {
-            return Decision::Side(low);
-        }
-        if high > low + 1.0 {
-            return Decision::Unknown;
-        }
-        high
-    } else {
-        if value.lo > 0.0 || value.hi < 0.0 {
-            return Decision::Side(value.lo.signum());
-        }
-        0.0
-    };
-    let rests = || !switch.at_integers && pieces.is_zero(switch, over, sides);
-    let undecided = || match touching(pieces, switch, (over, sides), (value, level)) {
-        Some(side) => Decision::Side(side),
-        None if rests() => Decision::Side(0.0),
-        None => Decision::Unknown,
-    };
-    if slope.contains(0.0) {
-        return undecided();
-    }
-    let values = [over.lo, over.hi].map(|x| pieces.switch_value(switch, x) - level);
-    if values[0] * values[1] < 0.0 {
-        return Decision::Root { level, values };
-    }
-    // A zero at an end, or beyond it by rounding, is outside: it grows or falls throughout.
-    let sum = values[0] + values[1];
-    match (sum == 0.0 || sum.is_nan(), switch.at_integers) {
-        (true, _) => undecided(),
-        (false, true) => Decision::Side(if sum > 0.0 { level } else { level - 1.0 }),
-        (false, false) => Decision::Side(sum.signum()),
-    }
-}
-
-/// The side of a switch in an interval of a few roundings.
-fn side_within(pieces: &Pieces, switch: &Switch, over: Interval) -> f64 {
-    let side_at = |x: f64| switch.side(pieces.switch_value(switch, x));
-    match sides_around(pieces, switch, over) {
-        [before, behind] if before == behind => before,
-        _ => side_at(0.5 * (over.lo + over.hi)),
-    }
-}
-
-/// The sides of a switch before and behind a short interval.
-fn sides_around(pieces: &Pieces, switch: &Switch, over: Interval) -> [f64; 2] {
-    let apart = TOUCH * over.magnitude();
-    let ends = [over.lo - apart, over.hi + apart];
-    ends.map(|x| switch.side(pieces.switch_value(switch, x)))
-}
-
-/// The side of what touches its level in an interval, within a rounding of its value, and does not pass it.
-fn touching(
-    pieces: &Pieces,
-    switch: &Switch,
-    (over, sides): (Interval, &[Sides]),
-    (value, level): (Interval, f64),
-) -> Option<f64> {
-    /// Roundings of a function.
-    const ROUNDING: f64 = 64.0 * f64::EPSILON;
-    if over.width() > TOUCH * over.magnitude() {
-        return None;
-    }
-    let [scale, _] = pieces.largest_parts(switch, over, sides);
-    let farthest = (value.lo - level).abs().max((value.hi - level).abs());
-    let [before, behind] = sides_around(pieces, switch, over);
-    (before == behind && farthest <= ROUNDING * scale).then_some(before)
-}
-
-/// The last instant before a switch, and the first behind it, at which its function has the sign of that end.
-fn bracket(
-    pieces: &Pieces,
-    switch: &Switch,
-    level: f64,
-    over: Interval,
-    values: [f64; 2],
-) -> [f64; 2] {
-    let value = |x: f64| pieces.switch_value(switch, x) - level;
-    // The boundary between where the sign of one end holds and where it does not.
-    let boundary = |mut inside: f64, mut outside: f64, sign: f64| {
-        loop {
-            let middle = 0.5 * (inside + outside);
-            if middle == inside || middle == outside {
-                let rounding = ROUNDINGS * f64::EPSILON * inside.abs();
-                return (inside, rounding);
-            }
-            if value(middle) * sign > 0.0 {
-                inside = middle;
-            } else {
-                outside = middle;
-            }
-        }
-    };
-    let (before, rounding) = boundary(over.lo, over.hi, values[0]);
-    let (behind, _) = boundary(over.hi, over.lo, values[1]);
-    [before - rounding, behind + rounding]
 }

@@ -4,6 +4,9 @@ use super::enclosure::Enclosure;
 use super::interval::Interval;
 use crate::expression::{Binary, Expression, Op, Sides, Unary, run_held_parts, run_parts, sign};
 
+/// What is below this is nothing in any unit: the tail of a pulse where it underflows.
+pub(super) const NOTHING: f64 = 1e-280;
+
 /// An expression in one of its variables, the others unknown.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Pieces {
@@ -11,7 +14,7 @@ pub(super) struct Pieces {
     variable: usize,
     /// By operation: where that of its first operand begins.
     starts: Vec<usize>,
-    /// The functions whose zeros separate the pieces, inner ones first.
+    /// The functions whose zeros separate the pieces, inner ones first, and the condition of an `if` before its branches.
     pub(super) switches: Vec<Switch>,
     /// The terms that depend on the variable alone and on nothing else, by their last operation.
     pub(super) terms: Vec<usize>,
@@ -109,6 +112,13 @@ impl Pieces {
             let found: Vec<Switch> = found.into_iter().filter(separable).collect();
             pieces.switches.extend(found);
         }
+        // A condition is decided before what depends on it.
+        pieces
+            .switches
+            .sort_by_key(|s| match (pieces.ops[s.op], s.right) {
+                (Op::If(_), Some(right)) => right,
+                _ => s.op,
+            });
         let mut open: Vec<usize> = pieces.ops.len().checked_sub(1).into_iter().collect();
         while let Some(i) = open.pop() {
             let is_sum = matches!(
@@ -157,36 +167,79 @@ impl Pieces {
         }
     }
 
-    /// Whether a switch's function is zero throughout an interval, as `abs(t) - t` is behind 0: its slope is zero, but for the
-    /// rounding of what it is made of.
-    pub(super) fn is_zero(&self, switch: &Switch, over: Interval, sides: &[Sides]) -> bool {
-        /// Roundings of the slopes of all parts together, as a part of the largest.
-        const ROUNDING: f64 = 1e-13;
-        let middle = 0.5 * (over.lo + over.hi);
-        if [over.lo, middle, over.hi]
-            .iter()
-            .any(|&x| self.switch_value(switch, x) != 0.0)
-        {
-            return false;
-        }
-        let [_, scale] = self.largest_parts(switch, over, sides);
-        let [_, own, _] = self.enclose_switch(switch, over, sides).0;
-        own.magnitude() <= ROUNDING * scale
-    }
-
-    /// The largest value and the largest slope of all parts of a switch's function.
-    pub(super) fn largest_parts(
+    /// The side of a switch whose function is zero throughout an interval but for rounding: 0 where that is exact, as of `abs(t) - t`
+    /// behind 0. Where both pieces meet, as of `max(sin(t), t)` near 0, either will do.
+    pub(super) fn resting_side(
         &self,
         switch: &Switch,
         over: Interval,
         sides: &[Sides],
-    ) -> [f64; 2] {
+    ) -> Option<f64> {
+        /// Roundings of the slopes of all parts together, as a part of the largest.
+        const ROUNDING: f64 = 1e-13;
+        let middle = 0.5 * (over.lo + over.hi);
+        let values = [over.lo, middle, over.hi].map(|x| self.switch_value(switch, x));
+        let [bounds, slope, _] = self.enclose_switch(switch, over, sides).0;
+        let slopes = self.largest_slope(switch, over, sides);
+        if values == [0.0; 3] && slope.magnitude() <= ROUNDING * slopes {
+            return Some(0.0);
+        }
+        let meet = match self.ops[switch.op] {
+            Op::Unary(Unary::Abs) | Op::Binary(Binary::Min | Binary::Max) | Op::Clamp => {
+                self.rounding(switch, over, sides)
+            }
+            _ => 0.0,
+        };
+        let apart = values[1].abs() + 0.5 * over.width() * slope.magnitude();
+        let is_zero = apart.min(bounds.magnitude()) <= meet + NOTHING;
+        is_zero.then(|| sign(values[1]))
+    }
+
+    /// The rounding of a switch's function.
+    pub(super) fn rounding(&self, switch: &Switch, over: Interval, sides: &[Sides]) -> f64 {
+        const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+        let parts = std::iter::once(switch.left).chain(switch.right);
+        ROUNDINGS * parts.map(|last| self.size(last, over, sides)).sum::<f64>()
+    }
+
+    /// What the rounding of a part is relative to: its terms, which may cancel each other.
+    fn size(&self, last: usize, over: Interval, sides: &[Sides]) -> f64 {
+        let of_operands = |count: usize| {
+            let ends =
+                std::iter::successors(last.checked_sub(1), |&end| self.starts[end].checked_sub(1));
+            ends.take(count).map(|end| self.size(end, over, sides))
+        };
+        match self.ops[last] {
+            Op::Negate | Op::Unary(Unary::Abs) => of_operands(1).sum(),
+            Op::Binary(Binary::Add | Binary::Subtract) => of_operands(2).sum(),
+            Op::Binary(Binary::Multiply) => of_operands(2).product(),
+            Op::Binary(Binary::Min | Binary::Max) => of_operands(2).fold(0.0, f64::max),
+            _ => self.enclose(last, over, sides).value().magnitude(),
+        }
+    }
+
+    /// Whether an operation is in the branch that a decided `if` does not take.
+    pub(super) fn is_unused(&self, op: usize, sides: &[Sides]) -> bool {
+        let outer = self.ops.iter().zip(sides).enumerate().skip(op + 1);
+        let mut unused = outer.filter_map(|(i, (outer, [side, _]))| match (outer, side) {
+            (Op::If(comparison), &Some(side)) => {
+                let no = self.starts[i - 1];
+                Some(match comparison.holds(side, 0.0) {
+                    true => no..i,
+                    false => self.starts[no - 1]..no,
+                })
+            }
+            _ => None,
+        });
+        unused.any(|branch| branch.contains(&op))
+    }
+
+    /// The largest slope of all parts of a switch's function.
+    fn largest_slope(&self, switch: &Switch, over: Interval, sides: &[Sides]) -> f64 {
         let parts = std::iter::once(switch.left).chain(switch.right);
         let parts = parts.flat_map(|last| self.starts[last]..=last);
-        parts.fold([0.0; 2], |[value, slope], last| {
-            let [v, s, _] = self.enclose(last, over, sides).0;
-            [value.max(v.magnitude()), slope.max(s.magnitude())]
-        })
+        let slopes = parts.map(|last| self.enclose(last, over, sides).0[1].magnitude());
+        slopes.fold(0.0, f64::max)
     }
 
     /// The value of a switch's function.

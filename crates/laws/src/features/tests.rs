@@ -197,3 +197,55 @@ proptest! {
         }
     }
 }
+
+/// Where two pieces meet within a rounding, in tails that underflow, and in branches that are not taken, nothing is searched for.
+#[test]
+fn what_a_rounding_decides_is_not_searched() {
+    let touching = "floor(2 - cos(2*t)) + floor(max(t - 0.25, t*t))";
+    for (text, most) in [
+        ("floor(-floor(-min(sin(4*t), 4*t)))", 100),
+        (
+            "if(x > 0, x, clamp(1e3*exp(-((t - 0.6)/1e-5)^2)*floor(2 - t), 0, 2))",
+            600,
+        ),
+        (
+            "if(t > -1, abs(t - 1), if(1e3*exp(-(t/1e-6)^2) >= 0, t, 1))",
+            100,
+        ),
+        ("if(t <= 0, 1, floor(1 + cos(2*t)))", 200),
+        (touching, 200),
+    ] {
+        for to in [1e-9, 2.0] {
+            let features = features(text);
+            let count = features
+                .scan(0.0, to)
+                .take(1000)
+                .filter(Result::is_ok)
+                .count();
+            assert!(count <= most, "{text}: {count} pieces up to {to}");
+        }
+    }
+}
+
+/// What switches exactly at the start has switched in the first piece.
+#[test]
+fn the_first_piece_begins_behind_a_switch() {
+    for (text, from) in [
+        ("sign(sin(6*t))", 0.0),
+        ("if(t <= 0.25, 1, 0)", 0.25),
+        ("sign(exp(t) - 1)", 0.0),
+    ] {
+        let expression = Expression::parse(text, &["x", "t"]).expect(text);
+        let first = features(text)
+            .scan(from, 2.0)
+            .next()
+            .expect(text)
+            .expect(text);
+        assert!(
+            first.from > from && first.from - from < 1e-14,
+            "{text}: {first:?}"
+        );
+        let value = |t: f64| expression.eval(&[0.0, t]);
+        assert_eq!(value(first.from), value(from + 0.01), "{text}");
+    }
+}
