@@ -22,7 +22,9 @@ pub(crate) use labels::{
 };
 pub(crate) use load_table::{covers, off_table_error, table_of};
 pub use motion::explain_motion;
-pub(crate) use motion::{StepLimits, explain_any_motion, explain_max_steps};
+pub(crate) use motion::{
+    StepLimits, explain_any_motion, explain_max_steps, explain_switching,
+};
 pub use named_scene::NamedScene;
 pub use position::explain_position;
 pub(crate) use position::explain_position_in;

@@ -390,6 +390,24 @@ fn explain_chatter(scene: &impl NamedScene, load: usize, t: f64) -> StudyError {
     scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
 }
 
+/// Explains a load that switches so often, as where its switches accumulate, that the end is not reached: after how many switches how many
+/// are left.
+pub(crate) fn explain_switching(
+    scene: &impl NamedScene,
+    load: usize,
+    t: f64,
+    (switches, left): (usize, f64),
+) -> StudyError {
+    let name = scene.load_name(load).unwrap_or_default();
+    let t = digits(t, 6);
+    let message = format!(
+        "load `{name}` switches too often: at t = {t} s, after {switches} switches, about {left:.0e} are left"
+    );
+    let help = "where they accumulate, end the motion with an event, or use a smooth function, such as tanh(speed/0.01) for sign(speed)";
+    let label = "switches more and more often";
+    scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
+}
+
 /// Explains a load that holds the motion at its switch while another switch or contact does so, too.
 fn explain_several(scene: &impl NamedScene, load: usize, t: f64) -> StudyError {
     let name = scene.load_name(load).unwrap_or_default();
