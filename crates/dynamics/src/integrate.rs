@@ -163,7 +163,9 @@ fn integrate_held(
             break;
         };
         let switched = match &event {
-            HeldEvent::Switch(crossing) => Some(crossing.source(&SlidingSystem::new(&shared, None))),
+            HeldEvent::Switch(crossing) => {
+                Some(crossing.source(&SlidingSystem::new(&shared, None)))
+            }
             HeldEvent::Contacts(..) => None,
         };
         let is_switch = switched.is_some();

@@ -9,6 +9,7 @@ mod motion;
 mod named_scene;
 mod position;
 mod study_error;
+mod switching;
 
 pub(crate) use assembly::{
     driven_labels, freedom_text, inconsistent, not_connected, not_one_actuator, wrong_actuators,
@@ -22,9 +23,7 @@ pub(crate) use labels::{
 };
 pub(crate) use load_table::{covers, off_table_error, table_of};
 pub use motion::explain_motion;
-pub(crate) use motion::{
-    StepLimits, explain_any_motion, explain_max_steps, explain_switching,
-};
+pub(crate) use motion::{StepLimits, explain_any_motion, explain_max_steps};
 pub use named_scene::NamedScene;
 pub use position::explain_position;
 pub(crate) use position::explain_position_in;
@@ -32,3 +31,4 @@ pub(crate) use position::{
     describe_coordinate, describe_ends, describe_limit, own_coordinate, own_length, own_speed,
 };
 pub use study_error::{StudyError, SweepError};
+pub(crate) use switching::explain_switching;
