@@ -113,6 +113,8 @@ pub enum DynamicsError {
         needed: f64,
         /// The number of steps allowed.
         max_steps: usize,
+        /// Where switches are counted: the load of the last one (those of the drives last).
+        switching: Option<usize>,
     },
     /// More events happen than are kept.
     #[error("more than {max_occurrences} events happen: up to t = {t} s these are all")]

@@ -162,16 +162,19 @@ fn integrate_held(
         let Some(event) = event.filter(|_| !is_ended) else {
             break;
         };
-        let is_switch = matches!(event, HeldEvent::Switch(_));
+        let switched = match &event {
+            HeldEvent::Switch(crossing) => {
+                Some(crossing.source(&SlidingSystem::new(&shared, None)))
+            }
+            HeldEvent::Contacts(..) => None,
+        };
+        let is_switch = switched.is_some();
         if is_switch || event.state().t <= from {
             // Behind a switch of a load the rates may be those of another time scale; and with the step that has led beyond
             // an event at its very start it would be met again.
             step.set(None);
         }
-        let counted = match is_switch {
-            true => pace.step_taken(event.state().t),
-            false => Ok(()),
-        };
+        let counted = switched.map_or(Ok(()), |load| pace.switched(load, event.state().t));
         let passed = pass_event(&shared, &mut monitor, contacts.as_mut(), event);
         match (counted.and(passed), &mut parts.whole) {
             (Ok(state), _) => {

@@ -29,7 +29,7 @@ pub(crate) struct Pace {
     end: f64,
     max_steps: usize,
     steps: usize,
-    /// The first load that a program computes.
+    /// The first load that a program computes; where switches are counted, that of the last one.
     function: Option<usize>,
     /// Steps of a short and of a long window; none where it is not looked at.
     windows: [Option<usize>; 2],
@@ -101,6 +101,7 @@ impl Pace {
                 steps,
                 needed,
                 max_steps,
+                switching: None,
             });
         }
         if let Some((window, advance)) = self.full(0, t)
@@ -110,6 +111,21 @@ impl Pace {
             return Err(DynamicsError::NoProgress { function, t, step });
         }
         Ok(())
+    }
+
+    /// After a switch of a load at a time, s.
+    ///
+    /// # Errors
+    /// [`DynamicsError::TooSlow`].
+    pub(crate) fn switched(&mut self, load: Option<usize>, t: f64) -> Result<()> {
+        self.function = load.or(self.function);
+        let last = self.function;
+        self.step_taken(t).map_err(|mut error| {
+            if let DynamicsError::TooSlow { switching, .. } = &mut error {
+                *switching = last;
+            }
+            error
+        })
     }
 
     /// Of a window that ends with a step to a time (s), its steps and how far they have led, s.

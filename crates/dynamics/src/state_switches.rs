@@ -129,7 +129,7 @@ impl StateSwitches {
     }
 
     /// What loads do first between five equally spaced points, where their variables are `samples` ([`StateSwitches::values`]),
-    /// on these pieces.
+    /// on these pieces: pulses before all passages, as a step across one does not show when a switch is passed.
     pub(crate) fn hidden_in(
         &self,
         held: &[HeldSource],
@@ -139,8 +139,9 @@ impl StateSwitches {
         let all = Course::through(&samples.each_ref().map(Vec::as_slice));
         let (mut first, mut function, mut variable) = (None, 0, 0);
         let mut add = |at: f64, hidden: Hidden| {
-            if first.is_none_or(|(earlier, _)| at < earlier) {
-                first = Some((at, hidden));
+            let order = (matches!(hidden, Hidden::Passage { .. }), at);
+            if first.is_none_or(|(earlier, _)| order < earlier) {
+                first = Some((order, hidden));
             }
         };
         let free = HeldSource::default();

@@ -77,6 +77,14 @@ pub(crate) struct Crossing {
     left: Option<bool>,
 }
 
+impl Crossing {
+    /// The load that switches, if one does.
+    pub(crate) fn source(&self, system: &dyn OdeSystem) -> Option<usize> {
+        let first = self.passed.first();
+        first.map(|(k, _)| system.switch_source(*k))
+    }
+}
+
 impl MonitoredSwitch {
     /// How far the value is within the bounds of the piece; negative beyond one. None where it is not watched.
     fn margin(&self, value: f64) -> Option<f64> {
@@ -338,9 +346,16 @@ impl SwitchMonitor {
         if self.slide_from_crossing(before, crossing, system)? {
             return Ok(());
         }
-        let at = &crossing.state;
         self.hold(system);
-        let rates = self.rates_at(system, at)?;
+        let rates = self.rates_at(system, &crossing.state)?;
+        self.release(crossing, &rates);
+        self.hold(system);
+        Ok(())
+    }
+
+    /// Does not hold a switch to which the motion comes back, nor what depends on it: that would hold what it has released.
+    fn release(&mut self, crossing: &Crossing, rates: &[[f64; 2]]) {
+        let t = crossing.state.t;
         let mut released = self.marked(std::iter::empty());
         for &(k, upward) in &crossing.passed {
             // Not by a step along the rates: it may lead through a window.
@@ -350,24 +365,21 @@ impl SwitchMonitor {
                 rates[k][1] > 0.0
             };
             let switch = &mut self.switches[k];
-            let again = |last: f64| are_together(at.t, last);
+            let again = |last: f64| are_together(t, last);
             if returns || switch.switched.is_some_and(again) {
                 switch.piece = None;
                 switch.observed = (None, 0);
                 switch.chatter = Some(0);
                 released[k] = true;
             }
-            switch.switched = Some(at.t);
+            switch.switched = Some(t);
         }
-        // What depends on it would hold what it has released.
         for (k, switch) in self.switches.iter_mut().enumerate() {
             if switch.depends_on(&released) {
                 (switch.piece, switch.observed) = (None, (None, 0));
                 released[k] = true;
             }
         }
-        self.hold(system);
-        Ok(())
     }
 
     /// After a step: whether a switch that is not held has kept its side for so long that it is now held, so that the

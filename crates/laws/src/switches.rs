@@ -257,8 +257,11 @@ impl Switches {
                     run_held_parts(&ops[start..=last], variable, sides)
                 };
                 for (out, (switch, [left, right])) in out.iter_mut().zip(switches) {
-                    let subtrahend = switch.right.map_or(0.0, |last| part(*right, last));
-                    *out = part(*left, switch.left) - subtrahend;
+                    let minuend = part(*left, switch.left);
+                    *out = match switch.right.map(|last| part(*right, last)) {
+                        Some(subtrahend) => difference(minuend, subtrahend),
+                        None => minuend,
+                    };
                 }
             }
         }
@@ -284,7 +287,7 @@ impl Switches {
                     *out = part(*left, switch.left);
                     if let Some(last) = switch.right {
                         let [value, rate] = part(*right, last);
-                        *out = [out[0] - value, out[1] - rate];
+                        *out = [difference(out[0], value), out[1] - rate];
                     }
                 }
             }
@@ -307,6 +310,14 @@ impl Switches {
             }
         }
     }
+}
+
+/// The difference of two values; zero where it is below their rounding, which switches where nothing else does.
+fn difference(minuend: f64, subtrahend: f64) -> f64 {
+    const ROUNDING: f64 = 2.0 * f64::EPSILON;
+    let difference = minuend - subtrahend;
+    let is_rounding = difference.abs() <= ROUNDING * minuend.abs().min(subtrahend.abs());
+    if is_rounding { 0.0 } else { difference }
 }
 
 impl Law {

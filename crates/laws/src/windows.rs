@@ -149,31 +149,53 @@ impl<'a> Traced<'a> {
     }
 }
 
-/// The first part of a step, from the left, in which a function is outside of an interval, where one is found.
+/// Where in a step a function is outside of an interval: soon behind where it first is, as far as so many parts show; with nothing before it
+/// but what is inside.
 pub(crate) fn first_outside(
-    [low, high]: [f64; 2],
+    bounds: [f64; 2],
     value: impl Fn(f64) -> f64,
     enclose: impl Fn([f64; 2]) -> Enclosure,
 ) -> Option<f64> {
+    outside(bounds, value, enclose, true)
+}
+
+/// A time in a step at which a function is outside of an interval, where one is found: the first that is met, or soon behind the `first`.
+fn outside(
+    [low, high]: [f64; 2],
+    value: impl Fn(f64) -> f64,
+    enclose: impl Fn([f64; 2]) -> Enclosure,
+    first: bool,
+) -> Option<f64> {
     let is_outside = |at: f64| value(at) < low || value(at) > high;
+    let mut found = None;
     let mut open = vec![[0.0, 1.0]];
     for _ in 0..MAX_CELLS {
-        let [from, to] = open.pop()?;
+        let Some([from, to]) = open.pop() else { break };
         let [values, slope, _] = enclose([from, to]).0;
         if values.lo >= low && values.hi <= high {
             continue;
         }
         let middle = 0.5 * (from + to);
-        if let Some(at) = [from, middle, to].into_iter().find(|&at| is_outside(at)) {
-            return Some(at);
-        }
         // What grows or falls throughout is between its ends, and so is what stands still.
         let turns = slope.contains(0.0) && slope.magnitude() > 0.0;
+        let at = [from, middle, to].into_iter().find(|&at| is_outside(at));
+        if let Some(at) = at {
+            if !(first && turns && at > from && at - from > MIN_WIDTH) {
+                return Some(at);
+            }
+            // Between the points it may be outside before.
+            found = Some(at);
+            open.clear();
+            if at < to {
+                open.push([from, at]);
+                continue;
+            }
+        }
         if turns && to - from > MIN_WIDTH {
             open.extend([[middle, to], [from, middle]]);
         }
     }
-    None
+    found
 }
 
 impl NarrowTerm {
@@ -215,11 +237,15 @@ impl NarrowTerm {
             .max(NEGLIGIBLE * scale)
             .max(UNDERFLOW);
         let enclose = |over: [f64; 2]| term.enclose(over);
-        let at = first_outside([low - unseen, high + unseen], |at| term.value(at), enclose)?;
+        let bounds = [low - unseen, high + unseen];
+        let at = outside(bounds, |at| term.value(at), enclose, false)?;
         let excess = |at: f64| (low - term.value(at)).max(term.value(at) - high);
+        let at = top_near(at, excess);
         let top = excess(at);
         let is_low = |at: f64| !(0.0..=1.0).contains(&at) || excess(at) < 0.5 * top;
-        if !(is_low(at - RESOLVED) && is_low(at + RESOLVED)) {
+        // A periodic one has other tops at some distances.
+        let is_narrow = |part: &f64| is_low(at - part * RESOLVED) && is_low(at + part * RESOLVED);
+        if ![1.0, 0.77, 0.41].iter().any(is_narrow) {
             return None;
         }
         let mut width = MIN_WIDTH;
@@ -228,6 +254,23 @@ impl NarrowTerm {
         }
         Some(Pulse { at, width })
     }
+}
+
+/// The top of a pulse in a step, from a place on it.
+fn top_near(mut at: f64, height: impl Fn(f64) -> f64) -> f64 {
+    const MAX_MOVES: usize = 200;
+    let (mut top, mut reach) = (height(at), RESOLVED);
+    for _ in 0..MAX_MOVES {
+        if reach < MIN_WIDTH {
+            break;
+        }
+        let sides = [at - reach, at + reach].map(|side| side.clamp(0.0, 1.0));
+        match sides.into_iter().find(|&side| height(side) > top) {
+            Some(side) => (at, top) = (side, height(side)),
+            None => reach *= 0.5,
+        }
+    }
+    at
 }
 
 /// Whether an operation can make a narrow feature of what varies slowly. A quotient by what does not vary is a multiple, and a low power a

@@ -73,10 +73,8 @@ impl SwitchMonitor {
                 let about = (switch, from + at * length);
                 self.passage(about, &mut between.samples, system, step)?
             }
-            Some(Hidden::Pulse(pulse)) => {
-                let begins = from + (pulse.at - pulse.width).max(0.0) * length;
-                Some(Crossing::begin_anew(step.state_from_start(begins)?))
-            }
+            // Stages of the step may have met the pulse, and those of its dense output: it is taken again.
+            Some(Hidden::Pulse(_)) => Some(Crossing::begin_anew(step.before.clone())),
             None if between.fine.is_some_and(|(_, risen)| step.now.t >= risen) => {
                 Some(Crossing::begin_anew(step.now.clone()))
             }
@@ -86,11 +84,15 @@ impl SwitchMonitor {
         let is_earlier =
             |found: &Crossing| found.state.t < until && !are_together(found.state.t, until);
         let found = found.filter(is_earlier);
-        if let Some(found) = found.as_ref().filter(|found| found.passed.is_empty()) {
+        if found.as_ref().is_some_and(|found| found.passed.is_empty()) {
             between.fine = match hidden {
                 Some(Hidden::Pulse(pulse)) => {
-                    let rise = pulse.width * length;
-                    Some((rise / STEPS_OF_A_RISE, found.state.t + 2.0 * rise))
+                    let (rise, flat) = (pulse.width * length, (pulse.at - pulse.width) * length);
+                    Some(match flat > rise {
+                        // Up to where it begins, to within rounding.
+                        true => (flat, from + flat - 0.5 * rise),
+                        false => (rise / STEPS_OF_A_RISE, from + flat.max(0.0) + 2.0 * rise),
+                    })
                 }
                 _ => None,
             };

@@ -9,6 +9,7 @@ mod motion;
 mod named_scene;
 mod position;
 mod study_error;
+mod switching;
 
 pub(crate) use assembly::{
     driven_labels, freedom_text, inconsistent, not_connected, not_one_actuator, wrong_actuators,
@@ -30,3 +31,4 @@ pub(crate) use position::{
     describe_coordinate, describe_ends, describe_limit, own_coordinate, own_length, own_speed,
 };
 pub use study_error::{StudyError, SweepError};
+pub(crate) use switching::explain_switching;

@@ -4,6 +4,7 @@ use super::contacts::{
     explain_beyond_stop, explain_endless_impacts, explain_no_mode, explain_no_progress,
     explain_sticking, explain_stop,
 };
+use super::switching::{explain_chatter, explain_several};
 use crate::explain::{
     NamedScene, StudyError, body_names, explain_position, joint_labels, labels, own_coordinate,
     own_speed, scene_error,
@@ -374,34 +375,6 @@ fn explain_fast(
     );
     let help = "shorten the motion; or give --max-step, with which it is followed only as far as steps of that length see it";
     scene_error(scene, message, help, [(place, "varies too fast")])
-}
-
-/// Explains a load that holds the motion at its switch.
-fn explain_chatter(scene: &impl NamedScene, load: usize, t: f64) -> StudyError {
-    let name = scene.load_name(load).unwrap_or_default();
-    let message = format!(
-        "load `{name}` switches forth and back without end at t = {} s: on both sides of its switch it drives the motion \
-         back to it",
-        digits(t, 6)
-    );
-    let help = "such switches of one load alone hold the motion, but not those of several: end the motion there with an \
-                event, or use a smooth function, such as tanh(speed/0.01) for sign(speed)";
-    let label = "switches forth and back";
-    scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
-}
-
-/// Explains a load that holds the motion at its switch while another switch or contact does so, too.
-fn explain_several(scene: &impl NamedScene, load: usize, t: f64) -> StudyError {
-    let name = scene.load_name(load).unwrap_or_default();
-    let message = format!(
-        "at t = {} s load `{name}` holds the motion at its switch while another switch, friction or end stop changes or holds \
-         it there",
-        digits(t, 6)
-    );
-    let help = "one such switch at a time is computed: give the friction of a joint in [friction] instead of a load with \
-                sign(speed), or use a smooth function, such as tanh(speed/0.01)";
-    let label = "drives the motion back to its switch from both sides";
-    scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
 }
 
 /// Explains a load that is undefined.

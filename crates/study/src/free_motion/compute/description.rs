@@ -157,7 +157,7 @@ impl FreeMotionProblem<'_> {
 
     /// The largest kinetic energy and potential energy of a motion and the largest error of its energy balance, J; and the energies at its
     /// samples.
-    fn balance(&self, motion: &SegmentedMotion) -> ([f64; 2], f64, Vec<Energies>) {
+    pub(super) fn balance(&self, motion: &SegmentedMotion) -> ([f64; 2], f64, Vec<Energies>) {
         let at_steps = self.energies(motion, motion.steps());
         let at_samples = self.energies(motion, motion.samples());
         let initial = at_steps.first().map_or(0.0, |at| at.balance);

@@ -1,6 +1,8 @@
 //! Why a motion is not what was required, in the plane or in space: it ended early, or is less accurate.
 
-use crate::explain::{NamedScene, StepLimits, StudyError, explain_max_steps, scene_error};
+use crate::explain::{
+    NamedScene, StepLimits, StudyError, explain_max_steps, explain_switching, scene_error,
+};
 use crate::free_motion::compute::MotionSolver;
 use dwell_dynamics::DynamicsError;
 use dwell_scene::SceneLocation;
@@ -34,7 +36,15 @@ pub(crate) fn too_many_steps(
             t,
             steps,
             needed,
+            switching: Some(load),
+            ..
+        }) => Some(explain_switching(scene, load, t, (steps, needed))),
+        Some(&DynamicsError::TooSlow {
+            t,
+            steps,
+            needed,
             max_steps,
+            ..
         }) => {
             let what = format!(
                 "{max_steps} steps are not enough: after {steps}, about {needed:.0e} are left"
