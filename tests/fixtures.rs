@@ -23,6 +23,18 @@ pub fn case_names() -> Vec<String> {
     names
 }
 
+/// The cases in space.
+pub fn space_case_names() -> Vec<String> {
+    let folder = repository_root().join("validation/spatial");
+    let entries = std::fs::read_dir(folder).expect("a folder");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let scenes = paths.filter(|path| path.extension().is_some_and(|e| e == "toml"));
+    let name = |path: std::path::PathBuf| path.file_stem()?.to_str().map(str::to_owned);
+    let mut names: Vec<String> = scenes.filter_map(name).collect();
+    names.sort();
+    names
+}
+
 /// The scene of a case in `validation/`.
 pub fn scene(case: &str) -> Scene {
     let path = repository_root()

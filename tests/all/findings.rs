@@ -1,13 +1,13 @@
 //! The findings of `dwell validate` on every case: verdicts and digits, and how far within them the numbers are.
 
 use dwell_findings::{Finding, all_pass};
-use dwell_scene::Scene;
+use dwell_scene::{Scene, SpaceScene};
 use dwell_study::no_progress;
-use dwell_tests::fixtures::{case_names, repository_root, scene};
-use dwell_validation::{Validation, validate};
+use dwell_tests::fixtures::{case_names, repository_root, scene, space_case_names};
+use dwell_validation::{Validation, validate, validate_in_space};
 use serde_json::Value;
 use std::fmt::Write as _;
-use std::panic::catch_unwind;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 fn validated(scene: &Scene, case: &str) -> Validation {
     let folder = repository_root().join("validation").join(case);
@@ -39,9 +39,19 @@ fn describe(findings: &[Finding]) -> String {
     })
 }
 
+fn validated_in_space(case: &str) -> Validation {
+    let path = repository_root().join("validation/spatial").join(case);
+    let scene = SpaceScene::read(path.with_extension("toml"));
+    let scene = scene.unwrap_or_else(|e| panic!("{case}: {e:?}"));
+    assert!(scene.warnings.is_empty(), "{case}: {:?}", scene.warnings);
+    let reference = path.with_extension("json");
+    let reference = reference.is_file().then_some(reference);
+    let done = validate_in_space(&scene, reference.as_deref(), None);
+    done.unwrap_or_else(|e| panic!("{case}: {e}"))
+}
+
 /// A case against its snapshot, and its values against the committed report.
-fn assert_snapshot(case: &str) {
-    let validation = validated(&scene(case), case);
+fn assert_snapshot(case: &str, validation: &Validation) {
     let mut settings = insta::Settings::clone_current();
     settings.set_snapshot_path("../snapshots");
     settings.set_prepend_module_to_snapshot(false);
@@ -53,22 +63,41 @@ fn assert_snapshot(case: &str) {
         .join("reports")
         .join(format!("{case}.txt"));
     let committed = std::fs::read_to_string(report).unwrap_or_default();
+    // The report of a case in space lists findings about files, too, which only the program writes.
+    let values = |text: &str| match text.find("\npass  written-") {
+        Some(end) => text[..end].to_owned(),
+        None => text.trim_end().to_owned(),
+    };
     assert!(
-        committed.replace("\r\n", "\n") == validation.snapshot,
+        values(&committed.replace("\r\n", "\n")) == values(&validation.snapshot),
         "{case}: reports/{case}.txt is another; `dwell validate {case}` writes it anew, `git diff` shows what changed"
     );
 }
 
 #[test]
 fn val_every_case_has_the_verdicts_digits_and_values_it_had() {
-    let cases = case_names();
-    assert!(cases.len() >= 27, "{cases:?}");
+    let planar = case_names();
+    let in_space = space_case_names();
+    assert!(planar.len() >= 27 && in_space.len() >= 20, "{planar:?}");
     // All of them, so that one run tells everything that changed.
-    let changed = cases
-        .iter()
-        .filter(|case| catch_unwind(|| assert_snapshot(case)).is_err());
-    let changed: Vec<&String> = changed.collect();
+    let of_case = |case: &String| {
+        let done = || match in_space.contains(case) {
+            true => validated_in_space(case),
+            false => validated(&scene(case), case),
+        };
+        catch_unwind(AssertUnwindSafe(|| assert_snapshot(case, &done()))).is_err()
+    };
+    let all = planar.iter().chain(&in_space);
+    let changed: Vec<&String> = all.filter(|case| of_case(case)).collect();
     assert!(changed.is_empty(), "{changed:?}");
+}
+
+#[test]
+fn scenes_of_the_project_warn_of_nothing() {
+    for case in case_names() {
+        let scene = scene(&case);
+        assert!(scene.warnings.is_empty(), "{case}: {:?}", scene.warnings);
+    }
 }
 
 #[test]
@@ -95,6 +124,10 @@ fn digits_are_rounded_down_with_room_and_never_more_than_asked() {
 fn val_single_dwell_reaches_what_is_promised() {
     let done = validated(&scene("single-dwell"), "single-dwell");
     let findings = &done.outcome.findings;
+    let docs = repository_root().join("docs/first-study.md");
+    let docs = std::fs::read_to_string(docs).expect("the study");
+    let count = format!("has {} findings about its results", findings.len());
+    assert!(docs.contains(&count), "first-study.md: {count}");
     let finding = |key: &str| {
         let found = findings.iter().find(|f| f.key == key);
         found.unwrap_or_else(|| panic!("no finding {key}"))

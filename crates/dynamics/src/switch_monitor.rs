@@ -272,10 +272,6 @@ impl SwitchMonitor {
             beyond.get_or_insert(values[k]);
             Ok(switch.margin(values[k]).unwrap_or(f64::NAN))
         };
-        if margin < 0.0 && !was_inside && margin == earlier[0].1 {
-            // It rests on its bound, but for the rounding of where it was passed.
-            return Ok(None);
-        }
         let found = if margin < 0.0 && !was_inside {
             // It was passed, within a rounding, where the integration began, or soon behind.
             match first_inside([earlier[0].0, t], &mut margin_at)? {

@@ -11,6 +11,7 @@ mod long_motions;
 mod many_rows;
 mod messages;
 mod modes;
+mod narrow_loads;
 mod near_branches;
 mod output;
 mod pictures;

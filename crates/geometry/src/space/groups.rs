@@ -223,9 +223,8 @@ impl Plan {
         let (dependencies, moving) = (on_path(false), on_path(true));
         // Beyond its path, what carries the whole loop moves no row, but has to be placed before it, too.
         let carried = |(&(c, _), of_row): (&(usize, usize), &Vec<usize>)| {
-            let above = self.closures[c]
-                .bodies
-                .map(|body| self.freedoms_above(body));
+            let bodies = self.closures[c].bodies;
+            let above = bodies.map(|body| self.freedoms_above(body));
             let above = above.iter().flatten().filter_map(position);
             of_row.iter().copied().chain(above).collect()
         };
@@ -236,27 +235,23 @@ impl Plan {
         };
         let (of_equation, of_unknown) = match_equations(&chosen(&moving), unknowns.len());
         let components = strong_components(&of_equation, &chosen(&placed), &of_unknown);
-        let mut groups: Vec<Members> = components
-            .into_iter()
-            .map(|equations| {
-                let matched = equations.iter().map(|e| unknowns[of_equation[*e]]);
-                let rows = equations.iter().map(|e| rows[independent[*e]]);
-                (matched.collect(), rows.collect())
-            })
-            .collect();
+        let members = |equations: Vec<usize>| -> Members {
+            let matched = equations.iter().map(|e| unknowns[of_equation[*e]]);
+            let rows = equations.iter().map(|e| rows[independent[*e]]);
+            (matched.collect(), rows.collect())
+        };
+        let mut groups: Vec<Members> = components.into_iter().map(members).collect();
         let redundant = (0..rows.len()).filter(|r| !independent.contains(r));
         for r in redundant.filter(|r| !moving[*r].is_empty()) {
             let of_row: Vec<usize> = dependencies[r].iter().map(|u| unknowns[*u]).collect();
             add_redundant(&mut groups, rows[r], &of_row);
         }
-        let groups = groups
-            .into_iter()
-            .map(|(unknowns, rows)| {
-                let mut group = self.group(unknowns, rows);
-                group.rod = self.rod(&group);
-                group
-            })
-            .collect();
+        let groups = groups.into_iter().map(|(unknowns, rows)| {
+            let mut group = self.group(unknowns, rows);
+            group.rod = self.rod(&group);
+            group
+        });
+        let groups = groups.collect();
         self.schedule(groups);
         let mut pose = self.pose();
         pose.coordinates.copy_from_slice(&analysed.pose.coordinates);

@@ -1,6 +1,6 @@
 //! Grids: what each check sees of each fault, and how many digits each case keeps.
 
-use dwell_report::{Axis, Cell, Figure, Grid, Group, Row, Tile, Tiles};
+use dwell_report::{Axis, Cell, Figure, Grid, Group, Row};
 
 /// Numbers without a pattern, the same each time.
 fn scattered(row: usize, column: usize) -> usize {
@@ -105,73 +105,6 @@ pub(crate) fn digits() -> Figure {
                 ..Grid::default()
             }
             .into(),
-        ],
-        ..Figure::default()
-    }
-}
-
-/// A verdict: tiles above a compact matrix.
-pub(crate) fn verdict() -> Figure {
-    let passed = |name: &str, value: &str, note: &str| Tile::new(name, value, note).verdict(true);
-    let first = vec![
-        passed("cases in the plane", "31 of 31", "2430 findings"),
-        Tile::new("cases in space", "23 of 24", "1 finding fails").verdict(false),
-        passed("extremes", "212 of 212", "ratios, scales, stiff"),
-        passed("written files", "940 of 940", "read back"),
-    ];
-    let second = vec![
-        Tile::new(
-            "period of the paper's mechanism",
-            "5.42 s",
-            "by BDF, 3e-12 from the quadrature's",
-        ),
-        Tile::new(
-            "closest to its tolerance",
-            "slider-crank-friction: margin 1.2",
-            "9 reference values",
-        ),
-    ];
-    let names: Vec<String> = (0..21).map(|k| format!("{k} reference values")).collect();
-    let group = |heading: &str, count: usize| Group {
-        heading: heading.to_owned(),
-        rows: (0..count)
-            .map(|row| {
-                let cell = |column| {
-                    let margin = 10_f64.powi((scattered(row, column) % 6) as i32);
-                    let cell = Cell::new(margin, format!("{margin:.0}"));
-                    match (row + 3 * column) % 29 {
-                        0 => None,
-                        1 if row == 7 => Some(Cell::text_only("FAIL").failed()),
-                        _ => Some(cell),
-                    }
-                };
-                Row::new(format!("slotted-rocker-{row}"), (0..21).map(cell).collect())
-            })
-            .collect(),
-    };
-    let matrix = Grid {
-        columns: names,
-        groups: vec![group("Plane", 31), group("Space", 24)],
-        values: Axis::log("margin: tolerance over difference", "").with_range(1.0, 1e4),
-        compact: true,
-        ..Grid::default()
-    };
-    Figure {
-        name: "verdict".to_owned(),
-        title: "PASS: every check of every case".to_owned(),
-        columns: 1,
-        panels: vec![
-            Tiles {
-                columns: 4,
-                tiles: first,
-            }
-            .into(),
-            Tiles {
-                columns: 2,
-                tiles: second,
-            }
-            .into(),
-            matrix.into(),
         ],
         ..Figure::default()
     }

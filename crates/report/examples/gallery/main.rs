@@ -28,7 +28,6 @@ fn main() -> Result<(), ReportError> {
         kinematics::profile(),
         grids::mutations(),
         grids::digits(),
-        grids::verdict(),
     ];
     let mut files = Files::new();
     for figure in &figures {

@@ -42,7 +42,8 @@ pub fn figure(
         name: name.into(),
         title: title.into(),
         caption: scene_caption(scene, text),
-        columns: 1,
+        // In one column more would be longer than two pages.
+        columns: if panels.len() > 5 { 2 } else { 1 },
         panels,
         provenance: provenance.into(),
     }

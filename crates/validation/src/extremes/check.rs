@@ -52,6 +52,8 @@ fn row_finding(result: &SeriesResult, key: &str, max: Option<(f64, &ResultCell)>
 pub(super) fn check_digits(result: &SeriesResult) -> Finding {
     // Errors over what the floor allows; an error that is not allowed is as bad as can be.
     let excess = |cell: &ResultCell| match cell.digits() {
+        // Where the condition takes all digits, none is required.
+        Some(_) if cell.requirement.min_digits <= 0.0 => None,
         Some(digits) => Some(10.0_f64.powf(cell.requirement.min_digits - digits)),
         None if cell.meets_requirement() => None,
         None => Some(f64::INFINITY),

@@ -40,8 +40,9 @@ pub(super) fn overview(judged: &Judged<'_>) -> Figure {
     Figure {
         name: "index".to_owned(),
         title: judged.headline(),
-        caption: "Of each check the finding with the least margin; = where there is no difference. cases.md says why a check does not apply."
-            .to_owned(),
+        caption:
+            "The least margin of each check; = where there is no difference. Reasons in cases.md."
+                .to_owned(),
         columns: 1,
         panels: rows.chain([matrix.into()]).collect(),
         provenance: format!("Dwell {}", env!("CARGO_PKG_VERSION")),

@@ -84,12 +84,8 @@ impl<'a> Judged<'a> {
         let written = self.findings().map(|(_, f)| f);
         let written = written.filter(|f| f.check >= FIRST_WRITTEN);
         let mut tallies = vec![
-            Tally::of_cases(
-                "cases in the plane",
-                cases(false),
-                "each by up to 21 checks",
-            ),
-            Tally::of_cases("cases in space", cases(true), "by the same checks"),
+            Tally::of_cases("cases in the plane", cases(false), "up to 21 checks"),
+            Tally::of_cases("in space", cases(true), "by the same checks"),
             Tally::of_findings("written files", written, "read back and judged"),
         ];
         for &(name, findings) in &self.studies {
@@ -156,13 +152,13 @@ impl<'a> Judged<'a> {
         let period = numbers.find(|number| number.name == "period");
         let period = period.zip(finding("period-bdf")).map(|(period, f)| {
             let note = format!(
-                "quadrature: {:.9} s; adaptive BDF: {:.1e} of it off; the paper prints {PUBLISHED_PERIOD} s",
+                "the paper: {PUBLISHED_PERIOD} s; quadrature: {:.9} s; adaptive BDF: {:.1e} of it off",
                 period.value, f.relative_difference
             );
             Tile::new("period, paper's case", format!("{:.2} s", period.value), note)
         });
         let drift = finding("energy-bdf").map(|f| {
-            let note = "largest change of the energy by adaptive BDF at a tolerance of 1e-13";
+            let note = "largest by adaptive BDF at a tolerance of 1e-13";
             Tile::new(
                 "energy drift",
                 format!("{:.1e}", f.relative_difference),
@@ -172,7 +168,7 @@ impl<'a> Judged<'a> {
         let unit_runs = finding("half-dm-differences").zip(finding("m-energy"));
         let unit_runs = unit_runs.map(|(slope, m)| {
             let note = format!(
-                "½m′ against differences of the kinetic energy; m against the energy: {:.1e}",
+                "½m′ against differences of the kinetic energy; m: {:.1e}",
                 m.relative_difference
             );
             Tile::new(

@@ -100,6 +100,7 @@ pub type ExtraEvaluators<'m, M> = &'m dyn Fn(&ExactModel<M>) -> Vec<Box<dyn Eval
 ///
 /// # Errors
 /// As [`measure`].
+// Long because it is the study from its subject to all its results.
 pub fn measure_with<S: StudiedScene>(
     scene: &S,
     effort: &Effort,
@@ -117,8 +118,11 @@ pub fn measure_with<S: StudiedScene>(
     let series =
         |evaluator: &dyn Evaluator, method: Method, reference: Option<&ToleranceSeries>| {
             let series = ToleranceSeries::new(evaluator, &subject, method, effort, reference);
-            let name = evaluator.evaluation().name();
-            done(&format!("{name}, {}", method.name()));
+            done(&format!(
+                "{}, {}",
+                evaluator.evaluation().name(),
+                method.name()
+            ));
             series
         };
     let series_by_method = Method::ALL.map(|method| series(exact, method, None));
@@ -126,8 +130,7 @@ pub fn measure_with<S: StudiedScene>(
         .map_err(|e| no_reference_error(&subject, &e, &series_by_method))?;
     let mut trials: Vec<Trial<'_>> = Vec::new();
     for (k, evaluator) in evaluators.iter().map(|e| &**e).enumerate() {
-        let rerun =
-            |reference: &ToleranceSeries| series(evaluator, reference.method, Some(reference));
+        let rerun = |of: &ToleranceSeries| series(evaluator, of.method, Some(of));
         let all = match k {
             0 => series_by_method.to_vec(),
             _ => series_by_method.iter().map(rerun).collect(),
@@ -146,12 +149,11 @@ pub fn measure_with<S: StudiedScene>(
         false => Ok(Vec::new()),
     };
     let exported_code = exported_code.map_err(|e| omitted.push(format!("exported code: {e}")));
-    let commands = commands::command_runs(&mut reference, exact, &subject, effort.exported_code)?;
     Ok(WorkPrecision {
         points,
         fixed_step: fixed_step.ok(),
         requested: requested::requested_costs(&subject, &reference.states)?,
-        commands,
+        commands: commands::command_runs(&mut reference, exact, &subject, effort.exported_code)?,
         exported_code: exported_code.unwrap_or_default(),
         omitted,
         reference: reference.info,
