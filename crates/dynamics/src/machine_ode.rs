@@ -181,6 +181,10 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
         self.machine.state_switches.may_hide()
     }
 
+    fn followed_signals(&self) -> Option<Vec<usize>> {
+        self.machine.state_switches.followed()
+    }
+
     fn read_signals(&self, out: &mut Vec<f64>) {
         out.clone_from(&self.seen);
     }

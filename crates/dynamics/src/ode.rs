@@ -91,6 +91,12 @@ pub trait OdeSystem {
         false
     }
 
+    /// Where nothing switches: the variables, among [`OdeSystem::read_signals`], that must turn for a load to vary there; none where that
+    /// is not all.
+    fn followed_signals(&self) -> Option<Vec<usize>> {
+        None
+    }
+
     /// The variables of the loads where [`OdeSystem::switch_values`] were evaluated last.
     fn read_signals(&self, _out: &mut Vec<f64>) {}
 

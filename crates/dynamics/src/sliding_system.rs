@@ -185,6 +185,10 @@ impl OdeSystem for SlidingSystem<'_, '_> {
         self.shared.inner().may_hide()
     }
 
+    fn followed_signals(&self) -> Option<Vec<usize>> {
+        self.shared.inner().followed_signals()
+    }
+
     fn read_signals(&self, out: &mut Vec<f64>) {
         self.shared.inner().read_signals(out);
     }

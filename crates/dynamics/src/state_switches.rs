@@ -128,6 +128,18 @@ impl StateSwitches {
             .any(|source| source.magnitude.may_hide())
     }
 
+    /// Where nothing switches: the variables, among those of [`StateSwitches::values`], that must turn for a load to vary there; none
+    /// where that is not all.
+    pub(crate) fn followed(&self) -> Option<Vec<usize>> {
+        let (mut all, mut first) = (Vec::new(), 0);
+        for source in &self.sources {
+            let own = source.magnitude.followed()?.into_iter();
+            all.extend(own.map(|variable| first + variable));
+            first += source.signals;
+        }
+        self.kinds.is_empty().then_some(all)
+    }
+
     /// What loads do first between five equally spaced points, where their variables are `samples` ([`StateSwitches::values`]),
     /// on these pieces: pulses before all passages, as a step across one does not show when a switch is passed.
     pub(crate) fn hidden_in(

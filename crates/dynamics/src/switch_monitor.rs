@@ -43,6 +43,8 @@ pub(crate) struct SwitchMonitor {
     /// The length of the motion, s.
     span: f64,
     between: Option<Between>,
+    /// Where the values, and the last sample between, are those on the pieces that are held: a step begins where the last one ended.
+    seen_at: Option<OdeState>,
 }
 
 #[derive(Debug, Clone)]
@@ -132,6 +134,7 @@ impl SwitchMonitor {
             sliding: None,
             span,
             between: Between::of(system),
+            seen_at: None,
         };
         monitor.decide(system, start)?;
         Ok(monitor)
@@ -171,7 +174,8 @@ impl SwitchMonitor {
         Ok(())
     }
 
-    fn hold(&self, system: &mut dyn OdeSystem) {
+    fn hold(&mut self, system: &mut dyn OdeSystem) {
+        self.seen_at = None;
         system.hold_pieces(&self.pieces());
     }
 
@@ -190,6 +194,9 @@ impl SwitchMonitor {
         system: &mut SlidingSystem<'_, '_>,
         step: &mut Step<'_>,
     ) -> Result<Option<Crossing>> {
+        if self.goes_straight_on(system, step)? {
+            return Ok(None);
+        }
         let crossing = self.first_crossing(system, step)?;
         let crossing = self.earlier_between(crossing, system, step)?;
         let until = crossing.as_ref().map_or(step.now, |c| &c.state);
@@ -213,8 +220,12 @@ impl SwitchMonitor {
         }
         self.step = step.duration();
         let start = step.before;
-        system.switch_values(start.t, &start.y, &mut self.values)?;
-        self.sample(0, system);
+        if self.seen_at.take().is_some_and(|seen| seen == *start) {
+            self.repeat_last_sample();
+        } else {
+            system.switch_values(start.t, &start.y, &mut self.values)?;
+            self.sample(0, system);
+        }
         for (switch, &value) in self.switches.iter_mut().zip(&self.values) {
             let margin = switch.margin(value).unwrap_or(f64::NAN);
             switch.margins = [(start.t, margin), (f64::NAN, f64::NAN)];
@@ -235,6 +246,7 @@ impl SwitchMonitor {
                 }));
             }
         }
+        self.seen_at = Some(step.now.clone());
         Ok(None)
     }
 

@@ -189,6 +189,13 @@ impl Switches {
         !self.terms.is_empty() || self.may_hide.contains(&true)
     }
 
+    /// The variables that must turn for something to happen there; none where that is not all.
+    pub fn followed(&self) -> Option<Vec<usize>> {
+        let all = self.terms.iter().map(|term| term.follows);
+        let own = (!self.may_hide.contains(&true)).then_some(all)?;
+        own.collect()
+    }
+
     /// Over a course of the variables, on the pieces that are held: the first function that is beyond a bound of its piece
     /// and where, in parts of the time.
     pub fn hidden_passage(
@@ -410,6 +417,26 @@ mod tests {
             1
         );
         assert_eq!(Switches::of_expression(&expression, None).kinds().len(), 2);
+    }
+
+    #[test]
+    fn terms_that_rise_or_fall_throughout_follow_their_variable() {
+        for (text, followed) in [
+            ("900/(1 + exp(-80*v))", Some(vec![1])),
+            ("tanh(v/0.01) - 2*exp(3 - x)", Some(vec![1, 0])),
+            ("-3*atan(sinh(v) + v)", Some(vec![1])),
+            ("exp(-v^2)", None),
+            ("3*(exp(v) - v)", None),
+            ("1/v", None),
+            ("tanh(v)*x", None),
+        ] {
+            let expression = Expression::parse(text, &["x", "v"]).expect("a formula");
+            let mut found = Switches::of_expression(&expression, None).followed();
+            found
+                .iter_mut()
+                .for_each(|all| all.sort_unstable_by_key(|&v| 1 - v));
+            assert_eq!(found, followed, "{text}");
+        }
     }
 
     #[test]

@@ -49,7 +49,13 @@ pub(crate) struct NarrowTerm {
     last: usize,
     /// Its largest value, not finite where that is unknown.
     scale: f64,
+    /// The variable with which it rises or falls throughout, if it depends on no other: while that one goes on in one direction, the
+    /// ends of a step show all of it.
+    pub(crate) follows: Option<usize>,
 }
+
+/// The variable with which a part rises (1) or falls (−1) throughout; none with 0: it is constant.
+type Trend = (Option<usize>, f64);
 
 impl Course {
     /// Through the values of all variables at five equally spaced instants.
@@ -88,6 +94,12 @@ impl Course {
         own.map_or(f64::NAN, |c| {
             c.iter().rev().fold(0.0, |sum, c| sum * 4.0 * at + c)
         })
+    }
+
+    /// Whether a variable goes in one direction, from start to end.
+    fn has_one_direction(&self, variable: usize) -> bool {
+        let [_, slope, _] = self.enclose(variable, [0.0, 1.0]).0;
+        slope.lo > 0.0 || slope.hi < 0.0
     }
 
     fn enclose(&self, variable: usize, [from, to]: [f64; 2]) -> Enclosure {
@@ -216,7 +228,12 @@ impl NarrowTerm {
                 _ => {
                     let anything = enclose_ops(&ops[start..=last], &[], |_| Enclosure::UNKNOWN);
                     let scale = anything.value().magnitude();
-                    found.push(Self { start, last, scale });
+                    found.push(Self {
+                        start,
+                        last,
+                        scale,
+                        follows: trend(ops, tree, last).and_then(|(variable, _)| variable),
+                    });
                 }
             }
         }
@@ -225,6 +242,9 @@ impl NarrowTerm {
 
     /// A pulse of it that a step between two points does not show.
     pub(crate) fn hidden(&self, ops: &[Op], held: &HeldPieces, course: &Course) -> Option<Pulse> {
+        if self.follows.is_some_and(|of| course.has_one_direction(of)) {
+            return None;
+        }
         let term = Traced::part(ops, [self.start, self.last], held, course);
         let ends = [term.value(0.0), term.value(1.0)];
         let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
@@ -293,6 +313,47 @@ fn is_narrow(ops: &[Op], tree: &Operands, i: usize) -> bool {
             !matches!(ops[tree.operands[i][1]], Op::Number(n) if [1.0, 2.0, 3.0].contains(&n))
         }
         _ => false,
+    }
+}
+
+/// How a part of an expression follows a single variable, if it does so monotonically.
+fn trend(ops: &[Op], tree: &Operands, last: usize) -> Option<Trend> {
+    if tree.depends[last] == [false; 2] {
+        return Some((None, 0.0));
+    }
+    let of = &tree.operands[last];
+    let operand = |i: usize| trend(ops, tree, of[i]);
+    // Of an operand over all values of the variable: 0 where it has both signs.
+    let sign = |i: usize| {
+        let part = &ops[tree.starts[of[i]]..=of[i]];
+        let range = enclose_ops(part, &[], |_| Enclosure::UNKNOWN).value();
+        f64::from(range.lo > 0.0) - f64::from(range.hi < 0.0)
+    };
+    let times = |(variable, trend): Trend, factor: f64| {
+        (trend * factor != 0.0).then_some((variable, trend * factor))
+    };
+    match ops[last] {
+        Op::Variable(variable) => Some((Some(variable), 1.0)),
+        Op::Negate => times(operand(0)?, -1.0),
+        Op::Unary(Unary::Exp | Unary::Tanh | Unary::Sinh | Unary::Atan) => operand(0),
+        Op::Binary(operation @ (Binary::Add | Binary::Subtract)) => {
+            let direction = if operation == Binary::Add { 1.0 } else { -1.0 };
+            match (operand(0)?, operand(1)?) {
+                ((None, _), other) => times(other, direction),
+                (one, (None, _)) => Some(one),
+                (one, other) => (times(other, direction) == Some(one)).then_some(one),
+            }
+        }
+        Op::Binary(operation @ (Binary::Multiply | Binary::Divide)) => {
+            match (operand(0)?, operand(1)?) {
+                ((None, _), other) if operation == Binary::Multiply => times(other, sign(0)),
+                // A quotient by what keeps its sign.
+                ((None, _), other) => times(other, -sign(0) * sign(1).abs()),
+                (one, (None, _)) => times(one, sign(1)),
+                _ => None,
+            }
+        }
+        _ => None,
     }
 }
 

@@ -37,14 +37,14 @@ impl<M: MovingModel> Machine<M> {
             };
             self.state_switches.values(kept, source_state, out);
         };
-        if !self.fit_windows.is_empty() {
+        self.set_actuator_motion(t, y, &mut workspace.equation);
+        if self.fit_at(workspace.equation.q.first()).is_some() {
             values(&*self.evaluate(t, y, workspace)?);
             return Ok(());
         }
         let MachineWorkspace {
             inner, equation, ..
         } = workspace;
-        self.set_actuator_motion(t, y, equation);
         let at = [&equation.q[..], &equation.q_dot[..]];
         values(&KinematicState::new(&self.model, at, inner)?);
         Ok(())

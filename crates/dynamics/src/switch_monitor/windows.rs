@@ -16,11 +16,18 @@ const ZOOM: f64 = 1.0 / 16.0;
 /// Steps over the rise of a pulse.
 const STEPS_OF_A_RISE: f64 = 4.0;
 
+/// Slopes of two steps that differ by less than this part leave the variable one direction in both.
+const STRAIGHT: f64 = 0.25;
+
 /// What is looked at between the points of a step.
 #[derive(Default)]
 pub(super) struct Between {
     /// The variables of the loads at equally spaced points.
     samples: [Vec<f64>; POINTS],
+    /// Those that must turn for anything to happen there, if others do not count.
+    followed: Option<Vec<usize>>,
+    /// The ends of the last steps, the latest first, with the variables; a time that is no number where there was none.
+    ends: [(OdeState, Vec<f64>); 3],
     /// The longest step (s) until a time (s) up to which a pulse rises.
     pub(super) fine: Option<(f64, f64)>,
 }
@@ -28,7 +35,10 @@ pub(super) struct Between {
 impl Between {
     /// Of a system whose loads may vary there; else none.
     pub(super) fn of(system: &dyn OdeSystem) -> Option<Self> {
-        system.may_hide().then(Self::default)
+        system.may_hide().then(|| Self {
+            followed: system.followed_signals(),
+            ..Self::default()
+        })
     }
 }
 
@@ -44,6 +54,47 @@ impl SwitchMonitor {
         if let Some(between) = &mut self.between {
             system.read_signals(&mut between.samples[point]);
         }
+    }
+
+    /// The last sample of a step is the first of the next.
+    pub(super) fn repeat_last_sample(&mut self) {
+        if let Some(between) = &mut self.between {
+            between.samples.swap(0, POINTS - 1);
+        }
+    }
+
+    /// Whether nothing happens between the points of a step because the variables go on as in the step before: one look at its end
+    /// shows that.
+    pub(super) fn goes_straight_on(
+        &mut self,
+        system: &mut dyn OdeSystem,
+        step: &Step<'_>,
+    ) -> Result<bool> {
+        let Some(between) = &mut self.between else {
+            return Ok(false);
+        };
+        let Some(followed) = &between.followed else {
+            return Ok(false);
+        };
+        system.switch_values(step.now.t, &step.now.y, &mut self.values)?;
+        between.ends.rotate_right(1);
+        let [(end, now), (start, before), (first, earlier)] = &mut between.ends;
+        end.t = step.now.t;
+        end.y.clone_from(&step.now.y);
+        system.read_signals(now);
+        if start != step.before {
+            // Nothing is known of the way to where the integration has begun.
+            start.t = f64::NAN;
+        }
+        let times = [end.t - start.t, start.t - first.t];
+        if times.iter().any(|t| t.is_nan()) || between.fine.is_some() {
+            return Ok(false);
+        }
+        let mut slopes = followed.iter().map(|&i| {
+            let last = (before[i] - earlier[i]) / times[1];
+            (last, (now[i] - before[i]) / times[0])
+        });
+        Ok(slopes.all(|(last, slope)| (slope - last).abs() <= STRAIGHT * slope.abs()))
     }
 
     /// What happens between the points of a step, or where a pulse has risen, so that the integration begins anew; `crossing` is
@@ -71,7 +122,7 @@ impl SwitchMonitor {
         let found = match hidden {
             Some(Hidden::Passage { switch, at }) => {
                 let about = (switch, from + at * length);
-                self.passage(about, &mut between.samples, system, step)?
+                self.passage(about, system, step)?
             }
             // Stages of the step may have met the pulse, and those of its dense output: it is taken again.
             Some(Hidden::Pulse(_)) => Some(Crossing::begin_anew(step.before.clone())),
@@ -105,12 +156,12 @@ impl SwitchMonitor {
     fn passage(
         &mut self,
         (mut k, mut t): (usize, f64),
-        samples: &mut [Vec<f64>; POINTS],
         system: &mut dyn OdeSystem,
         step: &mut Step<'_>,
     ) -> Result<Option<Crossing>> {
         let pieces = self.pieces();
         let (start, mut length) = (step.before.t, step.duration());
+        let mut samples = Default::default();
         for _ in 0..LEVELS {
             let mut values = vec![0.0; self.switches.len()];
             let mut value_at = |t: f64| -> Result<f64> {
@@ -142,8 +193,8 @@ impl SwitchMonitor {
             let from = (t - ZOOM * length).max(step.before.t);
             let to = (t + ZOOM * length).min(step.now.t);
             length = to - from;
-            self.sample_all(samples, [from, to], system, step)?;
-            let Some(Hidden::Passage { switch, at }) = system.hidden_in(samples, &pieces) else {
+            self.sample_all(&mut samples, [from, to], system, step)?;
+            let Some(Hidden::Passage { switch, at }) = system.hidden_in(&samples, &pieces) else {
                 break;
             };
             (k, t) = (switch, from + at * length);

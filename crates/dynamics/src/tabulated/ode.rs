@@ -247,6 +247,10 @@ impl OdeSystem for TabulatedMachineOde<'_> {
         self.machine.state_switches.may_hide()
     }
 
+    fn followed_signals(&self) -> Option<Vec<usize>> {
+        self.machine.state_switches.followed()
+    }
+
     fn read_signals(&self, out: &mut Vec<f64>) {
         out.clone_from(&self.seen);
     }

@@ -8,6 +8,7 @@ use super::plan::{JointPlace, Plan, Pose};
 use super::positions::OPEN;
 use super::prediction::Predictions;
 use super::rank::Mobility;
+use super::stations::Revolutions;
 use super::tree::Tree;
 use super::vector::vec3;
 use crate::error::{AssemblyError, StructureError};
@@ -50,7 +51,7 @@ impl Plan {
             drivers,
             start: Node::default(),
             predictions: Predictions::default(),
-            revolutions: Vec::new(),
+            revolutions: Revolutions::default(),
             range: Range::Unbounded,
             repetition: None,
             range_ends: [false; 2],

@@ -15,6 +15,7 @@ use crate::mechanism::JointId;
 use crate::plan::range::Range;
 use dwell_numerics::Scalar;
 use std::f64::consts::TAU;
+use std::sync::OnceLock;
 
 /// A stored pose with its first and second derivatives by the coordinate.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -129,8 +130,7 @@ impl Plan {
         self.start = first.clone();
         let (true, Some(kind)) = (self.actuators() == 1, kind) else {
             self.range = Range::Unbounded;
-            let all = 0..self.actuators();
-            self.revolutions = all.map(|i| self.revolution(i, &pose)).collect();
+            self.revolutions.0 = vec![OnceLock::new(); self.actuators()];
             return Ok(());
         };
         let is_angle = matches!(kind, ActuatorKind::Angle(_));

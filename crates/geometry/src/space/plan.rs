@@ -10,7 +10,7 @@ use super::lower::Lowered;
 use super::mechanism::{Assembly, Mechanism, Placement};
 use super::prediction::Predictions;
 use super::rank::Mobility;
-use super::stations::{Revolution, Stations};
+use super::stations::{Revolutions, Stations};
 use super::tree::{Driver, FreedomKind, Tree};
 use super::vector::{Rotation, Vec3};
 use super::wrench::Wrench;
@@ -73,7 +73,7 @@ pub struct Plan {
     /// By freedom: what it gains in a period of the only coordinate.
     pub(super) freedom_gains: Vec<f64>,
     /// By each of several coordinates.
-    pub(super) revolutions: Vec<Option<Revolution>>,
+    pub(super) revolutions: Revolutions,
     /// The freedoms that keep count of all periods: those that teeth turn, and those that gain where the pose does not repeat.
     pub(super) geared: Vec<usize>,
     /// In the range of the only coordinate.

@@ -8,6 +8,7 @@ use crate::error::PositionError;
 use dwell_numerics::Scalar;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use std::sync::OnceLock;
 
 /// Largest step of each of several coordinates on the way from the assembly, rad or m.
 const STEP: f64 = 0.05;
@@ -61,14 +62,18 @@ impl Plan {
         pose: &mut Pose<T>,
     ) -> Result<(), PositionError> {
         // Whole revolutions after which all bodies stand where they stood need not be followed.
-        let turned = q.iter().zip(&self.assembly_q).zip(&self.revolutions);
-        let turned = turned.map(|((q, a), revolution)| match revolution {
-            Some(_) => ((q.value() - a) / TAU).round(),
-            None => 0.0,
+        let ends = || q.iter().zip(&self.assembly_q);
+        let turned = ends().enumerate().map(|(i, (q, a))| {
+            let turns = ((q.value() - a) / TAU).round();
+            let revolution = (turns != 0.0).then(|| self.revolution(i))?;
+            revolution.map(|gains| (turns, gains))
         });
-        let turned: Vec<f64> = turned.collect();
-        let ends = q.iter().zip(&self.assembly_q).zip(&turned);
-        let ahead: Vec<f64> = ends.map(|((q, a), k)| q.value() - a - k * TAU).collect();
+        let turned: Vec<Option<(f64, &Revolution)>> = turned.collect();
+        let ahead = ends().zip(&turned).map(|((q, a), turned)| {
+            let turns = turned.map_or(0.0, |(turns, _)| turns);
+            q.value() - a - turns * TAU
+        });
+        let ahead: Vec<f64> = ahead.collect();
         let span = ahead.iter().fold(0.0, |max: f64, part| max.max(part.abs()));
         let doubled = (span / (STEP * MAX_STEPS)).log2().ceil().max(0.0);
         let unit = STEP * doubled.exp2();
@@ -78,9 +83,9 @@ impl Plan {
         let reached = self.reach_station(place, unit, &mut stations);
         if let (Ok(()), Some(real)) = (&reached, &stations.pose) {
             take_freedoms(real, pose);
-            for (revolution, k) in self.revolutions.iter().zip(&turned) {
-                let gains = revolution.iter().flatten().zip(&mut pose.coordinates);
-                gains.for_each(|(gain, freedom)| *freedom += T::from_f64(k * gain));
+            for (turns, gains) in turned.into_iter().flatten() {
+                let gains = gains.iter().zip(&mut pose.coordinates);
+                gains.for_each(|(gain, freedom)| *freedom += T::from_f64(turns * gain));
             }
         }
         pose.stations = stations;
@@ -88,12 +93,22 @@ impl Plan {
         self.close(q, None, pose)
     }
 
-    /// A revolution of one of several coordinates from the assembly, `start`, if all bodies then stand where they stood.
-    pub(super) fn revolution(&self, actuator: usize, start: &Pose) -> Option<Revolution> {
-        if !self.is_angle(actuator) || self.groups.is_empty() {
+    /// A revolution of one of several coordinates from the assembly, if all bodies then stand where they stood.
+    fn revolution(&self, actuator: usize) -> Option<&Revolution> {
+        let found = self.revolutions.0.get(actuator)?;
+        found
+            .get_or_init(|| self.find_revolution(actuator))
+            .as_ref()
+    }
+
+    fn find_revolution(&self, actuator: usize) -> Option<Revolution> {
+        if !self.is_angle(actuator) {
             return None;
         }
-        let (mut pose, mut q) = (start.clone(), self.assembly_q.clone());
+        let (mut start, mut q) = (self.pose(), self.assembly_q.clone());
+        self.start_from(&self.start, 0.0, &mut start);
+        self.close(&q, None, &mut start).ok()?;
+        let mut pose = start.clone();
         let steps = (TAU / STEP).ceil();
         for k in 1..=steps as usize {
             q[actuator] = self.assembly_q[actuator] + TAU * k as f64 / steps;
@@ -143,7 +158,18 @@ impl Plan {
 }
 
 /// By freedom: what it gains in a revolution of a coordinate.
-pub(super) type Revolution = Vec<f64>;
+type Revolution = Vec<f64>;
+
+/// By coordinate: its revolution if there is one, once a pose half a revolution away is asked for. They follow from the rest of a plan,
+/// so that they do not tell two plans apart.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Revolutions(pub(super) Vec<OnceLock<Option<Revolution>>>);
+
+impl PartialEq for Revolutions {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
 
 /// The poses of several coordinates by their places in a lattice about the assembly. Each depends on its place alone, so that a pose
 /// does not depend on what was evaluated before.
