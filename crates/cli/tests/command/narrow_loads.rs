@@ -61,7 +61,7 @@ fn narrow_loads_of_another_coordinate_do_their_impulse() {
     ] {
         for method in ["bdf", "tsit45", "esdirk34"] {
             let dir = TestDir::new();
-            dir.put("m.toml", &slides(&magnitude));
+            dir.put("m.toml", slides(&magnitude));
             let options = ["--method", method, "--pictures", "none", "--out", "o"];
             let run = dir.run(&[&["simulate", "m.toml"][..], &options].concat());
             assert_eq!(run.status, Some(0), "{magnitude} {method}: {}", run.err);
