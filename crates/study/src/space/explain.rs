@@ -102,7 +102,7 @@ fn explain_assembly(scene: &SpaceScene, error: &AssemblyError) -> StudyError {
             degrees_of_freedom,
         } => {
             let freedoms = freedom_text(*degrees_of_freedom, scene.mechanism.actuators.len());
-            explain_nearly_parallel(scene, freedoms, *joints, *angle)
+            explain_nearly_parallel(scene, &freedoms, *joints, *angle)
         }
         AssemblyError::SingularAssembly { joints, .. } => {
             let message = "the start is a singular position: the actuator does not determine the motion there";
@@ -135,13 +135,13 @@ fn explain_not_throughout(
         let labels = joint_labels(joints, "among the redundant constraints");
         return scene_error(scene, message, help, labels);
     };
-    explain_nearly_parallel(scene, message, pair, angle)
+    explain_nearly_parallel(scene, &message, pair, angle)
 }
 
 /// What follows from two axes that are nearly parallel.
 fn explain_nearly_parallel(
     scene: &SpaceScene,
-    consequence: String,
+    consequence: &str,
     pair: [JointId; 2],
     angle: f64,
 ) -> StudyError {

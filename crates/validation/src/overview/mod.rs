@@ -46,7 +46,7 @@ pub struct Judged<'a> {
 }
 
 /// The result of one check in a case.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum CheckCell<'a> {
     /// The finding with the least margin; one that fails before all others.
     Nearest(&'a Finding),

@@ -103,12 +103,15 @@ pub(crate) fn cost_line(cost: &Statistics, record: &mut Record) -> String {
     )
 }
 
+/// The parts of a run, each with its branch.
+type Parts<'a> = &'a [(usize, Solution)];
+
 /// The class of a conservative motion of one degree of freedom, from its energy, and its period; the turning points with their errors
 /// (rad or m), where these are known. The period is that of `parts`, unless the orbit does not follow these and their second run. A motion that an event
 /// ended before it could turn back is no libration.
 pub(crate) fn class_line(
     problem: &impl MotionProblem,
-    (parts, second): (&[(usize, Solution)], Option<&[(usize, Solution)]>),
+    (parts, second): (Parts<'_>, Option<Parts<'_>>),
     turning_point_errors: impl Fn([f64; 2]) -> Option<[f64; 2]>,
     record: &mut Record,
 ) -> String {
@@ -185,7 +188,7 @@ fn missed(orbit: &Orbit, parts: &[(usize, Solution)]) -> Option<[f64; 3]> {
 /// unless that missed a peak of the inertia: then both runs are as far from it.
 fn is_followed(
     orbit: &Orbit,
-    (parts, second): (&[(usize, Solution)], Option<&[(usize, Solution)]>),
+    (parts, second): (Parts<'_>, Option<Parts<'_>>),
     period_error: f64,
 ) -> bool {
     let Some([far, fast, moved]) = missed(orbit, parts) else {
@@ -213,7 +216,7 @@ fn is_ended_before_it_turns(problem: &impl MotionProblem, parts: &[(usize, Solut
 /// The period of a motion with its error, where it has one.
 fn period_text(
     problem: &impl MotionProblem,
-    (parts, second): (&[(usize, Solution)], Option<&[(usize, Solution)]>),
+    (parts, second): (Parts<'_>, Option<Parts<'_>>),
     record: &mut Record,
 ) -> String {
     let orbit = match problem.orbit(1.0) {
