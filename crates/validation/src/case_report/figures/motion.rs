@@ -112,6 +112,8 @@ fn revolution_marks(history: &History, until: f64) -> Vec<Mark> {
     drawn.map(mark).collect()
 }
 
+/// Most charts below each other.
+const MAX_STACKED: usize = 9;
 /// Most points of a curve: there are thousands of steps.
 const MAX_POINTS: usize = 1500;
 
@@ -154,12 +156,10 @@ pub(crate) fn energies(scene: &Scene, run: &FreeMotionRun) -> Figure {
     charts.push(output::chart("Energies", time(), energy, lines));
     let text = "The free motion under loads and drives, checked by the full multibody equations. The potential energy is zero at the start; the work is that of all forces without a potential.";
     let provenance = FreeMotionRun::method_text();
-    output::figure(
-        scene,
-        "motion",
-        "Free motion",
-        text,
-        vec![charts.into()],
-        provenance,
-    )
+    // Over one axis more would be longer than two pages.
+    let panels = match charts.len() > MAX_STACKED {
+        true => charts.into_iter().map(Panel::from).collect(),
+        false => vec![charts.into()],
+    };
+    output::figure(scene, "motion", "Free motion", text, panels, provenance)
 }
