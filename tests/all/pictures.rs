@@ -10,7 +10,7 @@ use dwell_study::{
 };
 use dwell_tests::fixtures::{case_names, repository_root, scene};
 use dwell_validation::{
-    Judged, JudgedCase, export_study, extremes, index, validate, work_precision,
+    ValidatedCase, ValidationRun, export_study, extremes, index, validate, work_precision,
 };
 use rayon::prelude::*;
 use std::fmt::Write as _;
@@ -98,13 +98,13 @@ fn the_pictures_of_the_validation_are_legible() {
     };
     let done: Vec<_> = cases.par_iter().map(of_case).collect();
     let scenes: Vec<Scene> = cases.iter().map(|case| scene(case)).collect();
-    let judged = scenes.iter().zip(&done).map(|(scene, done)| JudgedCase {
+    let judged = scenes.iter().zip(&done).map(|(scene, done)| ValidatedCase {
         name: &scene.name,
         title: &scene.title,
         in_space: false,
         result: Ok(done),
     });
-    let judged = Judged {
+    let judged = ValidationRun {
         cases: judged.collect(),
         studies: Vec::new(),
         manual: Some([1, 1]),

@@ -7,8 +7,8 @@ use dwell_scene::{Scene, SceneError, SpaceScene};
 use dwell_study::{Outcome, Step, StudyError};
 use dwell_validation::manual::KeyStudy;
 use dwell_validation::{
-    CaseResult, Judged, JudgedCase, Validation, export_study, extremes, index, validate_program,
-    work_precision,
+    CaseResult, ValidatedCase, Validation, ValidationRun, export_study, extremes, index,
+    validate_program, work_precision,
 };
 use indicatif::ProgressBar;
 use miette::{Report, miette};
@@ -79,8 +79,8 @@ pub(crate) fn validate(
         keys.manual(&by_case, &extremes, &interface())
     });
     let mut all = Outcome::default();
-    let judged = Judged {
-        cases: judged_cases(&by_case, &in_space, &spatial),
+    let judged = ValidationRun {
+        cases: validated_cases(&by_case, &in_space, &spatial),
         studies: studies
             .iter()
             .map(|(name, o)| (*name, &o.findings[..]))
@@ -95,7 +95,7 @@ pub(crate) fn validate(
             [number("passed"), number("required")]
         }),
     };
-    if judged.cases.len() > 1 {
+    if judged.cases.len() > 1 && judged.cases.iter().any(|case| case.result.is_ok()) {
         add(&mut all, index(&judged));
     }
     let (done, failed) = separate(results);
@@ -157,11 +157,11 @@ fn case_in_space(
 }
 
 /// The cases of the plane and those in space for the verdict.
-fn judged_cases<'a>(
+fn validated_cases<'a>(
     by_case: &'a [CaseResult<'a>],
     in_space: &'a [PathBuf],
     spatial: &'a [Result<(SpaceScene, Validation), SceneError>],
-) -> Vec<JudgedCase<'a>> {
+) -> Vec<ValidatedCase<'a>> {
     let planar = by_case.iter().map(|(name, result)| match result {
         Ok((scene, done)) => (&scene.name[..], &scene.title[..], Ok(*done)),
         Err(reason) => (*name, *name, Err(reason.clone())),
@@ -180,7 +180,7 @@ fn judged_cases<'a>(
             }
         });
     let judged = |in_space: bool| {
-        move |(name, title, result)| JudgedCase {
+        move |(name, title, result)| ValidatedCase {
             name,
             title,
             in_space,

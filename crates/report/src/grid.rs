@@ -124,7 +124,7 @@ impl Tile {
     }
 
     /// The same as a verdict.
-    pub fn verdict(self, passed: bool) -> Self {
+    pub fn with_result(self, passed: bool) -> Self {
         Self {
             passed: Some(passed),
             ..self

@@ -26,7 +26,7 @@ impl StudyReport<'_> {
     /// Adds the report to an outcome.
     pub(crate) fn add_to(self, outcome: &mut Outcome) {
         let (name, title, findings) = (self.name, self.title, self.findings);
-        let mut blocks = vec![Block::Text(verdict_line(&findings)), Block::Text(self.text)];
+        let mut blocks = vec![Block::Text(result_line(&findings)), Block::Text(self.text)];
         blocks.extend(self.blocks);
         blocks.push(Block::Heading("Findings".to_owned()));
         blocks.push(Block::Findings(findings.clone()));
@@ -154,7 +154,7 @@ pub(crate) fn nearness(findings: &[Finding]) -> String {
 }
 
 /// The first line of the page of a case or a study: the verdict, and what is nearest to its tolerance.
-pub(crate) fn verdict_line(findings: &[Finding]) -> String {
+pub(crate) fn result_line(findings: &[Finding]) -> String {
     let passed = findings.iter().filter(|f| f.pass).count();
     let counts = format!("{passed} of {} findings pass", findings.len());
     let result = if all_pass(findings) { "PASS" } else { "FAIL" };

@@ -360,7 +360,10 @@ fn a_good_case_is_written_when_others_cannot_be_validated() {
     let of = |case: &str| files.iter().filter(|f| f.contains(case)).count();
     assert!(of("good") > 3, "{files:?}");
     assert_eq!((of("apart"), of("unread")), (0, 0));
-    let index = std::fs::read_to_string(dir.0.join("o/index.md")).unwrap();
+    let verdict = std::fs::read_to_string(dir.0.join("o/index.md")).unwrap();
+    let headline = "# FAIL: cases/apart could not be validated\n";
+    assert!(verdict.starts_with(headline), "{verdict}");
+    let index = std::fs::read_to_string(dir.0.join("o/cases.md")).unwrap();
     for row in [
         "(good.md) | pass |",
         "apart` | **not validated** |",

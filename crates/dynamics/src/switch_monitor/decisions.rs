@@ -12,7 +12,7 @@ use dwell_laws::SwitchKind;
 const ON_BOUND: f64 = 1e-13;
 
 /// So many functions at a time are tried on all pieces on whose bound they are; others where their own rates lead.
-const MOST_TIES: usize = 6;
+const MAX_TOGETHER: usize = 6;
 
 /// Decisions that are being taken.
 struct Choice<'c> {
@@ -83,7 +83,7 @@ impl SwitchMonitor {
             open,
             changed: changed.to_vec(),
             ties: Vec::new(),
-            most: MOST_TIES,
+            most: MAX_TOGETHER,
         };
         if !self.choose(0, &mut choice, system, at)? {
             choice.most = 0;
@@ -196,7 +196,7 @@ impl SwitchMonitor {
             return Ok(true);
         }
         self.hold(system);
-        let rates = self.soon_behind(system, at)?;
+        let rates = self.shortly_after(system, at)?;
         // A function that rests on a whole number is on the piece above it.
         Ok(ties.iter().all(|&(k, sign)| {
             let [_, rate] = rates[k];
@@ -232,12 +232,16 @@ impl SwitchMonitor {
     ) -> Result<f64> {
         self.switches[k].piece = Some(side);
         self.hold(system);
-        let [_, rate] = self.soon_behind(system, at)?[k];
+        let [_, rate] = self.shortly_after(system, at)?[k];
         Ok(rate)
     }
 
     /// The values and the rates of all functions soon behind a state, on the pieces that are held.
-    fn soon_behind(&mut self, system: &mut dyn OdeSystem, at: &OdeState) -> Result<Vec<[f64; 2]>> {
+    fn shortly_after(
+        &mut self,
+        system: &mut dyn OdeSystem,
+        at: &OdeState,
+    ) -> Result<Vec<[f64; 2]>> {
         let mut rates = vec![0.0; at.y.len()];
         system.rhs(at.t, &at.y, &mut rates)?;
         let h = PROBE * self.step;

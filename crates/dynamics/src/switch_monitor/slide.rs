@@ -115,7 +115,7 @@ impl SwitchMonitor {
         let Some(both) = BothSides::at(&sides, system, at)? else {
             return Ok(false);
         };
-        self.decide_beside(&mut sides, (&switches, &both), system, at)?;
+        self.decide_by_values(&mut sides, (&switches, &both), system, at)?;
         let Some(both) = BothSides::at(&sides, system, at)? else {
             return Ok(false);
         };
@@ -140,7 +140,7 @@ impl SwitchMonitor {
     }
 
     /// Decides what depends on a switch by its values beside it, on each side: the motions there may both lead back.
-    fn decide_beside(
+    fn decide_by_values(
         &self,
         sides: &mut [Vec<Option<f64>>; 2],
         (switches, both): (&[usize], &BothSides),

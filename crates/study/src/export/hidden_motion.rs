@@ -12,6 +12,9 @@ const INTERVALS: u32 = 8192;
 /// Parts of a radian, or of the mechanism's size, that are rounding.
 const ROUNDING: f64 = 1e-9;
 
+/// How much of what the rates at two points account for the rule may miss where they are alike.
+const STEEPEST: f64 = 0.02;
+
 /// Refuses a coupling whose coordinate changes between two points by what its rates at both do not account for, nor their difference: the
 /// trapezoidal rule errs by less where the points resolve the law.
 pub(super) fn reject_hidden_motion(
@@ -43,7 +46,9 @@ pub(super) fn reject_hidden_motion(
         {
             let hidden = to - from - 0.5 * step * (slow + fast);
             let hidden = (hidden - period.min(f64::MAX) * (hidden / period).round()).abs();
-            if hidden > step * (fast - slow).abs() + rounding {
+            // Where the rates are alike the law may be steepest between them.
+            let resolved = (fast - slow).abs() + STEEPEST * slow.abs().max(fast.abs());
+            if hidden > step * resolved + rounding {
                 let [from, to] =
                     [q - step, q].map(|q| own_coordinate(scene, q, model.plan().is_angle(0)));
                 let message = format!(

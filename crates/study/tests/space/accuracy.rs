@@ -112,8 +112,8 @@ fn a_screw_turns_without_end() {
     let lead = 0.006 / std::f64::consts::TAU;
     let (m, force) = (4e-5 + 25.0 * lead * lead, 25.0 * 9.81 * lead);
     let (a, end) = (force / m, 0.3);
-    let turned = 1.5 * end + 0.5 * a * end * end;
-    assert!(turned > 20.0 * std::f64::consts::TAU, "{turned} rad");
+    let turned = 1.5 * end - 0.5 * a * end * end;
+    assert!(turned < -20.0 * std::f64::consts::TAU, "{turned} rad");
     for method in Method::ALL {
         let solver = by_method(method, 1e-10);
         let done = computed(&scene, &solver);

@@ -5,7 +5,7 @@ use super::family::Family;
 use super::{dimensions, family_page};
 use crate::cases::reference::Reference;
 use crate::checked::analysis::CaseAnalysis;
-use crate::report_parts::{TextColumn, figure_blocks, table_of, verdict_line};
+use crate::report_parts::{TextColumn, figure_blocks, result_line, table_of};
 use dwell_findings::Finding;
 use dwell_report::{Block, Document, Figure};
 use dwell_scene::Scene;
@@ -69,7 +69,7 @@ fn findings_sentence(reference: &Reference, analysis: &CaseAnalysis<'_>) -> Stri
     };
     format!(
         "{} States were checked at {} instants: {}{reference_states}.",
-        verdict_line(&analysis.findings),
+        result_line(&analysis.findings),
         analysis.states.states.len(),
         analysis.states.motion_text,
     )

@@ -1,6 +1,6 @@
 //! The verdict in one picture: what passed, the numbers it rests on, and every case by every check.
 
-use super::{CheckCell, Judged, check_cells, verdict};
+use super::{CheckCell, ValidationRun, check_cells, summary};
 use crate::report_parts::{margin, margin_text};
 use dwell_findings::Check;
 use dwell_report::{Axis, Cell, Figure, Grid, Group, Panel, Row, Tiles};
@@ -9,7 +9,7 @@ use dwell_report::{Axis, Cell, Figure, Grid, Group, Panel, Row, Tiles};
 const COLOR_RANGE: [f64; 2] = [1.0, 1e4];
 
 /// Tiles above a matrix of margins.
-pub(super) fn overview(judged: &Judged<'_>) -> Figure {
+pub(super) fn overview(judged: &ValidationRun<'_>) -> Figure {
     let group = |in_space: bool| Group {
         heading: if in_space { "In space" } else { "In the plane" }.to_owned(),
         rows: (judged.cases.iter())
@@ -32,7 +32,7 @@ pub(super) fn overview(judged: &Judged<'_>) -> Figure {
         compact: true,
         ..Grid::default()
     };
-    let rows = verdict::tiles(judged).into_iter();
+    let rows = summary::tiles(judged).into_iter();
     let rows = rows.filter(|tiles| !tiles.is_empty()).map(|tiles| {
         let columns = tiles.len();
         Panel::from(Tiles { columns, tiles })

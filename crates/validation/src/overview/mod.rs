@@ -2,7 +2,7 @@
 
 mod figure;
 mod page;
-mod verdict;
+mod summary;
 
 use crate::case_report::validate::Validation;
 use crate::cases::reference::SourceKind;
@@ -23,7 +23,7 @@ pub type CaseResult<'a> = (&'a str, Result<(&'a Scene, &'a Validation), String>)
 
 /// A case in the plane or in space, and what was found.
 #[derive(Debug, Clone)]
-pub struct JudgedCase<'a> {
+pub struct ValidatedCase<'a> {
     /// Its name, or where it should be.
     pub name: &'a str,
     /// Its title.
@@ -36,9 +36,9 @@ pub struct JudgedCase<'a> {
 
 /// All that one run of `dwell validate` has judged.
 #[derive(Debug, Clone)]
-pub struct Judged<'a> {
+pub struct ValidationRun<'a> {
     /// The cases of the plane, then those in space.
-    pub cases: Vec<JudgedCase<'a>>,
+    pub cases: Vec<ValidatedCase<'a>>,
     /// The studies beside them, by name, with their findings: extremes, exported runs.
     pub studies: Vec<(&'static str, &'a [Finding])>,
     /// How many lines of the manual hold, and of how many.
@@ -71,11 +71,11 @@ pub(crate) fn check_cells(done: &Validation) -> [CheckCell<'_>; Check::ALL.len()
 
 /// The report on all cases beside their own: `index.md`, the verdict in twenty lines; its picture, `index.png`, to be drawn; and case by
 /// check, `cases.md` and `index.html`.
-pub fn index(judged: &Judged<'_>) -> Outcome {
+pub fn index(judged: &ValidationRun<'_>) -> Outcome {
     let mut outcome = Outcome::default();
     outcome
         .files
-        .add("index.md", verdict::document(judged).markdown());
+        .add("index.md", summary::document(judged).markdown());
     outcome.files.add("cases.md", cases(judged).markdown());
     outcome.files.add("index.html", page::html(judged));
     let overview = Picture::of_no_scene("index.png".to_owned(), figure::overview(judged));
@@ -84,7 +84,7 @@ pub fn index(judged: &Judged<'_>) -> Outcome {
 }
 
 /// Every case in tables: margins, reference values, tolerances.
-fn cases(judged: &Judged<'_>) -> Document {
+fn cases(judged: &ValidationRun<'_>) -> Document {
     let results = &judged.cases;
     let heads = Check::ALL.map(|check| check.to_string());
     let mut blocks = failures(results);
@@ -125,7 +125,7 @@ fn cases(judged: &Judged<'_>) -> Document {
 
 /// The name of a case and its cells, if it was validated.
 fn row<const N: usize>(
-    case: &JudgedCase<'_>,
+    case: &ValidatedCase<'_>,
     cells: impl Fn(&Validation) -> [String; N],
 ) -> Vec<String> {
     match &case.result {
@@ -134,7 +134,7 @@ fn row<const N: usize>(
     }
 }
 
-impl JudgedCase<'_> {
+impl ValidatedCase<'_> {
     fn link(&self) -> String {
         format!("[{}]({}.md)", markdown_text(self.title), self.name)
     }
@@ -146,7 +146,7 @@ impl JudgedCase<'_> {
 }
 
 /// A row of the table of margins.
-fn margin_row(case: &JudgedCase<'_>) -> Vec<String> {
+fn margin_row(case: &ValidatedCase<'_>) -> Vec<String> {
     row(case, |validation| {
         check_cells(validation).map(|cell| match cell {
             CheckCell::Nearest(f) if f.pass => margin_text(margin(f)),
@@ -157,16 +157,16 @@ fn margin_row(case: &JudgedCase<'_>) -> Vec<String> {
 }
 
 /// Who made the reference values of a case.
-fn source_row(case: &JudgedCase<'_>) -> Vec<String> {
+fn source_row(case: &ValidatedCase<'_>) -> Vec<String> {
     row(case, |validation| {
         SourceKind::ALL.map(|kind| validation.source_kinds.of(kind))
     })
 }
 
 /// Every failure: the equation, the location and the difference.
-fn failures(results: &[JudgedCase<'_>]) -> Vec<Block> {
+fn failures(results: &[ValidatedCase<'_>]) -> Vec<Block> {
     let mut text = String::new();
-    for JudgedCase { name, result, .. } in results {
+    for ValidatedCase { name, result, .. } in results {
         match result {
             Ok(validation) => {
                 for failed in validation.outcome.findings.iter().filter(|f| !f.pass) {
@@ -184,7 +184,7 @@ fn failures(results: &[JudgedCase<'_>]) -> Vec<Block> {
 }
 
 /// How close the findings are to their tolerances, and which tolerances are loose.
-fn tolerance_row(case: &JudgedCase<'_>) -> Vec<String> {
+fn tolerance_row(case: &ValidatedCase<'_>) -> Vec<String> {
     let done = match &case.result {
         Ok(validated) => validated,
         Err(reason) => {

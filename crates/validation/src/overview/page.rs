@@ -1,6 +1,6 @@
 //! The overview as one HTML file: from every case and check to its findings and pictures, and to the other reports.
 
-use super::{CheckCell, Judged, JudgedCase, check_cells};
+use super::{CheckCell, ValidatedCase, ValidationRun, check_cells};
 use crate::report_parts::{margin, margin_text};
 use dwell_findings::Check;
 use dwell_report::escaped;
@@ -20,7 +20,7 @@ const REPORTS: &str = "<nav><ul>\n\
     </ul></nav>\n";
 
 /// The overview. Its text is escaped, it has no script, and loads nothing.
-pub(super) fn html(judged: &Judged<'_>) -> String {
+pub(super) fn html(judged: &ValidationRun<'_>) -> String {
     let results = &judged.cases;
     let mut text = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>Dwell: cases</title>\n\
@@ -46,7 +46,7 @@ pub(super) fn html(judged: &Judged<'_>) -> String {
 }
 
 /// A case with the margin of each check.
-fn row(case: &JudgedCase<'_>) -> String {
+fn row(case: &ValidatedCase<'_>) -> String {
     let done = match &case.result {
         Ok(validated) => validated,
         Err(reason) => {
@@ -95,7 +95,7 @@ fn shade(margin: f64) -> usize {
 }
 
 /// The pictures of a case, and what fails in it.
-fn case(case: &JudgedCase<'_>) -> String {
+fn case(case: &ValidatedCase<'_>) -> String {
     let Ok(done) = &case.result else {
         return format!(
             "<p class=\"fail\">{}: not validated</p>\n",

@@ -74,8 +74,8 @@ fn a_failure_names_the_equation_the_place_and_the_difference() {
 }
 
 /// A case in the plane.
-fn judged<'a>(name: &'a str, result: Result<&'a Validation, String>) -> JudgedCase<'a> {
-    JudgedCase {
+fn judged<'a>(name: &'a str, result: Result<&'a Validation, String>) -> ValidatedCase<'a> {
+    ValidatedCase {
         name,
         title: "A bar",
         in_space: false,
@@ -95,7 +95,7 @@ fn the_index_shows_failures_loose_tolerances_and_cases_that_were_not_validated()
         finding(Check::EnergySlope, 1e-9, 1e-12),
     ]);
     let lost = Err("it cannot be read".to_owned());
-    let all = Judged {
+    let all = ValidationRun {
         cases: vec![judged("bar", Ok(&done)), judged("cases/lost", lost)],
         studies: Vec::new(),
         manual: Some([3, 3]),
@@ -148,7 +148,7 @@ fn the_verdict_has_twenty_lines_and_names_what_is_nearest_to_its_tolerance() {
         finding(Check::Momentum, 0.0, 1e-12),
     ]);
     let far = [finding(Check::ClosedForms, 1e-15, 1e-12)];
-    let all = Judged {
+    let all = ValidationRun {
         cases: vec![judged("bar", Ok(&near))],
         studies: vec![("extremes", &far)],
         manual: Some([3, 3]),
@@ -166,7 +166,7 @@ fn the_verdict_has_twenty_lines_and_names_what_is_nearest_to_its_tolerance() {
     assert!(lines.len() <= 20, "{verdict}");
     // What is not complete is no pass.
     let verdict = text(
-        &index(&Judged {
+        &index(&ValidationRun {
             manual: Some([2, 3]),
             ..all
         }),

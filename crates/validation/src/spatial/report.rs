@@ -6,7 +6,7 @@ use super::several::of_several;
 use super::written::written_findings;
 use crate::case_report::validate::Validation;
 use crate::error::ValidationError;
-use crate::report_parts::{figure_blocks, findings_text, verdict_line};
+use crate::report_parts::{figure_blocks, findings_text, result_line};
 use dwell_findings::Finding;
 use dwell_kinetostatics::Coefficients;
 use dwell_report::{Block, Document, Figure, Files, markdown_text};
@@ -91,7 +91,7 @@ pub fn validate_in_space(
 
 fn document(scene: &SpaceScene, reference: Option<&Reference>, report: &Report) -> Document {
     let findings = &report.findings;
-    let mut texts = vec![format!("{}{}", verdict_line(findings), report.about)];
+    let mut texts = vec![format!("{}{}", result_line(findings), report.about)];
     texts.extend(reference.map(|reference| {
         let source = markdown_text(reference.source());
         format!("{}: {source}.", report.reference)

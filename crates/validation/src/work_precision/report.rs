@@ -326,10 +326,10 @@ pub(super) fn command_summary(scene: &SceneFile, found: &WorkPrecision) -> Strin
         let accuracy = format!("{:.0e}", of.preset.1);
         let errors = errors_text(found, of);
         if !of.is_reached {
-            return format!("  for {accuracy}: not reached; seen {errors}\n");
+            return format!("  for {accuracy}: not reached; measured {errors}\n");
         }
         let kept = match of.keeps_accuracy(&found.reference.error) {
-            true => "seen",
+            true => "measured",
             false => "NOT KEPT:",
         };
         let whole = of.whole.map_or_else(String::new, |whole| {
@@ -363,7 +363,7 @@ pub(super) fn command_blocks(found: &WorkPrecision) -> [Block; 3] {
         ("estimated error", |of| {
             digits_or_dash(of.estimated_error.unwrap_or(f64::NAN), 2)
         }),
-        ("seen: coordinate", |of| {
+        ("measured: coordinate", |of| {
             digits_or_dash(of.errors.coordinate, 2)
         }),
         ("energy", |of| digits_or_dash(of.errors.energy, 2)),

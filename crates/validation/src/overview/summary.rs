@@ -1,6 +1,6 @@
 //! The verdict: did it pass, what is nearest to its tolerance, and what the paper's mechanism does.
 
-use super::{Judged, JudgedCase};
+use super::{ValidatedCase, ValidationRun};
 use crate::export_study;
 use crate::report_parts::{margin, margin_text, nearest, table};
 use dwell_findings::{Check, Finding};
@@ -40,7 +40,7 @@ impl Tally {
 
     fn of_cases<'a>(
         name: &'static str,
-        cases: impl Iterator<Item = &'a JudgedCase<'a>>,
+        cases: impl Iterator<Item = &'a ValidatedCase<'a>>,
         note: &'static str,
     ) -> Self {
         let (mut passed, mut of) = (0, 0);
@@ -65,7 +65,7 @@ impl Tally {
     }
 }
 
-impl<'a> Judged<'a> {
+impl<'a> ValidationRun<'a> {
     /// All findings with the name of their case or study.
     fn findings(&self) -> impl Iterator<Item = (&'a str, &'a Finding)> {
         let cases = self.cases.iter().filter_map(|case| {
@@ -86,7 +86,7 @@ impl<'a> Judged<'a> {
         let mut tallies = vec![
             Tally::of_cases("cases in the plane", cases(false), "up to 21 checks"),
             Tally::of_cases("in space", cases(true), "by the same checks"),
-            Tally::of_findings("written files", written, "read back and judged"),
+            Tally::of_findings("written files", written, "read back and checked"),
         ];
         for &(name, findings) in &self.studies {
             let note = match name {
@@ -182,7 +182,7 @@ impl<'a> Judged<'a> {
 }
 
 /// The verdict in twenty lines: the first says whether all passed, the third what is nearest to its tolerance.
-pub(super) fn document(judged: &Judged<'_>) -> Document {
+pub(super) fn document(judged: &ValidationRun<'_>) -> Document {
     let nearest = judged.nearest().map_or_else(String::new, |(name, f)| {
         let words = if f.pass { "Nearest to its tolerance" } else { "Worst" };
         format!(
@@ -208,7 +208,7 @@ pub(super) fn document(judged: &Judged<'_>) -> Document {
     let paper: Vec<String> = paper.collect();
     let mut blocks = vec![
         Block::Text(nearest),
-        table(&["Judged", "Result", "Passed", "How"], rows),
+        table(&["ValidationRun", "Result", "Passed", "How"], rows),
         Block::Text(format!("{}.", paper.join("; "))),
         Block::Figure {
             file: "index.png".to_owned(),
@@ -230,11 +230,11 @@ pub(super) fn document(judged: &Judged<'_>) -> Document {
 }
 
 /// The kinds as tiles, and the numbers.
-pub(super) fn tiles(judged: &Judged<'_>) -> [Vec<Tile>; 2] {
+pub(super) fn tiles(judged: &ValidationRun<'_>) -> [Vec<Tile>; 2] {
     let tallies = judged.tallies().into_iter();
     let tallies = tallies.map(|tally| {
         let passed = tally.passes();
-        Tile::new(tally.name, tally.counts(), tally.note).verdict(passed)
+        Tile::new(tally.name, tally.counts(), tally.note).with_result(passed)
     });
     let nearest = judged.nearest().map(|(name, f)| {
         let value = if f.pass {
@@ -244,7 +244,7 @@ pub(super) fn tiles(judged: &Judged<'_>) -> [Vec<Tile>; 2] {
         };
         let note = format!("{name}, check {}, {}", f.check, f.key);
         let words = if f.pass { "least margin" } else { "worst" };
-        Tile::new(words, value, note).verdict(f.pass)
+        Tile::new(words, value, note).with_result(f.pass)
     });
     [
         tallies.collect(),
