@@ -354,7 +354,8 @@ impl SwitchMonitor {
             return self.pass_while_sliding(crossing, &all, system);
         }
         let none = self.marked(std::iter::empty());
-        self.settle(&none, &mut changed, system, &crossing.state)?;
+        let passed = (&none[..], &crossing.passed[..]);
+        self.settle(passed, &mut changed, system, &crossing.state)?;
         if self.slide_from_crossing(before, crossing, system)? {
             return Ok(());
         }

@@ -48,7 +48,7 @@ impl SwitchMonitor {
             return Ok(());
         }
         let moving = self.marked(moving.into_iter());
-        self.settle(&moving, &mut changed, system, at)?;
+        self.settle((&moving, &[]), &mut changed, system, at)?;
         self.hold(system);
         Ok(())
     }
@@ -68,26 +68,34 @@ impl SwitchMonitor {
     }
 
     /// Takes the decisions anew that are `open` or depend on others which have changed, so that the motion on all pieces agrees with them;
-    /// what changes by that is marked, too. Where no motion agrees, each is decided by its own rate.
+    /// what changes by that is marked, too, and so that it leads away from the switches that it has just `passed`, where it can. Where no
+    /// motion agrees, each is decided by its own rate.
     ///
     /// # Errors
     /// Where the state cannot be evaluated.
     pub(super) fn settle(
         &mut self,
-        open: &[bool],
+        (open, passed): (&[bool], &[(usize, bool)]),
         changed: &mut [bool],
         system: &mut dyn OdeSystem,
         at: &OdeState,
     ) -> Result<()> {
+        let signs = passed
+            .iter()
+            .map(|&(k, up)| (k, if up { 1.0 } else { -1.0 }));
         let mut choice = Choice {
             open,
             changed: changed.to_vec(),
-            ties: Vec::new(),
-            most: MAX_TOGETHER,
+            most: MAX_TOGETHER + passed.len(),
+            ties: signs.collect(),
         };
         if !self.choose(0, &mut choice, system, at)? {
-            choice.most = 0;
-            self.choose(0, &mut choice, system, at)?;
+            // The motion comes back to what it has passed, as one that slides does.
+            choice.ties.clear();
+            if passed.is_empty() || !self.choose(0, &mut choice, system, at)? {
+                choice.most = 0;
+                self.choose(0, &mut choice, system, at)?;
+            }
         }
         changed.copy_from_slice(&choice.changed);
         Ok(())

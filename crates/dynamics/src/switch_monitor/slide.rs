@@ -97,7 +97,7 @@ impl SwitchMonitor {
             self.take(side);
             let mut changed = self.marked(switches.iter().copied());
             let none = self.marked(std::iter::empty());
-            self.settle(&none, &mut changed, system, at)?;
+            self.settle((&none, &[]), &mut changed, system, at)?;
             *side = self.pieces();
         }
         self.take(&before);
@@ -158,6 +158,7 @@ impl SwitchMonitor {
         let mut values = [(); 2].map(|()| vec![f64::NAN; self.switches.len()]);
         for (number, pieces) in sides.iter_mut().enumerate() {
             let mut changed = self.marked(switches.iter().copied());
+            let mut anew = self.marked(std::iter::empty());
             for (k, switch) in self.switches.iter().enumerate() {
                 if changed[k] || !switch.depends_on(&changed) {
                     continue;
@@ -171,8 +172,11 @@ impl SwitchMonitor {
                 let first = switches[0];
                 let is_above = (number == 1) == (above[first] > below[first]);
                 let own = [below[k], above[k]].map(|value| switch.kind.piece_at(value));
-                if own[0] != own[1] {
-                    pieces[k] = own[usize::from(is_above)].or(pieces[k]);
+                // What depends on one that is decided otherwise here is decided here, too.
+                if own[0] != own[1] || switch.depends_on(&anew) {
+                    let before = pieces[k];
+                    pieces[k] = own[usize::from(is_above)].or(before);
+                    anew[k] = pieces[k] != before;
                 }
             }
         }
@@ -262,7 +266,7 @@ impl SwitchMonitor {
             }
             self.take(side);
             let none = self.marked(std::iter::empty());
-            self.settle(&none, &mut passed.to_vec(), system, at)?;
+            self.settle((&none, &[]), &mut passed.to_vec(), system, at)?;
             *side = self.pieces();
         }
         self.watch_others(&sliding);
