@@ -185,21 +185,6 @@ fn a_speed_rests_on_the_switch_that_ends_its_couple() {
 }
 
 /// What switches exactly where the motion begins has switched.
-/// The comparison rests on its threshold while the clamp is at its bound. On its other side the motion would lead back across the clamp's switch,
-/// where it rests on the threshold again: no decision that agrees with the motion behind the switch.
-#[test]
-fn a_decision_behind_a_switch_agrees_with_the_motion_that_leads_away() {
-    let end = 0.8 * INERTIA / 2.0;
-    let expected = [0.6 * end, 0.2];
-    check(
-        "if(clamp(sin(9*v), 0, 2) >= 0, -2, 1)",
-        1.0,
-        end,
-        expected,
-        30.0,
-    );
-}
-
 #[test]
 fn a_switch_at_the_start_has_switched() {
     let a = 1.0 / INERTIA;

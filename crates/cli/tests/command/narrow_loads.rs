@@ -144,3 +144,31 @@ fn a_comparison_of_two_equal_values_does_not_switch_by_rounding() {
         assert!((found - exact).abs() < 1e-6, "{method}: {found}, {exact}");
     }
 }
+
+/// The comparison rests on its threshold while the inner clamp is at its bound. Decided false behind the clamp's switch, it would lead back to
+/// where it rests again: no decision that agrees with the motion there.
+#[test]
+fn a_condition_that_always_holds_changes_no_motion() {
+    let of_law = |law: &str, method: &str| {
+        let magnitude = format!(r#""min(floor(abs(sin(7*x))), {law}) - 4*x - 0.5*x.velocity""#);
+        let scene = slides(&magnitude)
+            .replace("mass = 1", "mass = 2")
+            .replace("x = 0\n", "x = 0.5\n")
+            .replace("x = 1, y = 1", "x = -1, y = 1")
+            .replace("duration = 1", "duration = 2");
+        let dir = TestDir::new();
+        dir.put("m.toml", &scene);
+        let options = ["--rtol", "1e-12", "--pictures", "none", "--out", "o"];
+        let run = dir.run(&[&["simulate", "m.toml", "--method", method][..], &options].concat());
+        assert_eq!(run.status, Some(0), "{law} {method}: {}", run.err);
+        let rows = fs::read_to_string(dir.0.join("o/m-motion.csv")).unwrap();
+        let last = rows.lines().last().unwrap();
+        last.split(',').nth(2).unwrap().parse::<f64>().unwrap()
+    };
+    let plain = "clamp(x.velocity - 0.5, -2, 0)";
+    let nested = format!("if(clamp(sin(9*x.velocity), 0, 2) >= 0, {plain}, 3.28125*sin(1.5*x))");
+    for method in ["bdf", "tsit45", "dop853"] {
+        let [one, other] = [plain, &nested].map(|law| of_law(law, method));
+        assert!((one - other).abs() < 1e-8, "{method}: {one}, {other}");
+    }
+}
