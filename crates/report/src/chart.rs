@@ -139,9 +139,15 @@ impl<'a> PreparedChart<'a> {
             draw_area(canvas, &frame, series, style);
         }
         canvas.note(LayoutRecord::begin_plot);
-        for (series, style) in chart.series.iter().zip(&layout.styles) {
+        let lines = self.lines(&frame);
+        for (k, (series, style)) in chart.series.iter().zip(&layout.styles).enumerate() {
             canvas.note(|record| record.begin_curve(Some(&typeset(&series.name))));
             draw_series(canvas, &frame, series, style);
+            if style.line.dash.is_some() && self.styles[k].line.dash.is_none() {
+                let solid = LineStyle::solid(style.line.color, style.line.width);
+                let alone = coincidence::alone(k, &lines, &frame.plot);
+                alone.iter().for_each(|line| canvas.line(line, solid));
+            }
         }
         canvas.note(|record| record.begin_curve(None));
         marks::rings(canvas, &frame, &chart.marks);
@@ -221,15 +227,19 @@ impl<'a> PreparedChart<'a> {
         }
     }
 
-    /// The styles, with dashes in turn for curves that lie on each other.
-    fn separated(&self, frame: &PlotFrame) -> Vec<SeriesStyle> {
+    /// By curve, its lines in pixels; none of those with markers.
+    fn lines(&self, frame: &PlotFrame) -> Vec<coincidence::Lines> {
         let lines = |series: &Series| match has_markers(series.stroke) {
             true => Vec::new(),
             false => polylines(frame, series),
         };
-        let lines: Vec<_> = self.chart.series.iter().map(lines).collect();
+        self.chart.series.iter().map(lines).collect()
+    }
+
+    /// The styles, with dashes in turn for curves that lie on each other.
+    fn separated(&self, frame: &PlotFrame) -> Vec<SeriesStyle> {
         let mut styles = self.styles.clone();
-        coincidence::separate(&mut styles, &lines, &frame.plot);
+        coincidence::separate(&mut styles, &self.lines(frame), &frame.plot);
         styles
     }
 

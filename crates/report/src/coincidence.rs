@@ -12,11 +12,14 @@ const HIDDEN_SHARE: f64 = 0.85;
 const COVERING_SHARE: f64 = 0.25;
 /// How often curves are looked for that others hide.
 const PASSES: usize = 3;
-/// Length of a dash in pixels: of two curves, and the least of many.
-const DASH: f64 = 20.0;
-const MIN_DASH: f64 = 10.0;
+/// Length in pixels after which the turns of curves come again, and of one turn: the least of many curves, the largest of few. Longer
+/// ones would leave of a curve with a short part of its own a few strokes.
+const PERIOD: f64 = 48.0;
+const TURN: [f64; 2] = [8.0, 20.0];
 /// Half the width of what a curve covers, beside the cells that it goes through.
 const REACH: f64 = 1.0;
+/// Nearer than this curves are seen as one.
+const CLEAR: f64 = 4.0;
 
 /// The lines of a curve in pixels: its parts in the plot.
 pub(crate) type Lines = Vec<Vec<[f64; 2]>>;
@@ -30,18 +33,53 @@ struct Cover {
 /// Gives curves that would hide each other dashes in turn; `lines` are those of each curve.
 pub(crate) fn separate(styles: &mut [SeriesStyle], lines: &[Lines], plot: &Rect) {
     // Dashes in turn leave no gaps for a third curve below them, which is found only then.
+    // By curve: the first of its group.
+    let mut group: Vec<usize> = (0..styles.len()).collect();
     for _ in 0..PASSES {
-        separate_once(styles, lines, plot);
+        find_groups(&mut group, styles, lines, plot);
+        take_turns(&group, styles);
     }
 }
 
-fn separate_once(styles: &mut [SeriesStyle], lines: &[Lines], plot: &Rect) {
+/// The parts of a curve that no other is near: they need no dashes, however much of the rest coincides.
+pub(crate) fn alone(curve: usize, lines: &[Lines], plot: &Rect) -> Lines {
+    let mut occupied = Occupancy::new(plot.grown(10.0));
+    let others = lines.iter().enumerate().filter(|(k, _)| *k != curve);
+    others
+        .flat_map(|(_, lines)| lines)
+        .for_each(|line| occupied.line(line));
+    let mut parts = Lines::new();
+    for line in &lines[curve] {
+        let mut part = Vec::new();
+        for at in line.windows(2).flat_map(|pair| steps([pair[0], pair[1]])) {
+            if occupied.count(&Rect::around(at, CLEAR)) == 0 {
+                part.push(at);
+            } else {
+                parts.push(std::mem::take(&mut part));
+            }
+        }
+        parts.push(part);
+    }
+    parts.retain(|part| part.len() > 1);
+    parts
+}
+
+/// Points of a line from one to another, a few pixels apart.
+fn steps([a, b]: [[f64; 2]; 2]) -> impl Iterator<Item = [f64; 2]> {
+    let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+    let steps = (length / 4.0).ceil().clamp(1.0, 1e3) as u32;
+    (0..steps).map(move |i| {
+        let t = f64::from(i) / f64::from(steps);
+        [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
+    })
+}
+
+/// Joins the groups of curves that hide each other.
+fn find_groups(group: &mut [usize], styles: &[SeriesStyle], lines: &[Lines], plot: &Rect) {
     let covers = styles.iter().zip(lines);
     let covers: Vec<Cover> = covers
         .map(|(style, lines)| Cover::of(style, lines, plot))
         .collect();
-    // By curve: the first of its group.
-    let mut group: Vec<usize> = (0..covers.len()).collect();
     for i in 0..covers.len() {
         let later = i + 1..covers.len();
         if !covers[i].is_hidden_by(&covers[later.clone()]) {
@@ -55,17 +93,24 @@ fn separate_once(styles: &mut [SeriesStyle], lines: &[Lines], plot: &Rect) {
                 .for_each(|g| *g = one);
         }
     }
+}
+
+/// Each of n curves has one turn of n, and is drawn in those of the later ones too, which lie on it: where they do not, more of it is
+/// seen.
+fn take_turns(group: &[usize], styles: &mut [SeriesStyle]) {
     for first in 0..group.len() {
         let members: Vec<usize> = (0..group.len()).filter(|&k| group[k] == first).collect();
         let count = members.len() as f64;
-        let length = (DASH - 2.0 * (count - 2.0)).max(MIN_DASH);
+        let turn = (PERIOD / count).clamp(TURN[0], TURN[1]);
         for (k, &member) in members.iter().enumerate().filter(|_| members.len() > 1) {
             // The lowest may be solid: the others leave gaps.
             if k > 0 || styles[member].line.dash.is_some() {
+                let k = k as f64;
+                let drawn = if k > 0.0 { count - k } else { 1.0 };
                 styles[member].line.dash = Some(Dash {
-                    length,
-                    gap: (count - 1.0) * length,
-                    offset: k as f64 * length,
+                    length: drawn * turn,
+                    gap: (count - drawn) * turn,
+                    offset: k * turn,
                 });
             }
         }
@@ -83,13 +128,7 @@ impl Cover {
             points: Vec::new(),
         };
         for pair in drawn.iter().flat_map(|line| line.windows(2)) {
-            let [a, b] = [pair[0], pair[1]];
-            let steps = ((b[0] - a[0]).hypot(b[1] - a[1]) / 4.0)
-                .ceil()
-                .clamp(1.0, 1e3) as u32;
-            for i in 0..steps {
-                let t = f64::from(i) / f64::from(steps);
-                let at = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
+            for at in steps([pair[0], pair[1]]) {
                 cover.occupied.block(&Rect::around(at, REACH));
                 cover.points.push(at);
             }

@@ -100,6 +100,7 @@ mod theme;
 mod ticks;
 mod tile_rows;
 mod typeset;
+mod unit_change;
 mod wrapped_text;
 
 pub use animation::Animation;

@@ -176,8 +176,10 @@ pub(crate) fn draw_labels(
         }
         let size = [fonts::width(label, TICK_SIZE, false), TICK_SIZE];
         let free = |area: &Rect| {
+            let leads_through = |other: &Rect| leader_meets(frame, mark, area, other);
             let area = area.grown(5.0);
-            frame.plot.contains_rect(&area) && !written.iter().any(|other| other.intersects(&area))
+            let is_met = |other: &Rect| other.intersects(&area) || leads_through(other);
+            frame.plot.contains_rect(&area) && !written.iter().any(is_met)
         };
         // The first of the best: the positions are given in the order of preference.
         let hidden = |area: &Rect| occupied.count(&area.grown(3.0));
@@ -224,6 +226,19 @@ fn has_place(frame: &PlotFrame, mark: &Mark) -> bool {
 
 /// Beyond this distance words need a line to what they name.
 const MAX_GAP: f64 = 34.0;
+
+/// Whether the line from a mark's point to its words goes through what is written elsewhere, as the legend.
+fn leader_meets(frame: &PlotFrame, mark: &Mark, words: &Rect, other: &Rect) -> bool {
+    let (Mark::Point { at, .. } | Mark::Text { at, .. }) = mark else {
+        return false;
+    };
+    let Some([x, y]) = frame.point_to_px(*at, false) else {
+        return false;
+    };
+    let end = [x.clamp(words.x0, words.x1), y.clamp(words.y0, words.y1)];
+    let step = |t: f64| [x + t * (end[0] - x), y + t * (end[1] - y)];
+    (0..=40).any(|i| other.contains(step(f64::from(i) / 40.0)))
+}
 
 /// A thin line from a point to the words that name it, where they stand away from it.
 pub(crate) fn leader(canvas: &mut Canvas<'_>, [x, y]: [f64; 2], words: &Rect, clearance: f64) {

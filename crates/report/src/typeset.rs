@@ -8,7 +8,7 @@ const WRITTEN_OUT: std::ops::RangeInclusive<i32> = -3..=4;
 const MAX_WHOLE_DIGITS: usize = 6;
 
 /// The text with its numbers in e-notation set as in papers: `2.7770e-1` as `0.2777`, `1e-10` as `10⁻¹⁰` and `2.5e7` as
-/// `2.5 × 10⁷`, with no-break spaces.
+/// `2.5 × 10⁷`, with no-break spaces; below zero with the minus sign of the ticks.
 pub(crate) fn typeset(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut rest = text;
@@ -47,7 +47,9 @@ fn leading_number(text: &str) -> Option<(usize, String)> {
     let mantissa_end = at;
     at += usize::from(text[at..].starts_with('e'));
     if at == mantissa_end {
-        return None;
+        let is_alone = !text[at..].starts_with(|c: char| c.is_alphanumeric() || c == '_');
+        let signed = text.starts_with('-') && is_alone;
+        return signed.then(|| (at, text[..at].replacen('-', "−", 1)));
     }
     let exponent_start = at;
     at += usize::from(text[at..].starts_with(['-', '+']))
@@ -102,7 +104,8 @@ mod tests {
                 "scene a1e5 link1e2x 3e 12345678e12",
                 "scene a1e5 link1e2x 3e 12345678e12",
             ),
-            ("1 − 2 mm, -3.0", "1 − 2 mm, -3.0"),
+            ("1 − 2 mm, -3.0", "1 − 2 mm, −3.0"),
+            ("(-0.2, 1-2) of link-3, -5x", "(−0.2, 1-2) of link-3, -5x"),
         ] {
             assert_eq!(typeset(text), expected);
         }

@@ -10,10 +10,10 @@ const CURVES: [(&str, &str, Paint); 7] = [
     ("Exudyn", "Exudyn", Paint::Palette(0)),
     ("Pinocchio", "Pinocchio", Paint::Palette(2)),
     ("MuJoCo", "MuJoCo", Paint::Palette(5)),
-    (EXACT, "exact", Paint::Palette(3)),
-    (QUADRATURE, "quadrature", Paint::Ink),
-    (FROM_TEXT, "from text", Paint::Grey),
-    (TABLE, "table", Paint::Palette(1)),
+    (EXACT, "Dwell, exact", Paint::Palette(3)),
+    (QUADRATURE, "Dwell, quadrature", Paint::Ink),
+    (FROM_TEXT, "Dwell, from text", Paint::Grey),
+    (TABLE, "Dwell, table", Paint::Palette(1)),
 ];
 
 /// Error against wall time, all mechanisms.

@@ -3,6 +3,7 @@
 use super::{CALLED, COMPILE, CWriter, POTENTIALS, member};
 use crate::describe::describe;
 use crate::export::Export;
+use crate::part::Wrapping;
 use std::fmt::Write as _;
 
 impl CWriter<'_, Export> {
@@ -49,8 +50,9 @@ impl CWriter<'_, Export> {
             }
         }
         lines.push(COMPILE.to_owned());
-        if export.machine.domain.revolutions > 0 {
-            lines.push("q may be any number of revolutions within the limit; a state keeps q in one period and counts the others.".to_owned());
+        let wrapping = Wrapping::new(export.machine.domain, export.request.precision);
+        if let Some(limit) = wrapping.map(|w| w.limit.floor()) {
+            lines.push(format!("q may be any number of revolutions from {} to {limit} rad; a state keeps q in one period and counts the others.", -limit));
         }
         lines
     }

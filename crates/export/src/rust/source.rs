@@ -108,8 +108,14 @@ impl RustWriter<'_> {
             text,
             "}}\n\n/// A state; set `carry` and `periods` to zero when you set the others.\n{derive}pub struct State {{\n"
         );
+        let unit = self.export.machine.unit();
         for name in self.state_members() {
-            member(text, &name, "rad or m, rad/s or m/s, A");
+            let meaning = match name.as_str() {
+                "q" => format!("Coordinate, {unit}"),
+                "q_dot" => format!("Its speed, {unit}/s"),
+                _ => "Current of a motor, A".to_owned(),
+            };
+            member(text, &name, &meaning);
         }
         _ = write!(
             text,

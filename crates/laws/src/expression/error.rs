@@ -39,6 +39,8 @@ pub fn nearest<'n>(wrong: &str, names: impl Iterator<Item = &'n str> + Clone) ->
     if length > MAX_COMPARED {
         return None;
     }
+    // As they sound: `fi` is meant for `phi`, not for `pi`.
+    let fold = |name: &str| name.to_lowercase().replace("ph", "f");
     let folded = wrong.to_lowercase();
     if let Some(same) = names.clone().find(|n| n.to_lowercase() == folded) {
         return Some(same);
@@ -50,7 +52,7 @@ pub fn nearest<'n>(wrong: &str, names: impl Iterator<Item = &'n str> + Clone) ->
     };
     names
         .filter(|n| n.chars().count().abs_diff(length) <= slips)
-        .map(|n| (strsim::osa_distance(&n.to_lowercase(), &folded), n))
+        .map(|n| (strsim::osa_distance(&fold(n), &fold(wrong)), n))
         .filter(|(d, n)| *d <= slips && *d < n.chars().count())
         .min_by_key(|(d, _)| *d)
         .map(|(_, n)| n)
@@ -62,7 +64,7 @@ mod tests {
 
     #[test]
     fn the_nearest_or_none() {
-        let names = ["t", "phi", "phi.velocity", "omega"];
+        let names = ["t", "pi", "phi", "phi.velocity", "omega"];
         for (name, meant) in [
             ("omga", Some("omega")),
             ("oemga", Some("omega")),
@@ -71,6 +73,7 @@ mod tests {
             ("T", Some("t")),
             ("x", None),
             ("height", None),
+            ("fi", Some("phi")),
         ] {
             assert_eq!(nearest(name, names.into_iter()), meant, "{name}");
         }

@@ -107,7 +107,12 @@ def _by_dask(study: _Study, blocks: int, progress: Progress) -> None:
     try:
         client, own = dask.get_client(), False
     except ValueError:
-        client, own = dask.Client(threads_per_worker=1), True
+        try:
+            client, own = dask.Client(threads_per_worker=1), True
+        except RuntimeError as error:
+            # Its workers import the script anew, and would start workers in turn.
+            needed = 'Dask cannot start its workers: put what a script runs under `if __name__ == "__main__":`'
+            raise RuntimeError(needed) from error
     try:
         tasks = [client.submit(_block, study, k, blocks, pure=False) for k in range(1, blocks + 1)]
         for done, task in enumerate(dask.as_completed(tasks), 1):

@@ -299,7 +299,9 @@ fn explain_ambiguous(
     };
     let names = body_names_or_mechanism(mechanism, bodies);
     let count = modes.len();
-    let message = format!("{names} has {count} assembly modes, and no initial guess selects one");
+    let have = if bodies.len() > 1 { "have" } else { "has" };
+    let message =
+        format!("{names} {have} {count} assembly modes, and no initial guess selects one");
     scene_error(scene, message, help, labels)
 }
 

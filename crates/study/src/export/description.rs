@@ -81,9 +81,7 @@ pub(crate) fn reject_friction(
     let name = scene.load_name(load).unwrap_or_default();
     Err(scene_error(
         scene,
-        format!(
-            "no export: {name} is dry friction, which depends on the reactions and holds at rest"
-        ),
+        format!("no export: {name} is dry friction, which depends on the reactions"),
         "leave the friction out, or put a damper in its place; `dwell simulate` computes it",
         [(SceneLocation::Load(load), "dry friction")],
     ))

@@ -3,7 +3,7 @@
 use crate::bodies::{BodyPose, point_position};
 use crate::page::paint;
 use crate::symbols::{
-    BodyOutline, PitchCurve, RAIL_DISTANCE, SLOT_DISTANCE, TOOTH, TRACK_MARGIN, circle,
+    BodyOutline, PitchCurve, RAIL_DISTANCE, SLOT_DISTANCE, TOOTH, TRACK_MARGIN, blocks_on, circle,
     common_joint_name, is_cylinder, outline_of, pitch_curve, rack_outline, reach, spring_outline,
     symbol_size, travels,
 };
@@ -268,7 +268,7 @@ impl DrawnPosition<'_> {
         } else if !self.drawing.is_ground(one) {
             let color = self.drawing.color(one);
             let wide = Pen::new(color, if radius.is_some() { 3.0 } else { 17.0 });
-            self.line(&[from, to], wide.lightness(self.lightness.max(0.55)));
+            self.line(&[from, to], wide.lightness(self.lightness));
             if radius.is_none() {
                 self.line(&[from, to], Pen::new(color, 11.0).lightness(1.0));
             }
@@ -310,6 +310,12 @@ impl DrawnPosition<'_> {
         for b in bodies {
             let shape = self.named(BodyId(b), self.body_shape(b));
             self.shapes.push(shape);
+            for corners in blocks_on(self.drawing.scene, b, self.drawing.size) {
+                let corners = corners.map(|p| array(self.point(BodyId(b), p))).to_vec();
+                let pen = self.pen(self.drawing.color(BodyId(b)), 3.0);
+                let block = self.named(BodyId(b), Shape::area(corners, pen, 0.35));
+                self.shapes.push(block);
+            }
         }
     }
 

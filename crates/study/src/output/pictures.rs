@@ -61,16 +61,15 @@ enum Content {
 }
 
 impl Picture {
-    /// A figure of a scene, with its provenance.
-    pub fn figure(scene: &SceneFile, path: String, is_main: bool, figure: Figure) -> Self {
-        let provenance = signature(scene, &figure.provenance);
+    /// A figure of a scene, with its provenance, and with lengths in the scene's unit.
+    pub fn figure(scene: &SceneFile, path: String, is_main: bool, mut figure: Figure) -> Self {
+        figure.provenance = signature(scene, &figure.provenance);
+        let (factor, unit) = scene.to_scene_unit(1.0, false);
+        figure.change_unit("m", unit, factor);
         Self {
             path,
             is_main,
-            content: Content::Figure(Figure {
-                provenance,
-                ..figure
-            }),
+            content: Content::Figure(figure),
         }
     }
 
@@ -94,16 +93,15 @@ impl Picture {
         }
     }
 
-    /// An animation of a scene, with its provenance.
-    pub(crate) fn animation(scene: &SceneFile, path: String, animation: Animation) -> Self {
-        let provenance = signature(scene, &animation.provenance);
+    /// An animation of a scene, with its provenance, and with lengths in the scene's unit.
+    pub(crate) fn animation(scene: &SceneFile, path: String, mut animation: Animation) -> Self {
+        animation.provenance = signature(scene, &animation.provenance);
+        let (factor, unit) = scene.to_scene_unit(1.0, false);
+        animation.change_unit("m", unit, factor);
         Self {
             path,
             is_main: false,
-            content: Content::Animation(Animation {
-                provenance,
-                ..animation
-            }),
+            content: Content::Animation(animation),
         }
     }
 

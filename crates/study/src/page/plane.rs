@@ -3,8 +3,8 @@
 use super::columns::RowChoice;
 use crate::bodies::BodyPose;
 use crate::symbols::{
-    BodyOutline, RAIL_DISTANCE, SLOT_DISTANCE, TOOTH, TRACK_MARGIN, common_joint_name, is_cylinder,
-    outline_of, pitch_curve, rack_outline, reach, symbol_size, travels,
+    BodyOutline, RAIL_DISTANCE, SLOT_DISTANCE, TOOTH, TRACK_MARGIN, blocks_on, common_joint_name,
+    is_cylinder, outline_of, pitch_curve, rack_outline, reach, symbol_size, travels,
 };
 use dwell_geometry::{ActuatorKind, BodyId, Joint, JointKind, Vec2, vec2};
 use dwell_kinetostatics::LoadKind;
@@ -283,6 +283,9 @@ impl DrawnParts<'_> {
                 BodyOutline::Bar(points) => (OutlineLook::Bar, points, false),
             };
             self.outline(look, BodyId(b), &points, closed);
+            for corners in blocks_on(scene, b, self.size) {
+                self.outline(OutlineLook::Block, BodyId(b), &corners, true);
+            }
         }
     }
 

@@ -94,13 +94,17 @@ pub(crate) fn reduction_outcome<P: ReducedScene>(
 }
 
 /// The rounding errors, rounded up to powers of ten.
-fn describe_rounding(errors: &RoundingErrors) -> String {
+fn describe_rounding(errors: &RoundingErrors, has_reactions: bool) -> String {
     let [m, half_dm, rest] = errors.max_errors.map(|error| match error {
         0.0 => "0".to_owned(),
         error => format!("{:.0e}", 10_f64.powf(error.log10().ceil())),
     });
+    let rest = match has_reactions {
+        true => format!(", {rest} of any a or b"),
+        false => String::new(),
+    };
     format!(
-        "  estimated rounding errors, compared with 32-digit arithmetic: below {m} of the largest m, {half_dm} of ½m′, {rest} of any a or b\n"
+        "  estimated rounding errors, compared with 32-digit arithmetic: below {m} of the largest m, {half_dm} of ½m′{rest}\n"
     )
 }
 
@@ -189,7 +193,10 @@ pub(crate) fn summary<P: ReducedScene>(
             "  between these positions m reaches {largest} {m_unit}, at {name} = {q} {unit}: more rows show it (--points)\n"
         );
     }
-    summary += &describe_rounding(&reduction.errors);
+    summary += &describe_rounding(
+        &reduction.errors,
+        !reduction.prepared.reaction_units().is_empty(),
+    );
     if let Some(note) = note {
         summary += &format!("  {note}\n");
     }

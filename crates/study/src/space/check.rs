@@ -146,8 +146,12 @@ fn describe_groups(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> Stri
         let joints = list(joints.map(|j| scene.mechanism.joints[j.0].name.as_str()));
         record.add_count(format!("group.{number}.unknowns"), group.unknowns);
         record.add_count(format!("group.{number}.equations"), group.equations);
+        let method = match group.equations > group.unknowns {
+            true => "least squares",
+            false => "Newton's method",
+        };
         text += &format!(
-            "    {number}. closed by {joints}: {} from {}, Newton's method\n",
+            "    {number}. closed by {joints}: {} from {}, {method}\n",
             count(group.unknowns, "unknown"),
             count(group.equations, "equation"),
         );
@@ -163,8 +167,11 @@ fn describe_placements(scene: &SpaceScene, model: &Model, record: &mut Record) -
     if plan.positions(start, &mut pose).is_err() {
         return String::new();
     }
+    let (factor, unit) = scene.to_scene_unit(1.0, false);
+    // To a micrometre, as the sizes of a mechanism of metres.
+    let decimals = (6.0 - factor.log10().round()).clamp(0.0, 6.0) as usize;
     let mut text = format!(
-        "  at {}: origin of each body's frame in m, and its rotation as a vector in degrees\n",
+        "  at {}: origin of each body's frame in {unit}, and its rotation as a vector in degrees\n",
         describe_start(scene, start, record)
     );
     let moving = (0..mechanism.bodies.len()).filter(|&b| b != mechanism.ground);
@@ -182,10 +189,10 @@ fn describe_placements(scene: &SpaceScene, model: &Model, record: &mut Record) -
                 record.add(format!("start.{name}.{what}.{axis}"), unit, value);
             }
         }
-        let [x, y, z] = [at.x, at.y, at.z].map(|v| rounded(v, 1e6));
+        let [x, y, z] = [at.x, at.y, at.z].map(|v| rounded(v, 1e6) * factor);
         let [a, b, c] = [turn.x, turn.y, turn.z].map(|v| rounded(v.to_degrees(), 1e3));
         text += &format!(
-            "    {name:<width$}  ({x:9.6}, {y:9.6}, {z:9.6})  ({a:8.3}°, {b:8.3}°, {c:8.3}°)\n"
+            "    {name:<width$}  ({x:9.decimals$}, {y:9.decimals$}, {z:9.decimals$})  ({a:8.3}°, {b:8.3}°, {c:8.3}°)\n"
         );
     }
     text
@@ -206,7 +213,7 @@ fn describe_reactions(
     let requested = if scene.lists_reactions {
         "requested"
     } else {
-        "all requested, in the axes of the ground"
+        "in the axes of the ground, all of them requested"
     };
     let all = count(determined.len() + others.len(), "component");
     let mut text = format!(

@@ -62,7 +62,8 @@ impl<'a> PreparedSpaceScene<'a> {
         };
         let q = self.positions(DRAWN_INTERVALS * turns);
         let name = symbol(self.coordinate_name());
-        let describe = |q: f64| describe_abscissa(&name, coordinate_unit(self.is_angle()), q);
+        let describe =
+            |q: f64| describe_abscissa(self.scene, &name, coordinate_unit(self.is_angle()), q);
         let names = q.iter().map(|&q| describe(q));
         let all: Vec<_> = self.placements(&q)?.into_iter().zip(names).collect();
         let start = self.scene.assembly.q[0];

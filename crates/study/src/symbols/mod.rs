@@ -7,7 +7,9 @@ mod outline;
 #[cfg(feature = "output")]
 pub(crate) use kinematic::{PitchCurve, circle, spring_outline};
 pub(crate) use kinematic::{pitch_curve, rack_outline};
-pub(crate) use outline::{BodyOutline, common_joint_name, is_cylinder, outline_of, reach};
+pub(crate) use outline::{
+    BodyOutline, blocks_on, common_joint_name, is_cylinder, outline_of, reach,
+};
 
 use crate::bodies::{BodyPose, point_position};
 use crate::ranges::extent;

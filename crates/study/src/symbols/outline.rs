@@ -35,15 +35,7 @@ pub(crate) fn outline_of(scene: &Scene, body: usize, size: f64) -> BodyOutline {
         }
     }
     if let (&[middle], Some(axis)) = (points.as_slice(), slide_axis(scene, body)) {
-        let half = BLOCK * size;
-        let (along, across) = (axis * (BLOCK_LENGTH * half), axis.perp() * half);
-        let [behind, before] = [middle - along, middle + along];
-        return BodyOutline::Block([
-            behind - across,
-            before - across,
-            before + across,
-            behind + across,
-        ]);
+        return BodyOutline::Block(block(middle, axis, size));
     }
     let sum = points.iter().fold(Vec2::ZERO, |sum, p| sum + *p);
     let middle = sum * (1.0 / points.len().max(1) as f64);
@@ -58,6 +50,31 @@ pub(crate) fn outline_of(scene: &Scene, body: usize, size: f64) -> BodyOutline {
         points.sort_by(|a, b| line.dot(*a).total_cmp(&line.dot(*b)));
         BodyOutline::Bar(points)
     }
+}
+
+/// The corners of a block that slides along an axis.
+fn block(middle: Vec2, axis: Vec2, size: f64) -> [Vec2; 4] {
+    let half = BLOCK * size;
+    let (along, across) = (axis * (BLOCK_LENGTH * half), axis.perp() * half);
+    let [behind, before] = [middle - along, middle + along];
+    [
+        behind - across,
+        before - across,
+        before + across,
+        behind + across,
+    ]
+}
+
+/// The blocks by which a body slides that is more than such a block itself, in its frame: without them it would look pinned.
+pub(crate) fn blocks_on(scene: &Scene, body: usize, size: f64) -> Vec<[Vec2; 4]> {
+    let joints = scene.mechanism.joints.iter().enumerate();
+    let slides = joints.filter(|(j, joint)| joint.bodies[1].0 == body && !is_cylinder(scene, *j));
+    let of = |(_, joint): (usize, &Joint)| match joint.kind {
+        JointKind::Prismatic { axes } => Some(block(joint.points[1], axes[1], size)),
+        _ => None,
+    };
+    let is_more = body != scene.mechanism.ground && reach(scene, body) > 0.0;
+    slides.filter(|_| is_more).filter_map(of).collect()
 }
 
 /// Whether a joint is a driven prismatic one between two moving bodies.

@@ -2,8 +2,8 @@
 //! analyses prescribed motions only, and their combination:
 //!
 //! ```text
-//! run i    q̇ = 1, q̈ = 0                       ½m₁q₁ = T / q̇²            m_e2 = F / q̇²
-//! run ii   q̈ = 1 from rest, so that q̇² = 2 q    m₁ = (T − ½m₁q₁ q̇²) / q̈   m_e1 = (F − m_e2 q̇²) / q̈
+//! run i    q̇ = 1, q̈ = 0                       ½∂m₁/∂q₁ = T / q̇²            m_e2 = F / q̇²
+//! run ii   q̈ = 1 from rest, so that q̇² = 2 q    m₁ = (T − ½∂m₁/∂q₁ q̇²) / q̈   m_e1 = (F − m_e2 q̇²) / q̈
 //! ```
 //!
 //! T is the actuator's moment, F a reaction, q the coordinate from the beginning of the range. Both runs pass the same
@@ -40,7 +40,7 @@ pub struct UnitRuns<P> {
     pub prepared: P,
     /// All columns of run i (unit speed) and of run ii (unit acceleration).
     pub runs: [Table; 2],
-    /// What the runs give: half_dm and b are ½m₁q₁ and m_e2, m and a are m₁ and m_e1.
+    /// What the runs give: half_dm and b are ½∂m₁/∂q₁ and m_e2, m and a are m₁ and m_e1.
     pub combined: ReducedCurves,
     /// The exact reduced model at the same positions.
     pub reduced: ReducedCurves,
@@ -286,12 +286,12 @@ impl<P: ReducedScene> UnitRuns<P> {
         of_inertia.chain(forces).chain(of_squares).collect()
     }
 
-    /// The paper's symbols and the units of m₁, ½m₁q₁, every m_e1, every m_e2.
+    /// The paper's symbols and the units of m₁, ½∂m₁/∂q₁, every m_e1, every m_e2.
     fn symbols(&self) -> Vec<(String, &'static str)> {
         let is_angle = self.prepared.is_angle();
         let reactions = self.prepared.reaction_units();
         let [m, half_dm] = inertia_units(is_angle);
-        let mut symbols = vec![("m₁".to_owned(), m), ("½m₁q₁".to_owned(), half_dm)];
+        let mut symbols = vec![("m₁".to_owned(), m), ("½∂m₁/∂q₁".to_owned(), half_dm)];
         for (part, symbol) in ["m_e1", "m_e2"].into_iter().enumerate() {
             symbols.extend(reactions.iter().map(|(name, unit)| {
                 let unit = coefficient_units(unit, is_angle)[part];

@@ -12,7 +12,7 @@ const MAX_REACTIONS: usize = 3;
 const MARKS: usize = 24;
 
 impl<P: ReducedScene> UnitRuns<P> {
-    /// Both runs, then m₁ and ½m₁q₁, then m_e1 and m_e2 of the first requested reactions.
+    /// Both runs, then m₁ and ½∂m₁/∂q₁, then mₑ₁ and mₑ₂ of the first requested reactions.
     pub(super) fn figures(&self) -> Vec<Figure> {
         let mut figures = vec![self.runs_figure(), self.inertia_figure()];
         figures.extend(self.reaction_figure());
@@ -76,9 +76,14 @@ impl<P: ReducedScene> UnitRuns<P> {
         let derivative = self.compared(|at| at.half_dm);
         let panels = vec![
             self.panel("m₁ (generalised inertia)", "m₁", m, inertia),
-            self.panel("½m₁q₁ (half its derivative)", "½m₁q₁", half_dm, derivative),
+            self.panel(
+                "½∂m₁/∂q₁ (half its derivative)",
+                "½∂m₁/∂q₁",
+                half_dm,
+                derivative,
+            ),
         ];
-        let text = "From both runs: ½m₁q₁ = T/q̇² of run i, m₁ = (T − ½m₁q₁ q̇²)/q̈ of run ii.";
+        let text = "From both runs: ½∂m₁/∂q₁ = T/q̇² of run i, m₁ = (T − ½∂m₁/∂q₁ q̇²)/q̈ of run ii.";
         let title = "Reduced parameters from the kinetostatic runs";
         self.range().figure("runs-inertia", title, text, panels)
     }
@@ -90,11 +95,11 @@ impl<P: ReducedScene> UnitRuns<P> {
             let units = coefficient_units(unit, self.prepared.is_angle());
             let title = |symbol: &str| format!("{symbol} of {name}");
             let one = self.compared(|at| at.a[k]);
-            panels.push(self.panel(&title("m_e1"), "m_e1", units[0], one));
+            panels.push(self.panel(&title("mₑ₁"), "mₑ₁", units[0], one));
             let two = self.compared(|at| at.b[k]);
-            panels.push(self.panel(&title("m_e2"), "m_e2", units[1], two));
+            panels.push(self.panel(&title("mₑ₂"), "mₑ₂", units[1], two));
         }
-        let text = "From both runs: m_e2 = F/q̇² of run i, m_e1 = (F − m_e2 q̇²)/q̈ of run ii; F is the force of the joint's first body on its second.";
+        let text = "From both runs: mₑ₂ = F/q̇² of run i, mₑ₁ = (F − mₑ₂ q̇²)/q̈ of run ii; F is the force of the joint's first body on its second.";
         let title = "Reduced parameters of reactions from the kinetostatic runs";
         let figure = self.range().figure("runs-reaction", title, text, panels);
         (!figure.panels.is_empty()).then_some(figure)

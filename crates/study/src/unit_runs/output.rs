@@ -106,7 +106,7 @@ fn summary(runs: &UnitRuns<impl ReducedScene>, comparison: &[ComparedCoefficient
     }
     if let Some(worst) = worst(comparison) {
         text += &format!(
-            "  combined: m₁, ½m₁q₁, m_e1, m_e2 are those of `dwell reduce` within {:.0e} of the largest value of each; {} differs most\n",
+            "  combined: m₁, ½∂m₁/∂q₁, m_e1, m_e2 are those of `dwell reduce` within {:.0e} of the largest value of each; {} differs most\n",
             power_of_ten_above(worst.relative_difference),
             worst.symbol
         );
@@ -154,12 +154,12 @@ fn page(
     let mut blocks = vec![
         Block::Text(
             "The procedure of Jordi, Zayas and Cardona (2008): two kinetostatic analyses of prescribed motions give the \
-             reduced parameters, m₁ and ½m₁q₁ from the actuator's moment T, m_e1 and m_e2 from a reaction F. Loads are left \
+             reduced parameters, m₁ and ½∂m₁/∂q₁ from the actuator's moment T, m_e1 and m_e2 from a reaction F. Loads are left \
              out: each has a run of its own (`dwell reduce` gives w and c)."
                 .to_owned(),
         ),
         Block::Text(
-            "Run i, q̇ = 1 and q̈ = 0: ½m₁q₁ = T/q̇², m_e2 = F/q̇². Run ii, q̈ = 1 from rest: m₁ = (T − ½m₁q₁ q̇²)/q̈, \
+            "Run i, q̇ = 1 and q̈ = 0: ½∂m₁/∂q₁ = T/q̇², m_e2 = F/q̇². Run ii, q̈ = 1 from rest: m₁ = (T − ½∂m₁/∂q₁ q̇²)/q̈, \
              m_e1 = (F − m_e2 q̇²)/q̈, with the values of run i at the same position."
                 .to_owned(),
         ),

@@ -75,5 +75,5 @@ fn a_structure_has_no_motion() {
 #[test]
 fn the_assembly_modes_of_a_structure_are_named() {
     let refused = check(&scene(THREE_CRANKS)).unwrap_err().to_string();
-    assert!(refused.contains("has 2 assembly modes"), "{refused}");
+    assert!(refused.contains("have 2 assembly modes"), "{refused}");
 }

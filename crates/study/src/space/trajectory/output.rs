@@ -74,9 +74,9 @@ pub(crate) fn drawn_positions<'a>(
         let q = sample.q[trajectory.swept_actuator().unwrap_or(0)];
         let at = match swept {
             Some((name, is_angle)) => {
-                describe_abscissa(&symbol(name), coordinate_unit(is_angle), q)
+                describe_abscissa(scene, &symbol(name), coordinate_unit(is_angle), q)
             }
-            None => describe_abscissa("time", "s", sample.t),
+            None => describe_abscissa(scene, "time", "s", sample.t),
         };
         Some((evaluator.placements.clone(), at))
     };

@@ -16,13 +16,14 @@ use dwell_scene::SceneFile;
 /// limit position.
 const DIVERGENCE_RATIO: f64 = 3.0;
 
-/// A value of an abscissa in a unit of SI: `time = 0.25 s`, `φ = −12.5°`.
-pub(crate) fn describe_abscissa(label: &str, unit: &str, at: f64) -> String {
-    let text = match unit {
-        "rad" => format!("{label} = {:.1}°", at.to_degrees()),
-        unit => format!("{label} = {} {unit}", digits(at, 4)),
+/// A value of an abscissa in a unit of SI: `time = 0.25 s`, `φ = -12.5°`; a length in the scene's unit.
+pub(crate) fn describe_abscissa(scene: &SceneFile, label: &str, unit: &str, at: f64) -> String {
+    let (at, unit) = match unit {
+        "rad" => return format!("{label} = {:.1}°", at.to_degrees()),
+        "m" => scene.to_scene_unit(at, false),
+        unit => (at, unit),
     };
-    text.replace('-', "−")
+    format!("{label} = {} {unit}", digits(at, 4))
 }
 
 /// What the charts of a trajectory share, in the plane or in space.
@@ -105,7 +106,7 @@ impl<'a> ChartContext<'a> {
 
     fn describe(&self, at: f64) -> String {
         let unit = self.results.columns[self.abscissa].unit;
-        describe_abscissa(&self.x.label, unit, at)
+        describe_abscissa(self.scene, &self.x.label, unit, at)
     }
 
     /// A figure whose curves may grow without bound towards a limit position.
@@ -130,11 +131,17 @@ impl<'a> ChartContext<'a> {
         let Some([from, to]) = self.x.range else {
             return String::new();
         };
-        let unit = match self.x.scale {
-            Scale::Degrees => "°".to_owned(),
-            _ => format!(" {}", self.x.unit),
+        let (factor, unit) = match (self.x.scale, self.x.unit.as_str()) {
+            (Scale::Degrees, _) => (1.0, "°"),
+            (_, "m") => self.scene.to_scene_unit(1.0, false),
+            (_, unit) => (1.0, unit),
         };
-        let [from, to] = [from, to].map(|v| digits(v, 6).replace('-', "−"));
+        let unit = if unit == "°" {
+            unit.to_owned()
+        } else {
+            format!(" {unit}")
+        };
+        let [from, to] = [from, to].map(|v| digits(v * factor, 6));
         let label = &self.x.label;
         format!(" Shown: {label} from {from} to {to}{unit}; the files hold all rows.")
     }
@@ -190,7 +197,8 @@ impl<'a> ChartContext<'a> {
             .then(|| self.chart(title, label, curves))
     }
 
-    /// Charts of those of some columns that are more than rounding, evenly distributed, so that none has a single curve left over.
+    /// Charts of those of some columns that are more than rounding, evenly distributed, so that none has a single curve left over;
+    /// of several the title says which.
     pub(crate) fn even_charts(
         &self,
         (title, label): (&str, &str),
@@ -199,9 +207,12 @@ impl<'a> ChartContext<'a> {
         curves.retain(|(_, k)| !self.is_zero(*k));
         let count = curves.len().div_ceil(MAX_CURVES).max(1);
         let charts = curves.chunks(curves.len().div_ceil(count).max(1));
-        charts
-            .map(|some| self.chart(title, label, some).into())
-            .collect()
+        let title = |k: usize| match count {
+            1 => title.to_owned(),
+            _ => format!("{title}, {} of {count}", k + 1),
+        };
+        let chart = |(k, some)| self.chart(&title(k), label, some).into();
+        charts.enumerate().map(chart).collect()
     }
 
     /// The vertical range to show if curves grow without bound towards a limit position.
@@ -246,10 +257,7 @@ impl<'a> ChartContext<'a> {
 
     pub(crate) fn actuator_forces(&self) -> Option<Figure> {
         let is_force = |c: &Column| matches!(c.quantity, Quantity::ActuatorForce(_));
-        let kinds = [
-            ("N m", "Actuator moments", "couple"),
-            ("N", "Actuator forces", "force"),
-        ];
+        let kinds = [("N m", "Moments", "moment"), ("N", "Forces", "force")];
         let chart = |(unit, title, label)| {
             let indices = self.columns_where(|c| is_force(c) && c.unit == unit);
             let mut curves = self.labelled(&indices, ".actuator_force");
@@ -259,8 +267,13 @@ impl<'a> ChartContext<'a> {
         };
         let panels: Vec<Panel> = kinds.into_iter().filter_map(chart).collect();
         let text = "Required actuator forces: the force or moment of the first body on the second.";
-        (!panels.is_empty())
-            .then(|| self.figure("actuator-forces", "Actuator forces", text, panels))
+        let moments = self.columns_where(|c| is_force(c) && c.unit == "N m");
+        let title = match moments.iter().any(|k| !self.is_zero(*k)) {
+            true if panels.len() > 1 => "Actuator forces and moments",
+            true => "Actuator moments",
+            false => "Actuator forces",
+        };
+        (!panels.is_empty()).then(|| self.figure("actuator-forces", title, text, panels))
     }
 
     pub(crate) fn shaking_force(&self) -> Option<Figure> {

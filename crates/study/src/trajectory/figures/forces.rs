@@ -34,7 +34,7 @@ impl FigureContext<'_> {
         for (title, label, curves) in [
             ("Magnitudes of joint forces", "force", magnitudes),
             ("Joint forces of fixed direction", "force", single("N")),
-            ("Couples", "couple", single("N m")),
+            ("Joint moments", "moment", single("N m")),
         ] {
             panels.extend(self.even_charts((title, label), curves));
         }
@@ -47,7 +47,11 @@ impl FigureContext<'_> {
                 i => format!("reactions-{}", i + 1),
             };
             let text = "The force or moment of each joint's first body on its second.";
-            self.figure(name, "Joint reactions", text, panels.to_vec())
+            let title = match shown {
+                1 => "Joint reactions".to_owned(),
+                _ => format!("Joint reactions, {} of {shown}", i + 1),
+            };
+            self.figure(name, title, text, panels.to_vec())
         };
         let pages = panels.chunks(3).take(shown).enumerate();
         let mut figures: Vec<Figure> = pages.map(page).collect();
@@ -61,15 +65,15 @@ impl FigureContext<'_> {
         let body = self.scene.mechanism.body_name(link.request.body);
         let from = &link.request.names[0];
         let chart = |i: usize, label: &str, unit: &str| {
-            let at = |s: &Section| [s.station * 1e3, [s.axial, s.shear, s.bending][i]];
+            let at = |s: &Section| [s.station, [s.axial, s.shear, s.bending][i]];
             let bound = |name: &str, side: usize| {
-                let edge = link.envelope.iter().map(|(s, e)| [s * 1e3, e[i][side]]);
+                let edge = link.envelope.iter().map(|(s, e)| [*s, e[i][side]]);
                 let line = Series::line(name, edge.collect());
                 line.stroke(Stroke::Dashed).color(Paint::Grey)
             };
             let largest =
                 Series::line("largest", sections.iter().map(at).collect()).stroke(Stroke::Filled);
-            let x = Axis::new(format!("distance from {from}"), "mm");
+            let x = Axis::new(format!("distance from {from}"), "m");
             let series = vec![largest, bound("envelope", 0), bound("", 1)];
             chart("", x, Axis::new(label, unit), series)
         };

@@ -1,9 +1,14 @@
 //! Angles, paths and travels, with their speeds and accelerations.
 
+use crate::ranges::extent;
 use crate::trajectory::compute::{Analysis, Quantity, is_requested};
 use crate::trajectory::figures::{FigureContext, MAX_BODIES, MAX_CURVES};
 use dwell_geometry::BodyId;
-use dwell_report::{Chart, Figure, Mark};
+use dwell_report::{Chart, Figure, Mark, Paint};
+use std::f64::consts::TAU;
+
+/// Bodies that turn more often have a chart of their own beside those that do not.
+const MAX_SHARED_TURNS: f64 = 1.25;
 
 impl FigureContext<'_> {
     pub(crate) fn angles(&self) -> Option<Figure> {
@@ -26,24 +31,66 @@ impl FigureContext<'_> {
         };
         let all = self.distinct_bodies(&all, angle);
         let requested: Vec<BodyId> = all.iter().copied().filter(is_requested).collect();
-        let shown = if requested.is_empty() {
-            &all[..all.len().min(MAX_BODIES)]
-        } else {
-            &requested[..requested.len().min(MAX_CURVES)]
+        let shown = match requested.is_empty() {
+            true => self.of_interest_first(&all, MAX_BODIES),
+            false => self.of_interest_first(&requested, MAX_CURVES),
         };
-        let chart = |(order, label): (usize, &&str)| {
+        let curves = |order: usize, label: &str| {
             let indices: Vec<usize> = shown.iter().filter_map(|b| angle(*b, order)).collect();
             let suffix = format!(".{}", label.replace(' ', "_"));
-            self.chart_of_some("", label, &self.labelled(&indices, &suffix))
+            self.labelled(&indices, &suffix)
         };
-        let labels = ["angle", "angular velocity", "angular acceleration"];
-        let charts: Vec<Chart> = labels.iter().enumerate().filter_map(chart).collect();
+        let mut charts = self.angle_charts(&curves(0, "angle"));
+        let rates = ["angular velocity", "angular acceleration"];
+        let rates = rates
+            .iter()
+            .zip(1..)
+            .map(|(label, order)| (*label, curves(order, label)));
+        charts.extend(rates.filter_map(|(label, curves)| self.chart_of_some("", label, &curves)));
         let text = match all.len() - shown.len() {
             0 => "Angles of the bodies from the ground, with their speeds and accelerations."
                 .to_owned(),
-            n => format!("Angles of the bodies from the ground; {n} more are in the table."),
+            n => {
+                format!("Angles of the bodies from the ground; those of {n} more are in the table.")
+            }
         };
         (!charts.is_empty()).then(|| self.figure("angles", "Angles", &text, vec![charts.into()]))
+    }
+
+    /// Curves of many turns would flatten those within one: they have a chart of their own.
+    fn angle_charts(&self, curves: &[(String, usize)]) -> Vec<Chart> {
+        let turns_often = |k: usize| {
+            let [low, high] = extent(self.drawn_rows().map(|row| row[k]));
+            high - low > MAX_SHARED_TURNS * TAU
+        };
+        let of = |often: bool| {
+            let of = curves
+                .iter()
+                .zip(0..)
+                .filter(|((_, k), _)| turns_often(*k) == often);
+            let (some, colors): (Vec<_>, Vec<usize>) = of.map(|(c, i)| (c.clone(), i)).unzip();
+            let label = match some.as_slice() {
+                [(name, _)] if curves.len() > 1 => format!("angle of {name}"),
+                _ => "angle".to_owned(),
+            };
+            let mut chart = self.chart_of_some("", &label, &some)?;
+            // As in the charts of the speeds.
+            for (series, i) in chart.series.iter_mut().zip(colors).filter(|(_, i)| *i < 6) {
+                series.color = Some(Paint::Palette(i));
+            }
+            Some(chart)
+        };
+        [true, false].into_iter().filter_map(of).collect()
+    }
+
+    /// So many of some bodies, in their order: those with a requested path are no less asked for than others.
+    fn of_interest_first(&self, bodies: &[BodyId], count: usize) -> Vec<BodyId> {
+        let paths = &self.scene.requests.paths;
+        let mut chosen = bodies.to_vec();
+        chosen.sort_by_key(|body| !paths.iter().any(|path| path.body == *body));
+        chosen.truncate(count);
+        chosen.sort_by_key(|body| body.0);
+        chosen
     }
 
     /// The bodies without those that rotate exactly as an earlier one.
