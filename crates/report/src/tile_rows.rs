@@ -1,7 +1,7 @@
 //! Tiles, laid out on the page.
 
 use crate::canvas::{Align, Canvas, TextStyle};
-use crate::fonts::{width, wrapped};
+use crate::fonts::{width, wrapped_anywhere};
 use crate::grid::{Tile, Tiles};
 use crate::rect::Rect;
 use crate::theme::{BAND, CAPTION_GREY, FAILED, INK, PASSED};
@@ -48,7 +48,7 @@ impl<'a> TileRows<'a> {
                 tile,
                 name: fitted(&tile.name, NAME_SIZE, false),
                 value: fitted(&tile.value, VALUE_SIZE, true),
-                note: wrapped(&typeset(&tile.note), NOTE_SIZE, false, room),
+                note: wrapped_anywhere(&typeset(&tile.note), NOTE_SIZE, false, room),
             }
         };
         let row = |tiles: &'a [Tile]| {
@@ -132,7 +132,7 @@ mod tests {
                 Tile::new(
                     "closest",
                     "a name that is wider than a tile by far",
-                    "by a check ".repeat(9),
+                    format!("by a check {}", "key-of-a-finding-".repeat(9)),
                 ),
             ],
         };
@@ -142,7 +142,11 @@ mod tests {
         };
         assert_eq!(row[0].value.1, VALUE_SIZE);
         let (text, size) = &row[1].value;
-        assert!(width(text, *size, true) <= rows.tile_width - PAD && row[1].note.len() > 2);
+        let room = rows.tile_width - PAD;
+        assert!(width(text, *size, true) <= room && row[1].note.len() > 2);
+        // The key of a finding has no blank where a line could end.
+        let fits = |line: &String| width(line, NOTE_SIZE, false) <= room;
+        assert!(row[1].note.iter().all(fits));
         assert!(*height > 5.0 * NAME_SIZE && rows.height() == *height);
     }
 }

@@ -140,10 +140,14 @@ impl<'a> ValidationRun<'a> {
         let period = numbers.find(|number| number.name == "period");
         let period = period.zip(finding("period-bdf")).map(|(period, f)| {
             let note = format!(
-                "the paper: {PUBLISHED_PERIOD} s; quadrature: {:.9} s; adaptive BDF: {:.1e} of it off",
+                "paper: {PUBLISHED_PERIOD} s; quadrature: {:.9} s; adaptive BDF: {:.1e} off",
                 period.value, f.relative_difference
             );
-            Tile::new("period, paper's case", format!("{:.2} s", period.value), note)
+            Tile::new(
+                "period, paper's case",
+                format!("{:.2} s", period.value),
+                note,
+            )
         });
         let drift = finding("energy-bdf").map(|f| {
             let note = "largest by adaptive BDF at a tolerance of 1e-13";
@@ -196,7 +200,7 @@ pub(super) fn document(judged: &ValidationRun<'_>) -> Document {
     let paper: Vec<String> = paper.collect();
     let mut blocks = vec![
         Block::Text(nearest),
-        table(&["ValidationRun", "Result", "Passed", "How"], rows),
+        table(&["Part", "Result", "Passed", "How"], rows),
         Block::Text(format!("{}.", paper.join("; "))),
         Block::Figure {
             file: "index.png".to_owned(),
