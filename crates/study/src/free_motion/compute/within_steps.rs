@@ -24,7 +24,7 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Method, tolerance and highest number of steps from the beginning of a step to a time within it; the second where a
 /// stiff motion needs too many of the first.
 const METHODS: [(Method, f64, usize); 2] =
-    [(Method::Dop853, 1e-12, 200), (Method::Bdf, 1e-10, 20_000)];
+    [(Method::Dop853, 1e-12, 32), (Method::Bdf, 1e-10, 20_000)];
 
 /// The steps that were interpolated in, by a key of the step.
 #[derive(Debug)]
