@@ -3,7 +3,7 @@
 use dwell_dynamics::Method;
 use dwell_geometry::{PositionError, Range};
 use dwell_kinetostatics::{Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel};
-use dwell_scene::{Scene, SpaceScene};
+use dwell_scene::{MotionDuration, Scene, SpaceScene};
 use dwell_study::no_progress;
 use dwell_tests::fixtures::{repository_root, scene};
 use dwell_validation::work_precision::{
@@ -273,6 +273,24 @@ fn quadrature_is_shown_where_the_motion_follows_from_its_energy() {
     );
 }
 
+/// The errors need the speeds, which the cam does not request; and what is to be typed needs a motion, which it does not have.
+#[test]
+fn lines_to_type_keep_their_accuracy_once_the_scene_has_the_motion_of_the_study() {
+    let found = run_study("cam", &effort(&[-4, -6], &[]));
+    for run in &found.commands {
+        assert!(run.keeps_accuracy(&found.reference.error), "{run:?}");
+    }
+    let mut notes = found.motion_notes.iter();
+    let line = notes.find_map(|note| note.split_once("first line: "));
+    let (_, line) = line.expect("a motion to write");
+    let text = format!("{line}\n{}", scene("cam").source.inner());
+    let written = Scene::parse("cam.toml", &text).expect("a scene");
+    let motion = written.motion.expect("its motion");
+    assert_eq!(motion.duration, MotionDuration::Seconds(found.duration));
+    assert_eq!(motion.initial_coordinates, [0.4]);
+    assert_eq!(motion.initial_velocities.len(), 1);
+}
+
 #[test]
 fn careless_scenes_are_cut_short_or_refused() {
     let effort = effort(&[-4, -6, -8], &[1e-6]);
@@ -294,7 +312,7 @@ fn careless_scenes_are_cut_short_or_refused() {
         let notes = found.motion_notes.join("; ");
         assert!(notes.contains("before its coordinate reaches"), "{notes}");
         assert_eq!(
-            notes.contains("a free motion starts at"),
+            notes.contains("motion = { duration = "),
             more.is_empty(),
             "{notes}"
         );

@@ -21,8 +21,6 @@ pub(crate) struct FreeMotionSetup {
     /// The longest step of its integration, s.
     pub(crate) max_step: f64,
     actuator: usize,
-    /// Its coordinate and its speed at the start.
-    initial_state: [f64; 2],
     /// A revolution, rad, or the width of the range, m.
     full_travel: f64,
     /// Where the motion is cut: the range, or the sweep, without its margins.
@@ -64,7 +62,6 @@ impl FreeMotionSetup {
             }
             None => [f64::NEG_INFINITY, f64::INFINITY],
         };
-        let initial_state = [start[actuator], speed];
         let duration = full_travel / speed;
         let count = start.len();
         let mut velocities = vec![0.0; count];
@@ -82,7 +79,6 @@ impl FreeMotionSetup {
             scene: free_scene,
             max_step: duration / MIN_STEPS,
             actuator,
-            initial_state,
             full_travel,
             allowed_range,
         })
@@ -94,11 +90,6 @@ impl FreeMotionSetup {
         let (name, unit) = (&actuator.name, actuator.coordinate().unit());
         let [q, speed] = state.map(|v| digits(v, 6));
         format!("{name} = {q} {unit} with {speed} {unit}/s")
-    }
-
-    /// The start as text.
-    pub(crate) fn initial_state_text(&self) -> String {
-        self.state_text(self.initial_state)
     }
 
     /// Ends a run after one revolution or one oscillation, and short of its own end; describes it.

@@ -14,11 +14,10 @@ use dwell_kinetostatics::TableDomain;
 use dwell_kinetostatics::space::{Axes, Component, Model as SpaceModel};
 use dwell_kinetostatics::table::TableModel;
 use dwell_scene::{FreeMotionSpec, MotionDuration, Scene, SpaceScene};
-use dwell_study::explain::NamedScene as _;
+use dwell_study::explain::NamedScene;
 use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
 use dwell_study::machines::MachineScene;
 use dwell_study::models::with_drive_loads;
-use dwell_study::number_format::digits;
 use dwell_study::trajectory::compute::ComputedTrajectory;
 use dwell_study::{
     ExportRequest, MotionSolver, Outcome, PictureSpan, StudyError, compute_export,
@@ -68,11 +67,11 @@ impl CommandedMotion {
 
 /// A scene whose motion is studied, in the plane or in space.
 pub trait StudiedScene: MachineScene<Model: TableModel> + Clone {
-    /// The scene with a motion: its own, or a free motion from the assembly, of which it says where it starts.
+    /// The scene with a motion: its own, or a free motion from the assembly.
     ///
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be put together.
-    fn with_free_motion(&self) -> Result<(Self, Option<String>), StudyError>;
+    fn with_free_motion(&self) -> Result<Self, StudyError>;
 
     /// The reactions that are compared: all that the loads determine.
     ///
@@ -111,7 +110,7 @@ pub trait StudiedScene: MachineScene<Model: TableModel> + Clone {
     /// [`StudyError::Scene`] where it cannot be exported.
     fn export(&self, asked: &ExportRequest) -> Result<Export, StudyError>;
 
-    /// The same scene with a motion of another duration, s.
+    /// The same scene with a motion of another duration, s, and all coordinates and speeds in its table.
     fn lasting(&self, duration: f64) -> Self;
 
     /// Computes its motion without files, as `dwell simulate --accuracy` does.
@@ -154,6 +153,19 @@ fn range_ends(scene: &SpaceScene, machine: &Machine<SpaceModel>) -> Vec<Event<Co
     ends.map(event).collect()
 }
 
+/// The requested columns, with those of all coordinates and speeds; none: all columns.
+fn with_states(scene: &impl NamedScene, requested: Option<&[String]>) -> Option<Vec<String>> {
+    let mut columns = requested?.to_vec();
+    let names = (0..).map_while(|i| scene.actuator(i));
+    let states = names.flat_map(|(name, _)| [name.to_owned(), format!("{name}.velocity")]);
+    for state in states {
+        if !columns.contains(&state) {
+            columns.push(state);
+        }
+    }
+    Some(columns)
+}
+
 fn to_accuracy(accuracy: f64) -> MotionSolver {
     MotionSolver::Accuracy {
         accuracy,
@@ -162,13 +174,11 @@ fn to_accuracy(accuracy: f64) -> MotionSolver {
 }
 
 impl StudiedScene for Scene {
-    fn with_free_motion(&self) -> Result<(Self, Option<String>), StudyError> {
+    fn with_free_motion(&self) -> Result<Self, StudyError> {
         if self.motion.is_some() {
-            return Ok((self.clone(), None));
+            return Ok(self.clone());
         }
-        let setup = FreeMotionSetup::new(self, &Reference::default())?;
-        let start = setup.initial_state_text();
-        Ok((setup.scene, Some(start)))
+        Ok(FreeMotionSetup::new(self, &Reference::default())?.scene)
     }
 
     fn compared_reactions(&self, model: &Self::Model) -> Result<Vec<Self::Reaction>, StudyError> {
@@ -228,6 +238,7 @@ impl StudiedScene for Scene {
         if let Some(motion) = &mut scene.motion {
             motion.duration = MotionDuration::Seconds(duration);
         }
+        scene.requests.variables = with_states(self, self.requests.variables.as_deref());
         scene
     }
 
@@ -243,10 +254,10 @@ impl StudiedScene for Scene {
 }
 
 impl StudiedScene for SpaceScene {
-    fn with_free_motion(&self) -> Result<(Self, Option<String>), StudyError> {
+    fn with_free_motion(&self) -> Result<Self, StudyError> {
         let mut scene = self.clone();
         if scene.motion.is_some() || self.mechanism.actuators.is_empty() {
-            return Ok((scene, None));
+            return Ok(scene);
         }
         // From the assembly, at one rad/s or m/s of the first actuator: about a revolution, or over the size.
         let is_angle = self.actuator(0).is_none_or(|(_, is_angle)| is_angle);
@@ -258,9 +269,6 @@ impl StudiedScene for SpaceScene {
         let count = self.assembly.q.len();
         let mut velocities = vec![0.0; count];
         velocities[0] = 1.0;
-        let unit = if is_angle { "rad" } else { "m" };
-        let (name, q) = (self.quoted_coordinate(), digits(self.assembly.q[0], 6));
-        let text = format!("{} = {q} {unit} with 1 {unit}/s", name.trim_matches('`'));
         scene.motion = Some(FreeMotionSpec {
             initial_coordinates: self.assembly.q.clone(),
             initial_velocities: velocities,
@@ -268,7 +276,7 @@ impl StudiedScene for SpaceScene {
             duration: MotionDuration::Seconds(travel),
             events: Vec::new(),
         });
-        Ok((scene, Some(text)))
+        Ok(scene)
     }
 
     fn compared_reactions(&self, model: &Self::Model) -> Result<Vec<Self::Reaction>, StudyError> {
@@ -333,6 +341,7 @@ impl StudiedScene for SpaceScene {
         if let Some(motion) = &mut scene.motion {
             motion.duration = MotionDuration::Seconds(duration);
         }
+        scene.variables = with_states(self, self.variables.as_deref());
         scene
     }
 

@@ -12,6 +12,7 @@ use dwell_study::machines::MotionStart;
 use dwell_study::number_format::digits;
 use dwell_study::ranges::extent;
 use std::f64::consts::TAU;
+use toml::Value;
 
 /// Periods of a periodic motion, and revolutions or oscillations of another, at most.
 const MAX_PERIODS: f64 = 3.0;
@@ -55,10 +56,8 @@ impl<S: StudiedScene> Subject<S> {
         if scene.actuator(0).is_none() {
             return Err(no_free_coordinate(scene));
         }
-        let (scene, start) = scene.with_free_motion()?;
-        if let Some(start) = start {
-            notes.push(format!("without [motion], a free motion starts at {start}"));
-        }
+        let has_motion = scene.has_motion();
+        let scene = scene.with_free_motion()?;
         let machine = scene.machine(&[])?;
         if machine.free().is_empty() {
             return Err(no_free_coordinate(&scene));
@@ -90,6 +89,12 @@ impl<S: StudiedScene> Subject<S> {
         let orbit = orbit.and_then(Result::ok);
         let problem = (&scene, &machine, &initial_state);
         let (end, coordinate_range) = bound_duration(problem, orbit.as_ref(), &mut notes)?;
+        if !has_motion {
+            let motion = written_motion(&scene, machine.free(), [&coordinates, &velocities], end);
+            notes.push(format!(
+                "the scene has no motion: the study takes this one, and the lines to type need it as the scene's first line: {motion}"
+            ));
+        }
         // The last time is the end, to the last bit.
         let before = (1..COMPARED_TIMES).map(|k| end * k as f64 / COMPARED_TIMES as f64);
         let subject = Self {
@@ -163,6 +168,32 @@ fn no_free_coordinate(scene: &SceneFile) -> StudyError {
     let (message, help) = (message.to_owned(), Some(help.to_owned()));
     let error = scene.error(message, help, &[(SceneLocation::Whole, label)]);
     error.into()
+}
+
+/// A free motion of a duration (s) as the scene would write it, in one line; coordinates and speeds are those of all actuators.
+fn written_motion<S: StudiedScene>(
+    scene: &S,
+    free: &[usize],
+    [coordinates, velocities]: [&[f64]; 2],
+    duration: f64,
+) -> String {
+    let table = |values: &[f64]| {
+        let named = free
+            .iter()
+            .filter_map(|&i| Some((scene.actuator(i)?, values[i])));
+        let written = named.map(|((name, is_angle), value)| {
+            let (value, _) = scene.to_scene_unit(value, is_angle);
+            (name.to_owned(), Value::Float(value))
+        });
+        Value::Table(written.collect())
+    };
+    let motion = [
+        ("duration", Value::Float(duration)),
+        ("initial-coordinate", table(coordinates)),
+        ("initial-velocity", table(velocities)),
+    ];
+    let motion = motion.map(|(key, value)| (key.to_owned(), value));
+    format!("motion = {}", Value::Table(motion.into_iter().collect()))
 }
 
 /// The duration of the motion, and the range of its first free coordinate.
