@@ -110,6 +110,13 @@ pub struct Errors {
 }
 
 impl Errors {
+    /// Those of a motion with rows missing.
+    pub(super) const UNKNOWN: Self = Self {
+        coordinate: f64::NAN,
+        energy: f64::NAN,
+        reaction: f64::NAN,
+    };
+
     /// One of them.
     pub fn of(&self, quantity: ErrorQuantity) -> f64 {
         match quantity {

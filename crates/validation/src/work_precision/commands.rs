@@ -72,7 +72,11 @@ pub(super) fn command_runs<S: StudiedScene>(
         } = scene.commanded(preset.1)?;
         let computing = started.elapsed().as_secs_f64();
         let states = rows_at(subject, &reference.states, &table);
-        let errors = reference.errors(&states, &mut exact.reactions());
+        // Loads need not have a value where there is no row.
+        let errors = match states.iter().flatten().all(|value| value.is_finite()) {
+            true => reference.errors(&states, &mut exact.reactions()),
+            false => Ok(Errors::UNKNOWN),
+        };
         Ok(CommandRun {
             preset,
             method,
