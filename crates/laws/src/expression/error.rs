@@ -39,9 +39,14 @@ pub fn nearest<'n>(wrong: &str, names: impl Iterator<Item = &'n str> + Clone) ->
     if length > MAX_COMPARED {
         return None;
     }
-    // As they sound: `fi` is meant for `phi`, not for `pi`.
-    let fold = |name: &str| name.to_lowercase().replace("ph", "f");
     let folded = wrong.to_lowercase();
+    // As it is written or as it sounds: `fi` is meant for `phi`, not for `pi`.
+    let distance = |name: &str| {
+        let name = name.to_lowercase();
+        let sound = |name: &str| name.replace("ph", "f");
+        let written = strsim::osa_distance(&name, &folded);
+        written.min(strsim::osa_distance(&sound(&name), &sound(&folded)))
+    };
     if let Some(same) = names.clone().find(|n| n.to_lowercase() == folded) {
         return Some(same);
     }
@@ -52,7 +57,7 @@ pub fn nearest<'n>(wrong: &str, names: impl Iterator<Item = &'n str> + Clone) ->
     };
     names
         .filter(|n| n.chars().count().abs_diff(length) <= slips)
-        .map(|n| (strsim::osa_distance(&fold(n), &fold(wrong)), n))
+        .map(|n| (distance(n), n))
         .filter(|(d, n)| *d <= slips && *d < n.chars().count())
         .min_by_key(|(d, _)| *d)
         .map(|(_, n)| n)
@@ -74,6 +79,7 @@ mod tests {
             ("x", None),
             ("height", None),
             ("fi", Some("phi")),
+            ("psi", Some("phi")),
         ] {
             assert_eq!(nearest(name, names.into_iter()), meant, "{name}");
         }
