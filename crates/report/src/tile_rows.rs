@@ -1,7 +1,7 @@
 //! Tiles, laid out on the page.
 
 use crate::canvas::{Align, Canvas, TextStyle};
-use crate::fonts::{width, wrapped};
+use crate::fonts::{width, wrapped_anywhere};
 use crate::grid::{Tile, Tiles};
 use crate::rect::Rect;
 use crate::theme::{BAND, CAPTION_GREY, FAILED, INK, PASSED};
@@ -48,7 +48,7 @@ impl<'a> TileRows<'a> {
                 tile,
                 name: fitted(&tile.name, NAME_SIZE, false),
                 value: fitted(&tile.value, VALUE_SIZE, true),
-                note: wrapped(&typeset(&tile.note), NOTE_SIZE, false, room),
+                note: wrapped_anywhere(&typeset(&tile.note), NOTE_SIZE, false, room),
             }
         };
         let row = |tiles: &'a [Tile]| {
