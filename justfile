@@ -185,6 +185,6 @@ nightly-laws seed=`date +%j`: (laws "20000" seed)
 [group('care')]
 nightly-others: peers deny octave designs reference export fmi-rs cortex engines
 
-# What the build server runs
+# Lint, test and validate: a part of what the build server runs (.ci/run), which also tests the pages, the exports and Python
 [group('care')]
 ci: lint test validate

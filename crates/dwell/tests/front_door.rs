@@ -77,6 +77,10 @@ fn variants_keep_functions_and_texts_without_them_fail_loudly() -> Result<(), Er
     let heavier = m.scene()?.with_value("bob.mass", 4.0)?.assemble()?;
     let torque = heavier.inverse_dynamics(1.0, &[0.0], &[0.0], &[0.0])?;
     assert!((torque.actuator_force("phi")? - (4.0 * G * 0.5 - 4.0)).abs() < 1e-12);
+    assert!(
+        m.to_toml()
+            .contains("# The magnitude of `push` is a function")
+    );
     let without = Scene::parse(&m.to_toml()).and_then(|scene| scene.assemble());
     let forces = without.and_then(|m| m.inverse_dynamics(1.0, &[0.0], &[0.0], &[0.0]));
     let error = forces.err().map(|e| e.to_string()).unwrap_or_default();

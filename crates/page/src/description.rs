@@ -1,6 +1,8 @@
 //! What a page shows of a run.
 
 use crate::drawing::Drawing;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use dwell_findings::{Finding, RecordedEvent, RecordedNumber};
 use serde::Serialize;
 
@@ -49,6 +51,8 @@ pub struct Page {
     pub events: Vec<RecordedEvent>,
     /// Tables of text.
     pub tables: Vec<PageTable>,
+    /// Pictures, where there are no rows to draw curves of.
+    pub pictures: Vec<FileLink>,
     /// Files beside the page.
     pub files: Vec<FileLink>,
 }
@@ -142,11 +146,21 @@ pub struct PageTable {
     pub rows: Vec<Vec<String>>,
 }
 
-/// A file beside the page. It is linked, never loaded.
+/// A file beside the page, which is linked, never loaded; or a picture in it.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct FileLink {
-    /// The path from the page.
+    /// The path from the page, or what is in the file.
     pub path: String,
     /// What it is.
     pub title: String,
+}
+
+impl FileLink {
+    /// A PNG that the page holds itself.
+    pub fn embedded_png(title: &str, file: &[u8]) -> Self {
+        Self {
+            path: format!("data:image/png;base64,{}", STANDARD.encode(file)),
+            title: title.to_owned(),
+        }
+    }
 }

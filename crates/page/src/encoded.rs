@@ -53,8 +53,7 @@ impl Page {
             rows,
             ..Block::default()
         };
-        let columns = self.columns.iter();
-        let columns = columns.map(|of| block.column(of));
+        let columns = self.columns.iter().map(|of| block.column(of));
         let columns = columns.collect::<Result<Vec<_>, _>>()?;
         let drawing = self.drawing.as_ref();
         let drawing = drawing.map(|drawing| block.drawing(drawing)).transpose()?;
@@ -100,6 +99,7 @@ impl Page {
             numbers: numbers.collect(),
             events: events.collect(),
             tables: &self.tables,
+            pictures: &self.pictures,
             files: &self.files,
         })?;
         Ok(EncodedPage {
@@ -216,6 +216,7 @@ struct Description<'a> {
     numbers: Vec<EncodedNumber<'a>>,
     events: Vec<EncodedEvent<'a>>,
     tables: &'a [PageTable],
+    pictures: &'a [FileLink],
     files: &'a [FileLink],
 }
 

@@ -84,7 +84,7 @@ pub fn source_hash(text: &str) -> String {
 fn policy() -> String {
     let [style, script, start] = [STYLE, SCRIPT, START].map(source_hash);
     format!(
-        "default-src 'none'; style-src {style}; script-src {script} {start}; base-uri 'none'; form-action 'none'"
+        "default-src 'none'; img-src data:; style-src {style}; script-src {script} {start}; base-uri 'none'; form-action 'none'"
     )
 }
 

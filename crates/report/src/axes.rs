@@ -81,12 +81,11 @@ pub(crate) fn vertical_ticks(range: &AxisRange, length: f64) -> Ticks {
         at.windows(2)
             .any(|pair| (pair[1] - pair[0]).abs() < LEADING * TICK_SIZE)
     };
-    let ticks = fit(range, max_count, crowded);
-    if ticks.major.len() > 1 {
-        return ticks;
-    }
-    // One value is no scale: closer together, then.
-    fit(range, (length / (LEADING * TICK_SIZE)) as usize, crowded)
+    // Two values are hardly a scale: closer together, then.
+    let closest = ((length / (LEADING * TICK_SIZE)) as usize).max(max_count);
+    let mut all = (max_count..=closest).map(|count| fit(range, count, crowded));
+    let enough = all.find(|ticks| ticks.major.len() > 2);
+    enough.unwrap_or_else(|| fit(range, closest, crowded))
 }
 
 /// Room a vertical axis needs beside a plot of this height.

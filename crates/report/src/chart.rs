@@ -143,10 +143,10 @@ impl<'a> PreparedChart<'a> {
         for (k, (series, style)) in chart.series.iter().zip(&layout.styles).enumerate() {
             canvas.note(|record| record.begin_curve(Some(&typeset(&series.name))));
             draw_series(canvas, &frame, series, style);
-            if style.line.dash.is_some() && self.styles[k].line.dash.is_none() {
-                let solid = LineStyle::solid(style.line.color, style.line.width);
+            let own = self.styles[k].line;
+            if style.line.dash != own.dash {
                 let alone = coincidence::alone(k, &lines, &frame.plot);
-                alone.iter().for_each(|line| canvas.line(line, solid));
+                alone.iter().for_each(|line| canvas.line(line, own));
             }
         }
         canvas.note(|record| record.begin_curve(None));

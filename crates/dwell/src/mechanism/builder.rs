@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::mechanism::Mechanism;
 use crate::mechanism::parts::{
-    Actuator, Coordinate, Drive, Friction, Joint, Keys, Law, Load, LoadFunction, Motion,
+    Actuator, Coordinate, Drive, Friction, Joint, Keys, Law, Load, LoadFunction, Motion, NO_VALUE,
 };
 use crate::mechanism::scene::Scene;
 use crate::value::{Value, key, quoted};
@@ -222,7 +222,7 @@ impl MechanismBuilder {
         self
     }
 
-    /// The mechanism as the text of a scene file. A load's function of one's own is not in it.
+    /// The mechanism as the text of a scene file. A load's function of one's own is not in it: a comment says so, and the load has no value.
     ///
     /// ```
     /// let mut m = dwell::Mechanism::builder("Pendulum");
@@ -239,6 +239,10 @@ impl MechanismBuilder {
         }
         for (section, entries) in &self.sections {
             let _ = writeln!(text, "\n[{section}]");
+            for (load, _) in self.functions.iter().filter(|_| *section == "loads") {
+                let note = "is a function of a program: write an expression or a table in place of";
+                let _ = writeln!(text, "# The magnitude of `{load}` {note} {NO_VALUE}.");
+            }
             write_keys(&mut text, entries);
         }
         text + &self.text

@@ -23,6 +23,7 @@ function createWords(units, actions, later) {
     const d = shownRun.description;
     const { axis } = shownRun;
     const parts = [
+      ...d.pictures.map((picture, k) => [`picture ${k}`, picture, () => card('Picture', `picture-${k}`, el('img', { src: picture.path, alt: picture.title }))]),
       ['findings', d.findings, () => findingsCard(d.findings)], ['printed', d.printed, () => printedCard(d.printed)],
       ['events', [d.events, axis && axis.unit], () => eventsCard(d.events, () => shownRun, actions)], ['numbers', d.numbers, () => numbersCard(d.numbers, units)],
       ...d.tables.map((table, k) => [`table ${k}`, table, () => tableCard(table, k)]),
@@ -104,7 +105,7 @@ function numbersCard(numbers, units) {
   const line = n => el('tr', {}, el('th', { scope: 'row' }, n.name), el('td', { class: 'number', 'data-value': n.value, title: String(n.value) }, format(Number(n.value), 9)),
     el('td', { class: 'unit' }, printedUnit(n.unit)), el('td', { class: 'number' }, n.error === null ? '' : scientific(Number(n.error))));
   const table = el('table', {}, el('thead', {}, el('tr', {}, ['quantity', 'value', 'unit', 'estimated error'].map((t, k) => el('th', { scope: 'col', class: k % 2 ? 'number' : null }, t)))), el('tbody', {}, numbers.map(line)));
-  return card('Numbers', 'numbers', el('details', { open: numbers.length <= 40 }, el('summary', {}, `${numbers.length} numbers, in units of SI`), el('div', { class: 'wide' }, table)));
+  return card('Numbers', 'numbers', el('details', { open: numbers.length <= 40 }, el('summary', {}, `${numbers.length} numbers`), el('div', { class: 'wide' }, table)));
 }
 
 function tableCard({ title, header, rows }, k) {

@@ -120,13 +120,16 @@ class Builder:
         return self
 
     def to_toml(self) -> str:
-        """The mechanism as the text of a scene file. A Python function is not in it."""
+        """The mechanism as the text of a scene file. A Python function is not in it: a comment says so, and the load has no value."""
         lines = [f"title = {_value(self.title)}"]
         for name, (points, keys) in self._bodies.items():
             lines += ["", f"[bodies.{_key(name)}]", f"points = {_value(points)}"]
             lines += [f"{_key(key)} = {_value(value)}" for key, value in keys.items()]
         for section, entries in self._sections.items():
             lines += ["", f"[{section}]"]
+            for load, *_ in self._functions if section == "loads" else ():
+                place = f"write an expression or a table in place of {_NO_VALUE}"
+                lines.append(f"# The magnitude of `{load}` is a function of a program: {place}.")
             lines += [f"{_key(key)} = {_value(value)}" for key, value in entries.items()]
         return "\n".join(lines) + "\n" + self._text
 

@@ -16,6 +16,14 @@ use dwell_scene::{Scene, SceneFile, SceneLocation};
 /// A gap below this fraction of the mechanism's size may be rounding of the lengths.
 const MARGINAL_GAP: f64 = 1e-6;
 
+/// Why a loop of a mechanism of this size does not close: by a gap, or, as a gap of rounding is no cause, by a limit position.
+pub(crate) fn describe_gap(file: &SceneFile, gap: f64, size: f64) -> String {
+    match gap <= MARGINAL_GAP * size {
+        true => "a limit position, or just beyond one".to_owned(),
+        false => format!("gap of {}", own_length(file, gap, 3)),
+    }
+}
+
 /// Maximum number of assembly modes in a message.
 const MAX_LISTED: usize = 6;
 

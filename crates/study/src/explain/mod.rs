@@ -12,7 +12,8 @@ mod study_error;
 mod switching;
 
 pub(crate) use assembly::{
-    driven_labels, freedom_text, inconsistent, not_connected, not_one_actuator, wrong_actuators,
+    describe_gap, driven_labels, freedom_text, inconsistent, not_connected, not_one_actuator,
+    wrong_actuators,
 };
 pub use assembly::{explain_machine, explain_model};
 pub(crate) use coupling::{couplings, non_finite_coupling, non_finite_coupling_error};

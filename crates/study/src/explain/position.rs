@@ -1,8 +1,8 @@
 //! Explains positions that cannot be computed, and names those where a range ends.
 
 use crate::explain::{
-    NamedScene as _, StudyError, body_names, body_names_or_mechanism, joint_labels, labels,
-    scene_error,
+    NamedScene as _, StudyError, body_names, body_names_or_mechanism, describe_gap, joint_labels,
+    labels, scene_error,
 };
 use crate::number_format::{digits, number};
 use dwell_geometry::{ActuatorId, Mechanism, Plan, PositionError, RangeLimit};
@@ -102,8 +102,8 @@ pub(crate) fn explain_position_in(
     let bodies = bodies.unwrap_or_default();
     let (message, help) = match *error {
         PositionError::NoAssembly { gap, .. } => {
-            let gap = own_length(scene, gap, 3);
-            let message = format!("{bodies} cannot reach each other at {at}: gap of {gap}");
+            let cause = describe_gap(scene, gap, scene.mechanism.size());
+            let message = format!("{bodies} cannot be assembled at {at}: {cause}");
             (message, RANGE_ENDS)
         }
         PositionError::Singular { .. } => (

@@ -88,6 +88,11 @@ impl<'a> MechanismDrawing<'a> {
         body.0 == self.scene.mechanism.ground
     }
 
+    /// Whether a joint is on the ground.
+    fn is_fixed(&self, joint: &Joint) -> bool {
+        joint.bodies.iter().any(|b| self.is_ground(*b))
+    }
+
     fn color(&self, body: BodyId) -> Paint {
         body_color(self.scene.mechanism.ground, body)
     }
@@ -161,12 +166,14 @@ impl DrawnPosition<'_> {
                     self.named_line(two, &at, 5.0);
                     self.named_line(one, &[at[0], end], 12.0);
                 }
-                JointKind::Prismatic { axes }
-                    if is_first || !joint.bodies.iter().any(|b| drawing.is_ground(*b)) =>
-                {
+                JointKind::Prismatic { axes } if is_first || !drawing.is_fixed(joint) => {
                     self.track(joint, axes[0], *travel);
                 }
                 JointKind::Distance { .. } => self.line(&at, self.pen(Paint::Grey, 4.0)),
+                // Below the bodies: it would hide the end of a link that hangs from it.
+                JointKind::Revolute if is_first && drawing.is_fixed(joint) => {
+                    self.shapes.push(Shape::GroundPin { at: array(at[0]) });
+                }
                 // Pins are drawn on top of the bodies; of a slide, a slot or teeth one drawing is enough.
                 JointKind::Gear { .. }
                 | JointKind::Revolute
@@ -346,19 +353,15 @@ impl DrawnPosition<'_> {
         };
         let joints = drawing.scene.mechanism.joints.iter();
         for joint in joints.filter(|j| drawing.is_visible(j.bodies)) {
-            let on_ground = joint.bodies.iter().any(|b| drawing.is_ground(*b));
             let ends = self.points(joint.bodies, joint.points);
             match joint.kind {
-                JointKind::Revolute if on_ground && named => {
-                    let at = array(ends[0]);
-                    self.shapes.push(Shape::GroundPin { at });
-                    label(ends[0], joint, TextPlacement::AboveLeft);
-                }
-                JointKind::Revolute if on_ground => {}
+                JointKind::Revolute if drawing.is_fixed(joint) && !named => {}
                 JointKind::Revolute => {
                     self.shapes.push(pin(ends[0]));
+                    let sides = [TextPlacement::AboveRight, TextPlacement::AboveLeft];
+                    let side = sides[usize::from(drawing.is_fixed(joint))];
                     if named {
-                        label(ends[0], joint, TextPlacement::AboveRight);
+                        label(ends[0], joint, side);
                     }
                 }
                 JointKind::Slot { .. } => self.shapes.push(pin(ends[1])),

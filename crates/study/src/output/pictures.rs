@@ -6,6 +6,7 @@ use super::provenance::signature;
 use crate::explain::StudyError;
 use crate::number_format::count;
 use crate::progress::{Progress, Step};
+use dwell_page::FileLink;
 use dwell_report::{Animation, Block, Document, Figure, Layout, ReportError, png, svg};
 use dwell_scene::SceneFile;
 use rayon::prelude::*;
@@ -163,12 +164,19 @@ impl Outcome {
             Ok(files)
         });
         let picture_files = picture_files.collect::<Result<Vec<_>, ReportError>>()?;
-        for (path, bytes) in picture_files.into_iter().flatten() {
-            self.files.add(path, bytes);
+        let tables = || page.as_ref().map(|(_, page)| tables_page(page));
+        let mut run = self.run.take().or_else(tables).unwrap_or_default();
+        for (picture, files) in drawn.iter().zip(picture_files) {
+            for (path, bytes) in files {
+                // Rows have curves.
+                if run.columns.is_empty() && path.ends_with(".png") {
+                    let picture = FileLink::embedded_png(picture.name(), &bytes);
+                    run.pictures.push(picture);
+                }
+                self.files.add(path, bytes);
+            }
         }
-        self.run = self
-            .run
-            .or_else(|| page.as_ref().map(|(_, page)| tables_page(page)));
+        self.run = Some(run);
         if let Some((path, page)) = page {
             self.files
                 .add(path, with_drawn_pictures(page, &left, format).markdown());

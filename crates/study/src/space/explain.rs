@@ -1,9 +1,9 @@
 //! Explains why a scene in space cannot be assembled, or has no pose at a coordinate.
 
 use crate::explain::{
-    Labels, NamedScene as _, StudyError, body_labels, describe_ends, driven_labels, freedom_text,
-    inconsistent, joint_labels, labels, missing_section_label, not_connected, own_coordinate,
-    own_length, scene_error,
+    Labels, NamedScene as _, StudyError, body_labels, describe_ends, describe_gap, driven_labels,
+    freedom_text, inconsistent, joint_labels, labels, missing_section_label, not_connected,
+    own_coordinate, own_length, scene_error,
 };
 use dwell_geometry::space::{JointKind, Plan};
 use dwell_geometry::{ActuatorId, AssemblyError, BodyId, JointId, PositionError, StructureError};
@@ -239,8 +239,8 @@ pub(super) fn explain_position(
         ),
         PositionError::NoAssembly { gap, .. } => (
             format!(
-                "the loops cannot be closed at {at}: gap of {}",
-                own_length(scene, gap, 3)
+                "the loops cannot be closed at {at}: {}",
+                describe_gap(scene, gap, scene.mechanism.size())
             ),
             RANGE_ENDS,
         ),

@@ -59,7 +59,12 @@ pub(crate) fn figure(
             (of_each(&of)?, BAND)
         }
         (&[abscissa], false) => (sweep.charts(abscissa, None)?, ""),
-        (&[parameter, abscissa], false) => (sweep.charts(abscissa, Some(parameter))?, ""),
+        (&[one, other], false) => {
+            // Few curves of many points.
+            let mut both = [one, other];
+            both.sort_by_key(|axis| design.axes[*axis].count());
+            (sweep.charts(both[1], Some(both[0]))?, "")
+        }
         _ => {
             let why = "more than two numbers vary over lists, or two together with random ones";
             return Ok(Drawn::Nothing(why));
@@ -106,7 +111,7 @@ fn method_text(
 
 fn axis_names(axes: &[SweepAxis]) -> String {
     const MAX_NAMES: usize = 4;
-    let names = axes.iter().take(MAX_NAMES).map(|a| a.path.clone());
+    let names = axes.iter().take(MAX_NAMES).map(|a| label_of(&a.path));
     let mut names: Vec<String> = names.collect();
     if axes.len() > MAX_NAMES {
         names.push(format!("{} more", axes.len() - MAX_NAMES));
@@ -164,8 +169,25 @@ fn unit_text(unit: &str) -> String {
     unit.replace("m2", "m²")
 }
 
+/// The path of a number as a reader would call it: `mass of crank`, `x of crank.B`, `center y of rod`.
+fn label_of(path: &str) -> String {
+    let sections = ["loads.", "joints.", "drives."].iter();
+    let path = sections.fold(path, |path, section| path.trim_start_matches(section));
+    let Some((owner, key)) = path.rsplit_once('.') else {
+        return path.to_owned();
+    };
+    let key = key
+        .replace("[0]", " x")
+        .replace("[1]", " y")
+        .replace("[2]", " z");
+    match (owner.strip_suffix(".points"), key.rsplit_once(' ')) {
+        (Some(body), Some((point, component))) => format!("{component} of {body}.{point}"),
+        _ => format!("{} of {owner}", key.replace('-', " ")),
+    }
+}
+
 fn axis_of(varied: &SweepAxis) -> Axis {
-    Axis::new(&varied.path, unit_text(&varied.unit))
+    Axis::new(label_of(&varied.path), unit_text(&varied.unit))
 }
 
 fn chart(name: &str, unit: &str, x: Axis, series: Vec<Series>) -> Option<Chart> {
@@ -221,7 +243,7 @@ impl<S: SweptScene> SweptCurves<'_, S> {
             let chart = chart(group.title, group.unit, axis_of(&axes[abscissa]), series);
             let Some(mut chart) = chart else { continue };
             if let Some((axis, inputs)) = &parameter {
-                chart.title += &format!(", by {}", axis.path);
+                chart.title += &format!(", by {}", label_of(&axis.path));
                 let (drawn, all) = (
                     chosen_values(inputs.clone()).len(),
                     distinct(inputs.clone()).len(),
@@ -353,6 +375,23 @@ mod tests {
     use super::*;
     use crate::sweep::compute::RequestedQuantities;
     use dwell_scene::Scene;
+
+    #[test]
+    fn numbers_have_the_names_that_readers_give_them() {
+        let labels = [
+            "crank.mass",
+            "crank.points.B[0]",
+            "rod.center[1]",
+            "loads.s.free-length",
+        ];
+        let named = [
+            "mass of crank",
+            "x of crank.B",
+            "center y of rod",
+            "free length of s",
+        ];
+        assert_eq!(labels.map(label_of), named);
+    }
 
     #[test]
     fn smallest_and_largest_values_share_a_chart() {

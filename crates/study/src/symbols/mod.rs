@@ -19,8 +19,10 @@ use kinematic::{axis_of, drawn_size};
 
 /// Reference length of the symbols, in sizes of the mechanism.
 const SYMBOL_RATIO: f64 = 0.6;
-/// The same of the whole drawing, below which symbols could not be recognised.
+/// The same of the whole drawing, below which symbols could not be recognised, and above which they would hide it: the size of a mechanism
+/// without lengths is 1 m.
 const MIN_SYMBOL_RATIO: f64 = 0.4;
+const MAX_SYMBOL_RATIO: f64 = 0.85;
 /// Half the distance of the rails of a guide, and of a slot, and the height of the teeth of a rack, in reference lengths.
 pub(crate) const RAIL_DISTANCE: f64 = 0.055;
 pub(crate) const SLOT_DISTANCE: f64 = 0.035;
@@ -30,7 +32,11 @@ pub(crate) const TRACK_MARGIN: f64 = 0.25;
 
 /// The reference length of the symbols of a scene that is drawn at these positions, m.
 pub(crate) fn symbol_size(scene: &Scene, positions: &[Vec<BodyPose>]) -> f64 {
-    (SYMBOL_RATIO * scene.mechanism.size()).max(MIN_SYMBOL_RATIO * drawn_size(scene, positions))
+    let (size, drawn) = (scene.mechanism.size(), drawn_size(scene, positions));
+    match drawn > 0.0 {
+        true => (SYMBOL_RATIO * size).clamp(MIN_SYMBOL_RATIO * drawn, MAX_SYMBOL_RATIO * drawn),
+        false => SYMBOL_RATIO * size,
+    }
 }
 
 /// By joint: the range of its second point along its axis over all positions, m.

@@ -91,7 +91,7 @@ impl Magnitude {
 }
 
 /// What stands in a scene's text for a function: without it, every evaluation fails and names the load.
-const NO_VALUE: &str = "0/(t - t)";
+pub(crate) const NO_VALUE: &str = "0/(t - t)";
 
 impl From<f64> for Magnitude {
     fn from(number: f64) -> Self {

@@ -13,8 +13,8 @@ pub use drive::Drive;
 pub use friction::Friction;
 pub use joint::Joint;
 pub use law::Law;
-pub(crate) use load::LoadFunction;
 pub use load::{Load, Magnitude};
+pub(crate) use load::{LoadFunction, NO_VALUE};
 pub use motion::{Event, Motion};
 
 use crate::value::Value;

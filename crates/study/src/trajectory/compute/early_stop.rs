@@ -171,7 +171,7 @@ impl<'a> EarlyStop<'a> {
         let who = body_names_or_mechanism(&scene.mechanism, &bodies);
         let why = match error {
             PositionError::NotFinite => "a coordinate is not a finite number beyond".into(),
-            PositionError::NoAssembly { .. } => format!("{who} cannot reach each other beyond"),
+            PositionError::NoAssembly { .. } => format!("{who} cannot be assembled beyond"),
             PositionError::Singular { .. } => format!(
                 "{who} are in a singular configuration there, and the actuators do not determine their motion"
             ),

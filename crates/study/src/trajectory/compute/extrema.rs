@@ -40,9 +40,19 @@ pub(crate) struct Extrema {
     pub(crate) of_columns: Vec<Option<[Extremum; 2]>>,
     /// By column: whether they are those of the rows, between which there may be larger ones.
     pub(crate) of_rows: Vec<bool>,
+    /// By column, of an integrated motion: where it turns in the rows and at the steps between them.
+    turns: Vec<Vec<Extremum>>,
 }
 
 impl Extrema {
+    /// What a curve of a column is drawn through besides its rows: without it the highest of several peaks would be that with the nearest row.
+    #[cfg(feature = "output")]
+    pub(crate) fn of_curve(&self, k: usize) -> impl Iterator<Item = Extremum> {
+        let ends = self.of_columns.get(k).copied().flatten();
+        let turns = self.turns.get(k).into_iter().flatten();
+        ends.into_iter().flatten().chain(turns.copied())
+    }
+
     /// Whether extrema are those of the trajectory, but for some columns.
     pub(crate) fn are_between_rows(&self) -> bool {
         self.of_rows.contains(&false)
@@ -138,6 +148,7 @@ impl<E: RowEvaluator> ExtremaSearch<'_, E> {
                 .map(both)
                 .collect::<io::Result<_>>()?,
             of_rows: vec![true; self.columns.len()],
+            turns: vec![Vec::new(); self.columns.len()],
         })
     }
 
@@ -170,12 +181,16 @@ impl<E: RowEvaluator> ExtremaSearch<'_, E> {
                 let points = points.of_column(i, (self.values)(k)?, self.columns[k].unwraps());
                 let parts: Vec<&[Point]> = between_events(&points).collect();
                 let mut found = |sign| search.largest(k, sign, (&points, &parts), refined);
-                io::Result::Ok((k, [found(-1.0), found(1.0)]))
+                io::Result::Ok((k, [found(-1.0), found(1.0)], turns(&points)))
             };
             columns.iter().map(column).collect::<io::Result<Vec<_>>>()
         });
         for part in parts.collect::<Vec<_>>() {
-            for (k, found) in part? {
+            for (k, found, turns) in part? {
+                // Other parameters than times are not the abscissa.
+                if self.trajectory.free_motion().is_some() {
+                    extrema.turns[k] = turns;
+                }
                 let Some(ends) = &mut extrema.of_columns[k] else {
                     continue;
                 };
@@ -359,6 +374,13 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
             at,
         })
     }
+}
+
+/// Where a function of time turns, at its points.
+fn turns(points: &[Point]) -> Vec<Extremum> {
+    let is_turn = |w: &&[Point]| (w[1][1] - w[0][1]) * (w[1][1] - w[2][1]) > 0.0;
+    let all = points.windows(3).filter(is_turn).map(|w| w[1]);
+    all.map(|[at, value]| Extremum { value, at }).collect()
 }
 
 /// The event before which a limit is known, a rounding earlier; else the parameter itself.

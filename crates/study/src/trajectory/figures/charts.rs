@@ -1,6 +1,7 @@
 //! Charts of the columns of a trajectory over its abscissa.
 
 use super::MAX_CURVES;
+use super::last_revolution::last_revolution;
 use super::span::{DrawnRows, PictureSpan};
 use crate::explain::StudyError;
 use crate::number_format::digits;
@@ -39,6 +40,8 @@ pub(crate) struct ChartContext<'a> {
     pub(super) abscissa_values: Vec<f64>,
     /// The part of the rows that curves show.
     pub(super) drawn: DrawnRows,
+    /// The first row of the last revolution of many, which is drawn once more.
+    pub(super) last_revolution: Option<usize>,
     /// Whether the trajectory starts and ends next to a limit position.
     pub(super) limits: [bool; 2],
 }
@@ -88,6 +91,7 @@ impl<'a> ChartContext<'a> {
             x,
             abscissa,
             abscissa_values,
+            last_revolution: last_revolution(results).filter(|_| rows.ends.is_none()),
             drawn: rows,
             limits: [start, end || computed.early_stop.is_some()],
         })
@@ -123,7 +127,9 @@ impl<'a> ChartContext<'a> {
         };
         let span_note = self.span_note();
         let text = format!("{text}{limit_note}{span_note}");
-        figure(self.scene, name, title, &text, panels, &self.method_text)
+        let mut figure = figure(self.scene, name, title, &text, panels, &self.method_text);
+        self.add_last_revolution(&mut figure);
+        figure
     }
 
     /// Which part of the trajectory the curves show, if not all of it.
@@ -151,15 +157,23 @@ impl<'a> ChartContext<'a> {
         self.results.rows[self.drawn.rows.clone()].iter()
     }
 
-    /// A curve over the trajectory; angles in degrees.
+    /// A curve over the trajectory, through its rows and the extrema between them; angles in degrees.
     pub(crate) fn curve(&self, name: &str, k: usize) -> Series {
-        let degrees = self.results.columns[k].unit == "rad";
-        let value = |row: &Vec<f64>| if degrees { row[k].to_degrees() } else { row[k] };
-        let values = self.drawn_rows().map(value);
-        let points = self.abscissa_values[self.drawn.rows.clone()]
-            .iter()
-            .zip(values);
-        Series::line(name, points.map(|(x, y)| [*x, y]).collect())
+        let in_degrees = |column: usize, value: f64| match self.results.columns[column].unit {
+            "rad" => value.to_degrees(),
+            _ => value,
+        };
+        let places = &self.abscissa_values[self.drawn.rows.clone()];
+        let rows = places.iter().zip(self.drawn_rows());
+        let mut points: Vec<[f64; 2]> = rows.map(|(x, row)| [*x, in_degrees(k, row[k])]).collect();
+        let [low, high] = extent(places.iter().copied());
+        let extrema = self.results.extrema.of_curve(k);
+        let extrema = extrema.map(|e| [in_degrees(self.abscissa, e.at), in_degrees(k, e.value)]);
+        points.extend(extrema.filter(|[x, _]| *x > low && *x < high));
+        let ends = places.first().zip(places.last());
+        let sign = ends.map_or(1.0, |(first, last)| last - first);
+        points.sort_by(|a, b| (sign * a[0]).total_cmp(&(sign * b[0])));
+        Series::line(name, points)
     }
 
     /// A chart of some columns of one unit, each with its name in the legend.
@@ -310,22 +324,29 @@ impl<'a> ChartContext<'a> {
     }
 
     pub(crate) fn power(&self) -> Option<Figure> {
-        let is_power = |c: &Column| matches!(c.quantity, Quantity::Power(_)) && c.unit == "W";
-        let curves = self.labelled(&self.columns_where(is_power), "").into_iter();
-        let curves: Vec<(String, usize)> = curves
-            .filter_map(|(name, k)| Some((name.strip_prefix("power.")?.to_owned(), k)))
-            .filter(|(name, _)| name != "residual")
-            .collect();
-        if curves.iter().all(|(_, k)| self.is_zero(*k)) {
-            return None;
+        let total = |(of, label): (usize, &str)| {
+            Some((
+                label.to_owned(),
+                self.results.column_index(Quantity::Power(of))?,
+            ))
+        };
+        let totals = [(0, "actuators"), (1, "loads"), (2, "kinetic")];
+        let mut curves: Vec<_> = totals.into_iter().filter_map(total).collect();
+        let each = self.columns_where(|c| matches!(c.quantity, Quantity::LoadPower(_)));
+        let mut each = self.labelled(&each, ".power");
+        each.retain(|(_, k)| !self.is_zero(*k));
+        // Of few loads and drives each has a curve.
+        if curves.len() == 3 && !self.results.is_limited && each.len() + 2 <= MAX_CURVES {
+            curves.splice(1..2, each);
         }
-        let mut chart = self.chart("", "power", &curves);
-        // Without loads the other two curves coincide.
-        if let Some(kinetic) = chart.series.last_mut() {
+        curves.retain(|(_, k)| !self.is_zero(*k));
+        let mut chart = self.chart_of_some("", "power", &curves)?;
+        // With one other curve it coincides.
+        let kinetic = chart.series.last_mut();
+        if let Some(kinetic) = kinetic.filter(|series| series.name == "kinetic") {
             kinetic.stroke = Stroke::Dashed;
         }
-        let text =
-            "Power of the actuators and of the loads; their sum is the rate of the kinetic energy.";
+        let text = "Power of the actuators, loads and drives; their sum is the rate of the kinetic energy (dashed).";
         Some(self.figure("power-balance", "Power balance", text, vec![chart.into()]))
     }
 }

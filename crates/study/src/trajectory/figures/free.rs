@@ -93,8 +93,8 @@ impl ChartContext<'_> {
             let charts = curves.chunks(MAX_CURVES);
             panels.extend(charts.map(|some| self.chart(title, label, some).into()));
         }
-        let text = "Power: what drives deliver to the mechanism, and what motors take from the supply. Efficiency: delivered power \
-                    over its sum with the loss in the resistance, 0 where a motor brakes.";
+        let text = "Power that drives deliver to the mechanism. Of a motor with a circuit also the power that it takes from the supply, and its efficiency: \
+                    delivered power over its sum with the loss in the resistance, 0 where it brakes.";
         (!panels.is_empty()).then(|| self.figure("drives", "Drives", text, panels))
     }
 }
@@ -106,20 +106,28 @@ impl FigureContext<'_> {
             return None;
         }
         let actuators = self.scene.mechanism.actuators.iter().enumerate();
+        let folds = self.last_revolution.is_some();
+        let period = [f64::INFINITY, 360.0][usize::from(folds)];
+        let within = |degrees: f64| degrees - 360.0 * (degrees / period).floor();
         let panel = |(i, actuator): (usize, &dwell_geometry::Actuator)| {
             let (q, speed) = (self.coordinate(i, 0)?, self.coordinate(i, 1)?);
             let name = symbol(&actuator.name);
             let angle = actuator.coordinate().is_angle();
-            let at = |row: &Vec<f64>| {
-                let x = if angle { row[q].to_degrees() } else { row[q] };
-                [x, row[speed]]
+            let at = |row: &Vec<f64>| match angle {
+                true => [within(row[q].to_degrees()), row[speed]],
+                false => [row[q], row[speed]],
             };
             let y = Axis::new(format!("d{name}/dt"), if angle { "rad/s" } else { "m/s" });
-            let line = Series::line("", self.drawn_rows().map(at).collect());
+            let points: Vec<[f64; 2]> = self.drawn_rows().map(at).collect();
+            // A line ends with a revolution.
+            let parts = points.chunk_by(|a, b| !folds || (b[0] - a[0]).abs() < 180.0);
+            let parts = parts.map(|part| [part, &[[f64::NAN; 2]]].concat());
+            let line = Series::line("", parts.flatten().collect());
             Some(chart("", coordinate_axis(&name, angle), y, vec![line]).into())
         };
         let panels: Vec<Panel> = actuators.take(4).filter_map(panel).collect();
-        let (title, text) = ("Phase portrait", "Speed over coordinate.");
-        (!panels.is_empty()).then(|| self.figure("phase-portrait", title, text, panels))
+        let angles = ["", ", angles within a revolution"][usize::from(folds)];
+        let (title, text) = ("Phase portrait", format!("Speed over coordinate{angles}."));
+        (!panels.is_empty()).then(|| self.figure("phase-portrait", title, &text, panels))
     }
 }

@@ -3,6 +3,7 @@
 mod charts;
 mod forces;
 mod free;
+mod last_revolution;
 mod motion;
 mod span;
 
