@@ -376,12 +376,11 @@ def first_root(coefficients, h, noise):
         signs = [x > 0 for x in b if abs(x) > noise]
         if not signs:
             continue
-        if signs[0] != before:
-            return low * h
-        changes = sum(p != q for p, q in zip(signs, signs[1:]))
-        if changes == 0:
+        changes = sum(p != q for p, q in zip([before, *signs], signs))
+        # One that has no sign at the end may touch zero there.
+        if changes == 0 or high - low < 1e-15:
             continue
-        if changes == 1 or high - low < 1e-15:
+        if changes == 1 and abs(b[-1]) > noise:
             return bisected(coefficients, low * h, high * h, before)
         left, right, row = [], [], b
         while row:
