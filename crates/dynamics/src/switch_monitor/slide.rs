@@ -12,6 +12,8 @@ use dwell_numerics::root;
 const STAYS: f64 = 1e-6;
 /// A distance from the switch, by rounding, decays so often in the motion.
 const DECAY: f64 = 10.0;
+/// A state is put on a bound so often until no rounding is left.
+const ROUNDINGS: usize = 4;
 
 impl BothSides {
     /// Whether a function keeps its value where the upper side has this part.
@@ -21,10 +23,10 @@ impl BothSides {
         rate.abs() <= STAYS * (lower.abs() + upper.abs())
     }
 
-    /// Puts a state exactly on the switch, along the difference of the rates.
-    fn put_on_switch(&self, sliding: &Sliding, at: &mut OdeState) {
-        let [[value, lower], [_, upper]] = self.of(sliding.switches[0]).sides;
-        let shift = (value - sliding.value) / (lower - upper);
+    /// Puts a state exactly on a bound of a switch, along the difference of the rates.
+    fn put_on_switch(&self, (k, bound): (usize, f64), at: &mut OdeState) {
+        let [[value, lower], [_, upper]] = self.of(k).sides;
+        let shift = (value - bound) / (lower - upper);
         let [lower, upper] = &self.rates;
         for (y, (lower, upper)) in at.y.iter_mut().zip(lower.iter().zip(upper)) {
             *y += shift * (upper - lower);
@@ -33,7 +35,8 @@ impl BothSides {
 }
 
 impl SwitchMonitor {
-    /// Begins to slide where the rates on both sides of a crossing lead back to it; whether it does.
+    /// Begins to slide where the rates on both sides of a crossing lead back to it, or to rest where there are none behind it; whether it
+    /// does.
     ///
     /// # Errors
     /// Where the state cannot be evaluated.
@@ -55,7 +58,49 @@ impl SwitchMonitor {
             sides.reverse();
         }
         let switches = crossing.passed.iter().map(|(k, _)| *k).collect();
-        self.slide(sides, (switches, value), system, &mut crossing.state)
+        let slides = self.slide(
+            sides.clone(),
+            (switches, value),
+            system,
+            &mut crossing.state,
+        )?;
+        if !upward {
+            sides.reverse();
+        }
+        Ok(slides || self.rest(&sides, (first, value), system, &mut crossing.state)?)
+    }
+
+    /// Puts a motion that comes to a bound of a switch and has no rate behind it exactly there, where comparisons hold by equality; `sides`
+    /// are the pieces before and behind it. Whether it rests: beside the bound, by a rounding, it would be held on neither.
+    fn rest(
+        &mut self,
+        sides: &[Vec<Option<f64>>; 2],
+        (k, bound): (usize, f64),
+        system: &mut dyn OdeSystem,
+        at: &mut OdeState,
+    ) -> Result<bool> {
+        let mut on_bound = at.clone();
+        for _ in 0..ROUNDINGS {
+            let Some(both) = BothSides::at(sides, system, &on_bound)? else {
+                break;
+            };
+            let [[_, before], [value, behind]] = both.of(k).sides;
+            if behind != 0.0 || before == 0.0 {
+                break;
+            }
+            if value != bound {
+                both.put_on_switch((k, bound), &mut on_bound);
+                continue;
+            }
+            *at = on_bound;
+            if !self.decide(system, at)? {
+                // It rests behind the bound, and not on it.
+                self.take(&sides[1]);
+                self.hold(system);
+            }
+            return Ok(true);
+        }
+        Ok(false)
     }
 
     /// Begins to slide at a state exactly on some switches; whether it does.
@@ -131,7 +176,7 @@ impl SwitchMonitor {
             value,
             decay: DECAY / self.span,
         };
-        both.put_on_switch(&sliding, at);
+        both.put_on_switch((sliding.switches[0], value), at);
         system.record_sliding(at, sliding.switches[0], Some(&sliding));
         self.watch_others(&sliding);
         self.hold(system);
