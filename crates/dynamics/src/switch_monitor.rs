@@ -351,11 +351,14 @@ impl SwitchMonitor {
         let none = self.marked(std::iter::empty());
         let passed = (&none[..], &crossing.passed[..]);
         self.settle(passed, &mut changed, system, &crossing.state)?;
-        if self.slide_from_crossing(before, crossing, system)? {
+        if self.slide_from_crossing(&before, crossing, system)? {
             return Ok(());
         }
         self.hold(system);
         let rates = self.rates_at(system, &crossing.state)?;
+        if self.rest(before, crossing, &rates, system)? {
+            return Ok(());
+        }
         self.release(crossing, &rates);
         self.hold(system);
         Ok(())

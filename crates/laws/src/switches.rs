@@ -23,7 +23,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::expression::{Expression, HeldPieces, Jet, Op, Rounded, Sides, TapeScalar, run_held_parts};
+use crate::expression::{
+    Expression, HeldPieces, Jet, Op, Rounded, Sides, TapeScalar, run_held_parts,
+};
 use crate::features::switching::{Operands, Switch, switches_of};
 use crate::law::Law;
 use crate::windows::{Course, NarrowTerm, Pulse, Traced, UNDERFLOW, first_outside, may_hide};
@@ -328,7 +330,7 @@ fn unrounded(
     held: &HeldPieces,
 ) -> f64 {
     /// Beyond this part of a value nothing is rounding.
-    const NEAR: f64 = 1e-8;
+    const NEAR: f64 = 1e-10;
     let value = minuend - subtrahend;
     let bound = match switch.at_integers {
         true => value.round(),
@@ -340,7 +342,12 @@ fn unrounded(
     }
     let error = |start: usize, last: usize| {
         let sides = held.sides.get(start..=last).unwrap_or_default();
-        run_held_parts(&ops[start..=last], |i| Rounded::variable(variable(i)), sides).error
+        run_held_parts(
+            &ops[start..=last],
+            |i| Rounded::variable(variable(i)),
+            sides,
+        )
+        .error
     };
     let subtracted = switch.right.map_or(0.0, |last| error(*right, last));
     match distance <= error(*left, switch.left) + subtracted {

@@ -35,14 +35,13 @@ impl BothSides {
 }
 
 impl SwitchMonitor {
-    /// Begins to slide where the rates on both sides of a crossing lead back to it, or to rest where there are none behind it; whether it
-    /// does.
+    /// Begins to slide where the rates on both sides of a crossing lead back to it; whether it does.
     ///
     /// # Errors
     /// Where the state cannot be evaluated.
     pub(super) fn slide_from_crossing(
         &mut self,
-        before: Vec<Option<f64>>,
+        before: &[Option<f64>],
         crossing: &mut Crossing,
         system: &mut dyn OdeSystem,
     ) -> Result<bool> {
@@ -53,53 +52,51 @@ impl SwitchMonitor {
             return Ok(false);
         };
         let value = self.switches[first].kind.bounds(piece)[usize::from(upward)];
-        let mut sides = [before, self.pieces()];
+        let mut sides = [before.to_vec(), self.pieces()];
         if !upward {
             sides.reverse();
         }
         let switches = crossing.passed.iter().map(|(k, _)| *k).collect();
-        let slides = self.slide(
-            sides.clone(),
-            (switches, value),
-            system,
-            &mut crossing.state,
-        )?;
-        if !upward {
-            sides.reverse();
-        }
-        Ok(slides || self.rest(&sides, (first, value), system, &mut crossing.state)?)
+        self.slide(sides, (switches, value), system, &mut crossing.state)
     }
 
-    /// Puts a motion that comes to a bound of a switch and has no rate behind it exactly there, where comparisons hold by equality; `sides`
-    /// are the pieces before and behind it. Whether it rests: beside the bound, by a rounding, it would be held on neither.
-    fn rest(
+    /// Where a switch that is passed has no rate behind it: puts the state exactly on it, where comparisons hold by equality. Whether the
+    /// motion rests there: beside the switch, by a rounding, it would be held on neither piece.
+    pub(super) fn rest(
         &mut self,
-        sides: &[Vec<Option<f64>>; 2],
-        (k, bound): (usize, f64),
+        before: Vec<Option<f64>>,
+        crossing: &mut Crossing,
+        rates: &[[f64; 2]],
         system: &mut dyn OdeSystem,
-        at: &mut OdeState,
     ) -> Result<bool> {
-        let mut on_bound = at.clone();
+        let rests = |(k, _): &&(usize, bool)| rates[*k][1] == 0.0 && before[*k].is_some();
+        let Some(&(k, upward)) = crossing.passed.iter().find(rests) else {
+            return Ok(false);
+        };
+        let piece = before[k].unwrap_or_default();
+        let bound = self.switches[k].kind.bounds(piece)[usize::from(upward)];
+        let (sides, mut at) = ([before, self.pieces()], crossing.state.clone());
         for _ in 0..ROUNDINGS {
-            let Some(both) = BothSides::at(sides, system, &on_bound)? else {
+            let Some(both) = BothSides::at(&sides, system, &at)? else {
                 break;
             };
-            let [[_, before], [value, behind]] = both.of(k).sides;
-            if behind != 0.0 || before == 0.0 {
+            let [[_, came], [value, left]] = both.of(k).sides;
+            if came == 0.0 || left != 0.0 {
                 break;
             }
             if value != bound {
-                both.put_on_switch((k, bound), &mut on_bound);
+                both.put_on_switch((k, bound), &mut at);
                 continue;
             }
-            *at = on_bound;
-            if !self.decide(system, at)? {
+            if !self.decide(system, &at)? {
                 // It rests behind the bound, and not on it.
                 self.take(&sides[1]);
                 self.hold(system);
             }
+            crossing.state = at;
             return Ok(true);
         }
+        self.hold(system);
         Ok(false)
     }
 
