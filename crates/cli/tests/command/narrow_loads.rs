@@ -184,7 +184,8 @@ fn a_speed_that_comes_to_rest_on_a_threshold_is_exactly_there() {
     ] {
         for (start, condition, force) in [(1.0, ">", -2.0), (-0.5, "<", 2.0)] {
             let law = format!(r#""if({function} {condition} 0, {force}, 0)""#);
-            let sign = format!("h = {{ applied-force = \"y\", magnitude = \"sign({function})\" }}\n");
+            let sign =
+                format!("h = {{ applied-force = \"y\", magnitude = \"sign({function})\" }}\n");
             let scene = slides(&law)
                 .replace("[motion]", &format!("{sign}[motion]"))
                 .replace("x = 1, y = 1", &format!("x = {start}, y = 1"))
@@ -208,5 +209,28 @@ fn a_speed_that_comes_to_rest_on_a_threshold_is_exactly_there() {
                 }
             }
         }
+    }
+}
+
+/// A speed that grows without bounds runs through one threshold after the other, more and more often.
+#[test]
+fn a_load_whose_switches_accumulate_is_named() {
+    let law = r#""floor(sin(6*x.velocity)) + 30*x.velocity""#;
+    let dir = TestDir::new();
+    dir.put(
+        "m.toml",
+        &slides(law).replace("duration = 1", "duration = 2"),
+    );
+    let run = dir.run(&[
+        "simulate",
+        "m.toml",
+        "--method",
+        "tsit45",
+        "--pictures",
+        "none",
+    ]);
+    assert_eq!(run.status, Some(1), "{}", run.err);
+    for part in ["load `f` switches too often", "after 6000 switches"] {
+        assert!(run.err.contains(part), "{}", run.err);
     }
 }
