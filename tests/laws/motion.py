@@ -10,7 +10,7 @@ Righthand Sides, 1988). Where several agree, the motion is not unique and `NotUn
 import itertools
 import math
 
-from series import Algebra, Unbounded, depends_on, enclosures, first_root, horner, in_order, least, numbers, ranges, value_and_size
+from series import Algebra, Unbounded, bisected, depends_on, enclosures, first_root, horner, in_order, least, numbers, ranges, value_and_size
 
 ORDER = 14
 # What is below this part of its terms is on its threshold.
@@ -385,7 +385,8 @@ class Motion:
             return None
         first = None
         for g in doubtful:
-            size = value_and_size(g, self.point)[1]
+            # That of a product is zero where both of its factors are.
+            size = value_and_size(g, self.point)[1] or max(abs(c) * h**k for k, c in enumerate(series[g][: n + 1]))
             remainder = (abs(balls[g].mid[n + 1]) + balls[g].rad[n + 1]) * h ** (n + 1)
             if not remainder <= 1e-15 * size:
                 return None
@@ -394,5 +395,20 @@ class Motion:
             # A threshold that is touched, to what its neighbours on a grid say of it.
             self.is_close |= leads[g] == 0 and least(deflated, h if root is None else root) < TOUCHES * size
             if root is not None and (first is None or root < first):
-                first = root
+                first = self.polished(g, mode.signs[g], variables, root, h)
         return (first,)
+
+    def polished(self, g, sign, variables, root, h):
+        """A root by the expression itself: of a multiple one its Taylor polynomial only knows where it is below a rounding."""
+
+        def is_before(at):
+            point = [self.point[0] + at, *(horner(v[: self.order + 1], at) for v in variables[1:])]
+            return value_and_size(g, point)[0] * sign > 0
+
+        around = 1e-12 * h
+        while around < 1e-2 * h:
+            low, high = max(0.0, root - around), min(h, root + around)
+            if is_before(low) and not is_before(high):
+                return bisected(is_before, low, high)
+            around *= 4
+        return root

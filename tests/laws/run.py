@@ -107,6 +107,8 @@ def verdict(scene, found, run, agree):
         message = " ".join(line.strip() for line in text.splitlines() if line.lstrip().startswith(("×", "│")))
         if status == 0:
             return "wrong", f"status 0 at t = {time_column}"
+        if is_sensitive(scene, found, GRAZING):
+            return "not judged", "refused, and depends on what is below 1e-11"
         return ("refused", message[:300] or text[:300]) if named else ("unnamed", message[:300] or text[:300])
     values = values_of(scene, row)
     gap = difference(values, found.point[1:], found.largest)

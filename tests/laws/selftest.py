@@ -49,6 +49,16 @@ def closed_forms():
     yield "sliding surface", surface, (0, 1), 3, (x1 * math.exp(-2 * (3 - t1)), -2 * x1 * math.exp(-2 * (3 - t1)))
     moving = times(number(-5), call("sign", minus(V, call("sin", T))))
     yield "moving surface", moving, (0, 0), 3, (1 - math.cos(3), math.sin(3))
+    # sin(6v) touches −1, and is never below it: ẍ = −1 − x.
+    touches = minus(call("floor", call("sin", times(number(6), V))), X)
+    s, c = math.sin(0.45), math.cos(0.45)
+    yield "touched threshold", touches, (0, -0.015), 0.45, (c - 0.015 * s - 1, -s - 0.015 * c)
+    # x³ has a threefold root: ẍ = −1 − x up to x = 0, then 1 − x.
+    cubed = minus(call("sign", times(X, times(X, X))), X)
+    reach = math.hypot(0.5, 2)
+    last, rest = math.sqrt(reach * reach - 1), 2 - math.atan2(2, 0.5) + math.acos(1 / reach)
+    s, c = math.sin(rest), math.cos(rest)
+    yield "threefold root", cubed, (-0.5, 2), 2, (1 - c + last * s, s + last * c)
     pulse = bell(X, half, 1e-3)
     area = math.sqrt(math.pi) * 1e-3
     yield "narrow pulse", times(number(500), pulse), (0, 1), 2, (None, math.sqrt(1 + 1000 * area))

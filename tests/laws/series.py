@@ -376,13 +376,12 @@ def first_root(coefficients, h, noise):
         signs = [x > 0 for x in b if abs(x) > noise]
         if not signs:
             continue
-        if signs[0] != before:
-            return low * h
-        changes = sum(p != q for p, q in zip(signs, signs[1:]))
-        if changes == 0:
+        changes = sum(p != q for p, q in zip([before, *signs], signs))
+        # One that has no sign at the end may touch zero there.
+        if changes == 0 or high - low < 1e-15:
             continue
-        if changes == 1 or high - low < 1e-15:
-            return bisected(coefficients, low * h, high * h, before)
+        if changes == 1 and abs(b[-1]) > noise:
+            return bisected(lambda t: (horner(coefficients, t) > 0) == before, low * h, high * h)
         left, right, row = [], [], b
         while row:
             left.append(row[0])
@@ -408,12 +407,12 @@ def least(coefficients, h, points=24):
     return found
 
 
-def bisected(coefficients, low, high, positive):
+def bisected(is_before, low, high):
     for _ in range(200):
         middle = 0.5 * (low + high)
         if not low < middle < high:
             break
-        if (horner(coefficients, middle) > 0) == positive:
+        if is_before(middle):
             low = middle
         else:
             high = middle

@@ -51,12 +51,13 @@ pub(crate) fn fall_below_zero(
     root::find(margin_at, from.0, end)
 }
 
-/// A time soon after the start of an interval at which a margin is positive, and a later one at which it is not: what is soon passed again, a
-/// short rebound or a narrow window, lies between two points of a step.
-pub(crate) fn first_inside(
+/// When a margin that was not positive at the start of an interval is passed, where it is below zero at the end: at the start within a
+/// rounding, or soon behind where it is positive first, in a short rebound or a narrow window between two points of a step, or where what has
+/// rested on zero leaves it.
+pub(crate) fn passed_soon(
     [start, end]: [f64; 2],
     mut margin_at: impl FnMut(f64) -> Result<f64>,
-) -> Result<Option<[f64; 2]>> {
+) -> Result<Option<f64>> {
     /// Halvings of the interval.
     const HALVINGS: usize = 48;
     let mut until = end;
@@ -66,11 +67,15 @@ pub(crate) fn first_inside(
             break;
         }
         if margin_at(at)? > 0.0 {
-            return Ok(Some([at, until]));
+            return root::find(margin_at, at, until);
         }
         until = at;
     }
-    Ok(None)
+    if margin_at(start)? < 0.0 {
+        return Ok(Some(start));
+    }
+    let side_at = |at| Ok(if margin_at(at)? < 0.0 { -1.0 } else { 1.0 });
+    root::find(side_at, start, end)
 }
 
 /// Where the parabola through three points has its minimum, between the outer ones; none where it does not come near

@@ -20,8 +20,10 @@ const STEPS: [usize; 2] = [10_000, 1000];
 const HOPELESS: f64 = 1000.0;
 /// Switches of a window where switches are counted instead of steps: next to where they accumulate there is one in each step.
 const SWITCHES: usize = 2000;
-/// As `TOO_MANY`, of switches, each of which costs more than a step.
-const TOO_MANY_SWITCHES: f64 = 1.0;
+/// As `TOO_MANY`, of switches, each of which costs more than a step; and where they come so many times as often as on the average before,
+/// as where they accumulate.
+const TOO_MANY_SWITCHES: [f64; 2] = [1.0, 0.1];
+const MORE_OFTEN: f64 = 3.0;
 
 /// The steps of an integration, and how far the last of them have led.
 #[derive(Debug, Clone)]
@@ -35,8 +37,9 @@ pub(crate) struct Pace {
     windows: [Option<usize>; 2],
     /// When the windows began, s.
     from: [f64; 2],
-    /// As `TOO_MANY`, of what is counted.
-    too_many: f64,
+    start: f64,
+    /// As `TOO_MANY`, of what is counted: at a pace that may become faster, and where it has become slower and slower.
+    too_many: [f64; 2],
 }
 
 impl Pace {
@@ -60,7 +63,8 @@ impl Pace {
                 long,
             ],
             from: [of.start.t; 2],
-            too_many: TOO_MANY,
+            start: of.start.t,
+            too_many: [TOO_MANY; 2],
         }
     }
 
@@ -93,7 +97,7 @@ impl Pace {
         let (steps, max_steps) = (self.steps, self.max_steps);
         if let Some((window, advance)) = self.full(1, t)
             && steps > window
-            && self.is_too_slow((t, self.too_many), window, advance)
+            && self.is_too_slow((t, self.times(advance / window as f64, t)), window, advance)
         {
             let needed = (self.end - t) / advance * window as f64;
             return Err(DynamicsError::TooSlow {
@@ -111,6 +115,12 @@ impl Pace {
             return Err(DynamicsError::NoProgress { function, t, step });
         }
         Ok(())
+    }
+
+    /// How many times the steps allowed are too many where the last ones have led on by so much each, s, up to a time, s.
+    fn times(&self, advance: f64, t: f64) -> f64 {
+        let is_slower = MORE_OFTEN * advance * (self.steps as f64) < t - self.start;
+        self.too_many[usize::from(is_slower)]
     }
 
     /// After a switch of a load at a time, s.

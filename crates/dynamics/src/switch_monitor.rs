@@ -5,13 +5,12 @@
 //! Where the rates on both pieces lead back to the switch, as of a brake at rest, the motion [slides](crate::sliding_system)
 //! along it. Where that is not so simple, the switch is not held until it has kept its side for some steps.
 
-use crate::crossings::{are_together, fall_below_zero, first_inside, first_of};
+use crate::crossings::{are_together, fall_below_zero, first_of, passed_soon};
 use crate::error::{DynamicsError, Result};
 use crate::ode::{OdeState, OdeSystem, Step};
 use crate::sliding::Sliding;
 use crate::sliding_system::SlidingSystem;
 use dwell_laws::SwitchKind;
-use dwell_numerics::root;
 use windows::Between;
 
 mod decisions;
@@ -281,11 +280,7 @@ impl SwitchMonitor {
             Ok(switch.margin(values[k]).unwrap_or(f64::NAN))
         };
         let found = if margin < 0.0 && !was_inside {
-            // It was passed, within a rounding, where the integration began, or soon behind.
-            match first_inside([earlier[0].0, t], &mut margin_at)? {
-                Some([inside, until]) => root::find(margin_at, inside, until)?,
-                None => Some(earlier[0].0),
-            }
+            passed_soon([earlier[0].0, t], &mut margin_at)?
         } else {
             fall_below_zero(earlier, (t, margin), margin_at)?
         };
@@ -356,11 +351,14 @@ impl SwitchMonitor {
         let none = self.marked(std::iter::empty());
         let passed = (&none[..], &crossing.passed[..]);
         self.settle(passed, &mut changed, system, &crossing.state)?;
-        if self.slide_from_crossing(before, crossing, system)? {
+        if self.slide_from_crossing(&before, crossing, system)? {
             return Ok(());
         }
         self.hold(system);
         let rates = self.rates_at(system, &crossing.state)?;
+        if self.rest(before, crossing, &rates, system)? {
+            return Ok(());
+        }
         self.release(crossing, &rates);
         self.hold(system);
         Ok(())

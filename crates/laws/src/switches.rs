@@ -23,7 +23,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::expression::{Expression, HeldPieces, Jet, Op, Sides, run_held_parts};
+use crate::expression::{
+    Expression, HeldPieces, Jet, Op, Rounded, Sides, TapeScalar, run_held_parts,
+};
 use crate::features::switching::{Operands, Switch, switches_of};
 use crate::law::Law;
 use crate::windows::{Course, NarrowTerm, Pulse, Traced, UNDERFLOW, first_outside, may_hide};
@@ -263,12 +265,11 @@ impl Switches {
                     let sides = held.sides.get(start..=last).unwrap_or_default();
                     run_held_parts(&ops[start..=last], variable, sides)
                 };
-                for (out, (switch, [left, right])) in out.iter_mut().zip(switches) {
+                for (out, of) in out.iter_mut().zip(switches) {
+                    let (switch, [left, right]) = of;
                     let minuend = part(*left, switch.left);
-                    *out = match switch.right.map(|last| part(*right, last)) {
-                        Some(subtrahend) => difference(minuend, subtrahend),
-                        None => minuend,
-                    };
+                    let subtrahend = switch.right.map_or(0.0, |last| part(*right, last));
+                    *out = unrounded([minuend, subtrahend], (ops, of), variable, held);
                 }
             }
         }
@@ -290,12 +291,14 @@ impl Switches {
                     let [value, rate, ..] = found.derivatives();
                     [value, rate]
                 };
-                for (out, (switch, [left, right])) in out.iter_mut().zip(switches) {
-                    *out = part(*left, switch.left);
-                    if let Some(last) = switch.right {
-                        let [value, rate] = part(*right, last);
-                        *out = [difference(out[0], value), out[1] - rate];
-                    }
+                for (out, of) in out.iter_mut().zip(switches) {
+                    let (switch, [left, right]) = of;
+                    let [minuend, rate] = part(*left, switch.left);
+                    let [subtrahend, other] =
+                        switch.right.map_or([0.0; 2], |last| part(*right, last));
+                    let plain = |i: usize| variable(i).value();
+                    let value = unrounded([minuend, subtrahend], (ops, of), plain, held);
+                    *out = [value, rate - other];
                 }
             }
         }
@@ -319,12 +322,38 @@ impl Switches {
     }
 }
 
-/// The difference of two values; zero where it is below their rounding, which switches where nothing else does.
-fn difference(minuend: f64, subtrahend: f64) -> f64 {
-    const ROUNDING: f64 = 2.0 * f64::EPSILON;
-    let difference = minuend - subtrahend;
-    let is_rounding = difference.abs() <= ROUNDING * minuend.abs().min(subtrahend.abs());
-    if is_rounding { 0.0 } else { difference }
+/// The difference of two values; its bound where it is within their rounding of it: rounding does not switch.
+fn unrounded(
+    [minuend, subtrahend]: [f64; 2],
+    (ops, (switch, [left, right])): (&[Op], &(Switch, [usize; 2])),
+    variable: impl Fn(usize) -> f64,
+    held: &HeldPieces,
+) -> f64 {
+    /// Beyond this part of a value nothing is rounding.
+    const NEAR: f64 = 1e-10;
+    let value = minuend - subtrahend;
+    let bound = match switch.at_integers {
+        true => value.round(),
+        false => 0.0,
+    };
+    let distance = (value - bound).abs();
+    if distance == 0.0 || distance > NEAR * (1.0 + minuend.abs()) {
+        return value;
+    }
+    let error = |start: usize, last: usize| {
+        let sides = held.sides.get(start..=last).unwrap_or_default();
+        run_held_parts(
+            &ops[start..=last],
+            |i| Rounded::variable(variable(i)),
+            sides,
+        )
+        .error
+    };
+    let subtracted = switch.right.map_or(0.0, |last| error(*right, last));
+    match distance <= error(*left, switch.left) + subtracted {
+        true => bound,
+        false => value,
+    }
 }
 
 impl Law {

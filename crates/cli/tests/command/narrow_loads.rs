@@ -172,3 +172,65 @@ fn a_condition_that_always_holds_changes_no_motion() {
         assert!((one - other).abs() < 1e-8, "{method}: {one}, {other}");
     }
 }
+
+/// A speed comes to a threshold behind which no force acts, and stays there: `sign` of what is left is 0 on another slide. Law 121 of seed 12.
+#[test]
+fn a_speed_that_comes_to_rest_on_a_threshold_is_exactly_there() {
+    for (function, threshold) in [
+        ("3*x.velocity", 0.0_f64),
+        ("x.velocity - 0.1", 0.1),
+        ("x.velocity^3 - 0.027", 0.3),
+        ("sin(x.velocity) - 0.3", 0.3_f64.asin()),
+    ] {
+        for (start, condition, force) in [(1.0, ">", -2.0), (-0.5, "<", 2.0)] {
+            let law = format!(r#""if({function} {condition} 0, {force}, 0)""#);
+            let sign =
+                format!("h = {{ applied-force = \"y\", magnitude = \"sign({function})\" }}\n");
+            let scene = slides(&law)
+                .replace("[motion]", &format!("{sign}[motion]"))
+                .replace("x = 1, y = 1", &format!("x = {start}, y = 1"))
+                .replace("duration = 1", "duration = 2");
+            let until = (threshold - start) / force;
+            let place = start * until + 0.5 * force * until * until + threshold * (2.0 - until);
+            let expected = [place, threshold, 0.0, 0.0, 1.0 - 0.5 * force * until];
+            for method in ["bdf", "tsit45", "esdirk34", "dop853"] {
+                let dir = TestDir::new();
+                dir.put("m.toml", &scene);
+                let options = ["--rtol", "1e-12", "--pictures", "none", "--out", "o"];
+                let all = [&["simulate", "m.toml", "--method", method][..], &options].concat();
+                let run = dir.run(&all);
+                assert_eq!(run.status, Some(0), "{function} {method}: {}", run.err);
+                let rows = fs::read_to_string(dir.0.join("o/m-motion.csv")).unwrap();
+                let last = rows.lines().last().unwrap().split(',').skip(1);
+                let found: Vec<f64> = last.map(|cell| cell.parse().unwrap()).collect();
+                for k in [0, 1, 4] {
+                    let error = (found[k] - expected[k]).abs();
+                    assert!(error < 1e-11, "{function} {start} {method}: {found:?}");
+                }
+            }
+        }
+    }
+}
+
+/// A speed that grows without bounds runs through one threshold after the other, more and more often.
+#[test]
+fn a_load_whose_switches_accumulate_is_named() {
+    let law = r#""floor(sin(6*x.velocity)) + 30*x.velocity""#;
+    let dir = TestDir::new();
+    dir.put(
+        "m.toml",
+        &slides(law).replace("duration = 1", "duration = 2"),
+    );
+    let run = dir.run(&[
+        "simulate",
+        "m.toml",
+        "--method",
+        "tsit45",
+        "--pictures",
+        "none",
+    ]);
+    assert_eq!(run.status, Some(1), "{}", run.err);
+    for part in ["load `f` switches too often", "after 6000 switches"] {
+        assert!(run.err.contains(part), "{}", run.err);
+    }
+}

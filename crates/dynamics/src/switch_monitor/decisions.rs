@@ -25,16 +25,23 @@ struct Choice<'c> {
 }
 
 impl SwitchMonitor {
-    /// Holds the pieces in which a state is.
-    pub(super) fn decide(&mut self, system: &mut dyn OdeSystem, at: &OdeState) -> Result<()> {
+    /// Holds the pieces in which a state is; whether the motion agrees with them.
+    pub(super) fn decide(&mut self, system: &mut dyn OdeSystem, at: &OdeState) -> Result<bool> {
         self.sliding = None;
         for switch in &mut self.switches {
             (switch.piece, switch.is_inside, switch.is_leaving) = (None, false, false);
         }
-        self.hold(system);
-        system.switch_values(at.t, &at.y, &mut self.values)?;
-        for (switch, &value) in self.switches.iter_mut().zip(&self.values) {
-            switch.piece = switch.kind.piece_at(value);
+        // Those that depend on others, on the pieces of those: within a rounding of a bound a value may be on the other side of it.
+        for _ in 0..=self.switches.len() {
+            self.hold(system);
+            let before = self.pieces();
+            system.switch_values(at.t, &at.y, &mut self.values)?;
+            for (switch, &value) in self.switches.iter_mut().zip(&self.values) {
+                switch.piece = switch.kind.piece_at(value);
+            }
+            if self.pieces() == before {
+                break;
+            }
         }
         let undecided = |k: &usize| self.switches[*k].piece.is_none() && !self.values[*k].is_nan();
         let mut changed = self.marked((0..self.switches.len()).filter(undecided));
@@ -45,12 +52,12 @@ impl SwitchMonitor {
             }
         }
         if self.slide_from_rest(&moving, system, at)? {
-            return Ok(());
+            return Ok(true);
         }
         let moving = self.marked(moving.into_iter());
-        self.settle((&moving, &[]), &mut changed, system, at)?;
+        let agrees = self.settle((&moving, &[]), &mut changed, system, at)?;
         self.hold(system);
-        Ok(())
+        Ok(agrees)
     }
 
     /// Marks switches by index.
@@ -69,7 +76,7 @@ impl SwitchMonitor {
 
     /// Takes the decisions anew that are `open` or depend on others which have changed, so that the motion on all pieces agrees with them;
     /// what changes by that is marked, too, and so that it leads away from the switches that it has just `passed`, where it can. Where no
-    /// motion agrees, each is decided by its own rate.
+    /// motion agrees, each is decided by its own rate; whether one does.
     ///
     /// # Errors
     /// Where the state cannot be evaluated.
@@ -79,7 +86,7 @@ impl SwitchMonitor {
         changed: &mut [bool],
         system: &mut dyn OdeSystem,
         at: &OdeState,
-    ) -> Result<()> {
+    ) -> Result<bool> {
         let signs = passed
             .iter()
             .map(|&(k, up)| (k, if up { 1.0 } else { -1.0 }));
@@ -89,16 +96,18 @@ impl SwitchMonitor {
             most: MAX_TOGETHER + passed.len(),
             ties: signs.collect(),
         };
-        if !self.choose(0, &mut choice, system, at)? {
+        let mut agrees = self.choose(0, &mut choice, system, at)?;
+        if !agrees {
             // The motion comes back to what it has passed, as one that slides does.
             choice.ties.clear();
-            if passed.is_empty() || !self.choose(0, &mut choice, system, at)? {
-                choice.most = 0;
-                self.choose(0, &mut choice, system, at)?;
-            }
+            agrees = !passed.is_empty() && self.choose(0, &mut choice, system, at)?;
+        }
+        if !agrees {
+            choice.most = 0;
+            self.choose(0, &mut choice, system, at)?;
         }
         changed.copy_from_slice(&choice.changed);
-        Ok(())
+        Ok(agrees)
     }
 
     /// Passes with a switch those of its operands that are passed within a rounding of the same time: what they decide comes first.

@@ -12,6 +12,8 @@ use dwell_numerics::root;
 const STAYS: f64 = 1e-6;
 /// A distance from the switch, by rounding, decays so often in the motion.
 const DECAY: f64 = 10.0;
+/// A state is put on a bound so often until no rounding is left.
+const ROUNDINGS: usize = 4;
 
 impl BothSides {
     /// Whether a function keeps its value where the upper side has this part.
@@ -21,10 +23,10 @@ impl BothSides {
         rate.abs() <= STAYS * (lower.abs() + upper.abs())
     }
 
-    /// Puts a state exactly on the switch, along the difference of the rates.
-    fn put_on_switch(&self, sliding: &Sliding, at: &mut OdeState) {
-        let [[value, lower], [_, upper]] = self.of(sliding.switches[0]).sides;
-        let shift = (value - sliding.value) / (lower - upper);
+    /// Puts a state exactly on a bound of a switch, along the difference of the rates.
+    fn put_on_switch(&self, (k, bound): (usize, f64), at: &mut OdeState) {
+        let [[value, lower], [_, upper]] = self.of(k).sides;
+        let shift = (value - bound) / (lower - upper);
         let [lower, upper] = &self.rates;
         for (y, (lower, upper)) in at.y.iter_mut().zip(lower.iter().zip(upper)) {
             *y += shift * (upper - lower);
@@ -39,7 +41,7 @@ impl SwitchMonitor {
     /// Where the state cannot be evaluated.
     pub(super) fn slide_from_crossing(
         &mut self,
-        before: Vec<Option<f64>>,
+        before: &[Option<f64>],
         crossing: &mut Crossing,
         system: &mut dyn OdeSystem,
     ) -> Result<bool> {
@@ -50,12 +52,52 @@ impl SwitchMonitor {
             return Ok(false);
         };
         let value = self.switches[first].kind.bounds(piece)[usize::from(upward)];
-        let mut sides = [before, self.pieces()];
+        let mut sides = [before.to_vec(), self.pieces()];
         if !upward {
             sides.reverse();
         }
         let switches = crossing.passed.iter().map(|(k, _)| *k).collect();
         self.slide(sides, (switches, value), system, &mut crossing.state)
+    }
+
+    /// Where a switch that is passed has no rate behind it: puts the state exactly on it, where comparisons hold by equality. Whether the
+    /// motion rests there: beside the switch, by a rounding, it would be held on neither piece.
+    pub(super) fn rest(
+        &mut self,
+        before: Vec<Option<f64>>,
+        crossing: &mut Crossing,
+        rates: &[[f64; 2]],
+        system: &mut dyn OdeSystem,
+    ) -> Result<bool> {
+        let rests = |(k, _): &&(usize, bool)| rates[*k][1] == 0.0 && before[*k].is_some();
+        let Some(&(k, upward)) = crossing.passed.iter().find(rests) else {
+            return Ok(false);
+        };
+        let piece = before[k].unwrap_or_default();
+        let bound = self.switches[k].kind.bounds(piece)[usize::from(upward)];
+        let (sides, mut at) = ([before, self.pieces()], crossing.state.clone());
+        for _ in 0..ROUNDINGS {
+            let Some(both) = BothSides::at(&sides, system, &at)? else {
+                break;
+            };
+            let [[_, came], [value, left]] = both.of(k).sides;
+            if came == 0.0 || left != 0.0 {
+                break;
+            }
+            if value != bound {
+                both.put_on_switch((k, bound), &mut at);
+                continue;
+            }
+            if !self.decide(system, &at)? {
+                // It rests behind the bound, and not on it.
+                self.take(&sides[1]);
+                self.hold(system);
+            }
+            crossing.state = at;
+            return Ok(true);
+        }
+        self.hold(system);
+        Ok(false)
     }
 
     /// Begins to slide at a state exactly on some switches; whether it does.
@@ -131,7 +173,7 @@ impl SwitchMonitor {
             value,
             decay: DECAY / self.span,
         };
-        both.put_on_switch(&sliding, at);
+        both.put_on_switch((sliding.switches[0], value), at);
         system.record_sliding(at, sliding.switches[0], Some(&sliding));
         self.watch_others(&sliding);
         self.hold(system);

@@ -1,7 +1,7 @@
 //! What loads do between the points of a step at which they are looked at: conditions that change in a window, and pulses.
 
 use super::{Crossing, SwitchMonitor};
-use crate::crossings::{are_together, first_inside};
+use crate::crossings::{are_together, passed_soon};
 use crate::error::Result;
 use crate::ode::{OdeState, OdeSystem, Step};
 use crate::state_switches::Hidden;
@@ -178,10 +178,7 @@ impl SwitchMonitor {
                 let found = if margin_at(start)? > 0.0 {
                     root::find(margin_at, start, t)?
                 } else {
-                    match first_inside([start, t], &mut margin_at)? {
-                        Some([inside, until]) => root::find(margin_at, inside, until)?,
-                        None => Some(start),
-                    }
+                    passed_soon([start, t], &mut margin_at)?
                 };
                 let at = found.unwrap_or(t);
                 return Ok(Some(Crossing {

@@ -26,12 +26,14 @@ mod error;
 mod function;
 mod jet;
 mod parse;
+mod rounded;
 mod tape;
 mod token;
 
 pub use error::{ExpressionError, nearest};
 pub(crate) use function::{Binary, Unary, sign};
 pub(crate) use jet::{Jet, TapeScalar};
+pub(crate) use rounded::Rounded;
 pub use tape::HeldPieces;
 use tape::Tape;
 pub(crate) use tape::{Op, Sides, run_held_parts, run_parts};

@@ -2,7 +2,7 @@
 
 use super::enclosure::Enclosure;
 use super::interval::Interval;
-use super::switching::{Pieces, Switch};
+use super::switching::{NOTHING, Pieces, Switch};
 use crate::expression::Sides;
 
 /// So far from where it touches a level a function is apart from it by more than a rounding, as a part of time.
@@ -53,7 +53,13 @@ pub(super) fn decide(
             false => pieces.resting_side(switch, over, sides),
         };
         let touches = touching(pieces, switch, (over, start, sides), (enclosure, level));
+        // In a tail that underflows.
+        let vanishes = || {
+            let [before, behind] = sides_around(pieces, switch, (over, over.lo), 0.0);
+            (value.magnitude() < NOTHING && before == behind).then_some(before)
+        };
         touches
+            .or_else(vanishes)
             .or_else(resting)
             .map_or(Decision::Unknown, Decision::Side)
     };

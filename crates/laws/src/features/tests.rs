@@ -214,6 +214,7 @@ fn what_a_rounding_decides_is_not_searched() {
         ),
         ("if(t <= 0, 1, floor(1 + cos(2*t)))", 200),
         (touching, 200),
+        ("floor(-59.1*exp(-((t - 0.25)/0.01)^2))", 600),
     ] {
         for to in [1e-9, 2.0] {
             let features = features(text);
