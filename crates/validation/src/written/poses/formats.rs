@@ -41,7 +41,11 @@ pub(crate) fn formats(
         files,
         ..Formats::default()
     };
-    add_extrema(&mut found, &summary, &csv, command, corners);
+    // An impact or a change of a mode makes a corner, too.
+    let events = summary["events"].as_array().into_iter().flatten();
+    let events = events.filter_map(|event| event["t"].as_f64());
+    let corners: Vec<f64> = events.chain(corners.iter().copied()).collect();
+    add_extrema(&mut found, &summary, &csv, command, &corners);
     for line in run.printed.lines() {
         add_sentence(&mut found.printed, line, &summary, command);
     }
