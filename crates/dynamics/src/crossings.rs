@@ -51,13 +51,12 @@ pub(crate) fn fall_below_zero(
     root::find(margin_at, from.0, end)
 }
 
-/// When a margin that was not positive at the start of an interval is passed, where it is below zero at the end: at the start within a
-/// rounding, or soon behind where it is positive first, in a short rebound or a narrow window between two points of a step, or where what has
-/// rested on zero leaves it.
-pub(crate) fn passed_soon(
+/// A time soon after the start of an interval at which a margin is positive, and a later one at which it is not: what is soon passed again, a
+/// short rebound or a narrow window, lies between two points of a step.
+pub(crate) fn first_inside(
     [start, end]: [f64; 2],
     mut margin_at: impl FnMut(f64) -> Result<f64>,
-) -> Result<Option<f64>> {
+) -> Result<Option<[f64; 2]>> {
     /// Halvings of the interval.
     const HALVINGS: usize = 48;
     let mut until = end;
@@ -67,10 +66,23 @@ pub(crate) fn passed_soon(
             break;
         }
         if margin_at(at)? > 0.0 {
-            return root::find(margin_at, at, until);
+            return Ok(Some([at, until]));
         }
         until = at;
     }
+    Ok(None)
+}
+
+/// When the margin of a switch that was not positive at the start of an interval, and is negative at its end, is passed: within a rounding at
+/// the start, soon behind it, or where what has rested on zero leaves it.
+pub(crate) fn passed_soon(
+    over: [f64; 2],
+    mut margin_at: impl FnMut(f64) -> Result<f64>,
+) -> Result<Option<f64>> {
+    if let Some([inside, until]) = first_inside(over, &mut margin_at)? {
+        return root::find(margin_at, inside, until);
+    }
+    let [start, end] = over;
     if margin_at(start)? < 0.0 {
         return Ok(Some(start));
     }

@@ -22,7 +22,7 @@ const HOPELESS: f64 = 1000.0;
 const SWITCHES: usize = 2000;
 /// As `TOO_MANY`, of switches, each of which costs more than a step; and where they come so many times as often as on the average before,
 /// as where they accumulate.
-const TOO_MANY_SWITCHES: [f64; 2] = [1.0, 0.1];
+const TOO_MANY_SWITCHES: [f64; 2] = [1.0, 0.05];
 const MORE_OFTEN: f64 = 3.0;
 
 /// The steps of an integration, and how far the last of them have led.

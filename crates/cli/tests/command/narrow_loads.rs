@@ -230,7 +230,7 @@ fn a_load_whose_switches_accumulate_is_named() {
         "none",
     ]);
     assert_eq!(run.status, Some(1), "{}", run.err);
-    for part in ["load `f` switches too often", "after 6000 switches"] {
+    for part in ["load `f` switches too often", "after 4000 switches"] {
         assert!(run.err.contains(part), "{}", run.err);
     }
 }

@@ -18,9 +18,10 @@
 //! sign of q̈ behind t₁ does: as long as it leads away from the stop, there is no contact.
 
 use crate::contact::ContactStep;
-use crate::crossings::{are_together, fall_below_zero, first_of, passed_soon};
+use crate::crossings::{are_together, fall_below_zero, first_inside, first_of};
 use crate::error::Result;
 use crate::ode::{OdeState, OdeSystem, Step};
+use dwell_numerics::root;
 
 /// How many events that happen together count as one without end.
 const MAX_TOGETHER: usize = 64;
@@ -161,7 +162,11 @@ impl ContactMonitor {
             Ok(values[k])
         };
         if value < 0.0 && !was_inside {
-            return passed_soon([earlier[0].0, t], &mut margin_at);
+            let start = earlier[0].0;
+            return match first_inside([start, t], &mut margin_at)? {
+                Some([inside, until]) => root::find(margin_at, inside, until),
+                None => Ok(Some(start)),
+            };
         }
         fall_below_zero(earlier, (t, value), margin_at)
     }
