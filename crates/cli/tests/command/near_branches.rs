@@ -113,7 +113,7 @@ fn a_dead_point_of_two_freedoms_is_status_1() {
         assert_eq!(run.status, Some(1), "{method}: {} {}", run.out, run.err);
         let words = run.err.replace("\n  │ ", " ");
         let said = [
-            "cannot reach",
+            "cannot be assembled",
             "singular",
             "too small",
             "energy balance closes",

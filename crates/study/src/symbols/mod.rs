@@ -33,10 +33,8 @@ pub(crate) const TRACK_MARGIN: f64 = 0.25;
 /// The reference length of the symbols of a scene that is drawn at these positions, m.
 pub(crate) fn symbol_size(scene: &Scene, positions: &[Vec<BodyPose>]) -> f64 {
     let (size, drawn) = (scene.mechanism.size(), drawn_size(scene, positions));
-    match drawn > 0.0 {
-        true => (SYMBOL_RATIO * size).clamp(MIN_SYMBOL_RATIO * drawn, MAX_SYMBOL_RATIO * drawn),
-        false => SYMBOL_RATIO * size,
-    }
+    let bound = if drawn > 0.0 { drawn } else { f64::INFINITY };
+    (SYMBOL_RATIO * size).clamp(MIN_SYMBOL_RATIO * drawn, MAX_SYMBOL_RATIO * bound)
 }
 
 /// By joint: the range of its second point along its axis over all positions, m.

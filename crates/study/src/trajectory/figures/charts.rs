@@ -127,9 +127,8 @@ impl<'a> ChartContext<'a> {
         };
         let span_note = self.span_note();
         let text = format!("{text}{limit_note}{span_note}");
-        let mut figure = figure(self.scene, name, title, &text, panels, &self.method_text);
-        self.add_last_revolution(&mut figure);
-        figure
+        let figure = figure(self.scene, name, title, &text, panels, &self.method_text);
+        self.with_last_revolution(figure)
     }
 
     /// Which part of the trajectory the curves show, if not all of it.

@@ -24,19 +24,19 @@ pub(super) fn last_revolution(results: &TrajectoryResults) -> Option<usize> {
 
 impl ChartContext<'_> {
     /// Shows the last revolution beside the whole motion, in panels over the abscissa.
-    pub(super) fn add_last_revolution(&self, figure: &mut Figure) {
+    pub(super) fn with_last_revolution(&self, mut figure: Figure) -> Figure {
         let first = self.last_revolution.unwrap_or(usize::MAX);
         let places = self.abscissa_values.get(first..);
         let Some([from, .., to]) = places.filter(|_| figure.panels.len() <= MAX_PANELS) else {
-            return;
+            return figure;
         };
         for panel in std::mem::take(&mut figure.panels) {
             let part = self.part(panel.clone(), [*from, *to]);
             figure.columns = 1 + usize::from(part.is_some());
-            figure
-                .panels
-                .extend([Some(panel), part].into_iter().flatten());
+            let both = [Some(panel), part];
+            figure.panels.extend(both.into_iter().flatten());
         }
+        figure
     }
 
     /// A part of a panel; none of a phase portrait, which has another abscissa.
@@ -47,10 +47,8 @@ impl ChartContext<'_> {
             Panel::Drawing(_) | Panel::Grid(_) | Panel::Tiles(_) => return None,
         };
         let [from, to] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        let charts = Some(charts).filter(|all| all.iter().all(|chart| chart.x == self.x))?;
         for chart in charts.iter_mut() {
-            if chart.x != self.x {
-                return None;
-            }
             chart.x.range = Some(ends);
             for series in &mut chart.series {
                 series.points.retain(|[x, _]| (from..=to).contains(x));

@@ -1,4 +1,4 @@
-//! Dimensions, masses and centres of mass, drawn in one position.
+//! Dimensions, masses, moments of inertia and centres of mass, drawn in one position.
 
 use super::mechanism::drawing;
 use crate::case_report::dwell::RangePoses;
@@ -36,8 +36,9 @@ pub(super) fn dimensions(scene: &Scene, poses: &RangePoses, position: usize) -> 
         drawn.center(body, &mut shapes);
     }
     drawn.fixed_points(&mut shapes);
-    let title = "Dimensions (m), masses and centres of mass";
-    Some(drawing(title, shapes))
+    let (_, unit) = scene.file.to_scene_unit(0.0, false);
+    let title = format!("Dimensions ({unit}), masses, inertias about the centres of mass");
+    Some(drawing(&title, shapes))
 }
 
 struct DrawnDimensions<'a> {
@@ -49,6 +50,12 @@ struct DrawnDimensions<'a> {
 impl DrawnDimensions<'_> {
     fn at(&self, body: usize, point: Vec2) -> [f64; 2] {
         self.poses.point(self.position, body, point)
+    }
+
+    /// A length in the scene's unit, as the axes have it.
+    fn length(&self, length: f64) -> String {
+        let (length, _) = self.scene.file.to_scene_unit(length, false);
+        digits(length, 4).replace('-', "−")
     }
 
     /// The distances of a body's points from the one before, beside the middle between them.
@@ -64,7 +71,7 @@ impl DrawnDimensions<'_> {
             if length < near {
                 continue;
             }
-            let text = format!("{one}–{other} {}", digits(length, 4));
+            let text = format!("{one}–{other} {}", self.length(length));
             let middle = (*a + *b) * 0.5;
             shapes.push(Shape::text(
                 self.at(body, middle),
@@ -74,7 +81,7 @@ impl DrawnDimensions<'_> {
         }
     }
 
-    /// The centre of mass, with the mass.
+    /// The centre of mass, with the mass and the moment of inertia about it.
     fn center(&self, body: usize, shapes: &mut Vec<Shape>) {
         let Some(mass) = self.scene.masses.get(body).filter(|mass| mass.mass > 0.0) else {
             return;
@@ -89,7 +96,8 @@ impl DrawnDimensions<'_> {
         };
         shapes.push(disc.named("centre of mass"));
         let name = self.scene.mechanism.body_name(BodyId(body));
-        let text = format!("{name} {} kg", number(mass.mass));
+        let (mass, inertia) = (number(mass.mass), digits(mass.inertia, 4));
+        let text = format!("{name} {mass} kg, {inertia} kg m²");
         shapes.push(Shape::text(at, text, TextPlacement::BelowRight));
     }
 
@@ -97,7 +105,7 @@ impl DrawnDimensions<'_> {
     fn fixed_points(&self, shapes: &mut Vec<Shape>) {
         let ground = self.scene.mechanism.ground;
         for (name, at) in self.scene.points.get(ground).into_iter().flatten() {
-            let [x, y] = [at.x, at.y].map(|v| digits(v, 4));
+            let [x, y] = [at.x, at.y].map(|v| self.length(v));
             let text = format!("{name} ({x}, {y})");
             shapes.push(Shape::text([at.x, at.y], text, TextPlacement::BelowLeft));
         }
