@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 /// The accuracies that the command has names for.
-const PRESETS: [(&str, f64); 4] = [
+pub(super) const PRESETS: [(&str, f64); 4] = [
     ("draft", 1e-3),
     ("standard", 1e-6),
     ("precise", 1e-9),
@@ -60,6 +60,7 @@ pub(super) fn command_runs<S: StudiedScene>(
     exact: &dyn Evaluator,
     subject: &Subject<S>,
     with_files: bool,
+    done: &dyn Fn(&str),
 ) -> Result<Vec<CommandRun>, StudyError> {
     let scene = subject.scene.lasting(subject.end());
     let one = |preset: (&'static str, f64)| {
@@ -77,6 +78,8 @@ pub(super) fn command_runs<S: StudiedScene>(
             true => reference.errors(&states, &mut exact.reactions()),
             false => Ok(Errors::UNKNOWN),
         };
+        let whole = with_files.then(|| whole_command(&scene, preset.1));
+        done(&format!("simulate --accuracy {:.0e}", preset.1));
         Ok(CommandRun {
             preset,
             method,
@@ -84,7 +87,7 @@ pub(super) fn command_runs<S: StudiedScene>(
             errors: errors.map_err(|e| subject.explain(&e))?,
             is_reached,
             computing,
-            whole: (with_files.then(|| whole_command(&scene, preset.1))).transpose()?,
+            whole: whole.transpose()?,
         })
     };
     PRESETS.into_iter().map(one).collect()

@@ -20,6 +20,7 @@ pub use combination::{
     Integrator, ReferenceInfo, WorkPrecision,
 };
 pub use commands::CommandRun;
+use commands::{PRESETS, command_runs};
 pub use evaluator::{Evaluator, ModelEvaluator, ReactionFn};
 pub use exported_code::ExportedCode;
 pub use fixed_step::FixedStep;
@@ -113,7 +114,7 @@ pub fn measure_with<S: StudiedScene>(
     let Some(exact) = evaluators.first().map(|exact| &**exact) else {
         return Err(subject.explain(&DynamicsError::DurationTooShort));
     };
-    let total = Method::ALL.len() * evaluators.len() + effort.repetitions.max(1);
+    let total = Method::ALL.len() * evaluators.len() + effort.repetitions.max(1) + PRESETS.len();
     let done = |what: &str| progress(Step { total, done: what });
     let series =
         |evaluator: &dyn Evaluator, method: Method, reference: Option<&ToleranceSeries>| {
@@ -153,7 +154,7 @@ pub fn measure_with<S: StudiedScene>(
         points,
         fixed_step: fixed_step.ok(),
         requested: requested::requested_costs(&subject, &reference.states)?,
-        commands: commands::command_runs(&mut reference, exact, &subject, effort.exported_code)?,
+        commands: command_runs(&mut reference, exact, &subject, effort.exported_code, &done)?,
         exported_code: exported_code.unwrap_or_default(),
         omitted,
         reference: reference.info,
