@@ -244,10 +244,8 @@ impl<S: SweptScene> SweptCurves<'_, S> {
             let Some(mut chart) = chart else { continue };
             if let Some((axis, inputs)) = &parameter {
                 chart.title += &format!(", by {}", label_of(&axis.path));
-                let (drawn, all) = (
-                    chosen_values(inputs.clone()).len(),
-                    distinct(inputs.clone()).len(),
-                );
+                let drawn = chosen_values(inputs.clone()).len();
+                let all = distinct(inputs.clone()).len();
                 if drawn < all {
                     chart.title += &format!(" ({drawn} of its {all} values)");
                 }
