@@ -66,34 +66,28 @@ impl<S: StudiedScene> Subject<S> {
         let output_machine = scene.machine(&reactions)?;
         let columns = scene.reaction_columns(output_machine.model()).into_iter();
         let reaction_units = columns.take(reactions.len()).map(|c| c.unit).collect();
-        let MotionStart {
-            coordinates,
-            velocities,
-            laws,
-        } = scene.motion_start();
-        let y = machine.initial_state(&coordinates, &velocities);
+        let starts = scene.motion_start();
+        let y = machine.initial_state(&starts.coordinates, &starts.velocities);
         let initial_state = OdeState { t: 0.0, y };
         // Without loads the reduced model is the whole equation of motion.
         let unloaded = machine.model().loads().is_empty();
         let reduced = (unloaded && machine.state_count() == 2)
             .then(|| ExactModel::new(output_machine.model().clone()));
         // A machine with more than one degree of freedom has none.
-        let is_one = machine.state_count() == 2 && laws.len() == 1;
+        let is_one = machine.state_count() == 2 && starts.laws.len() == 1;
         let first = machine.free().first().copied().unwrap_or(0);
         let reduced_start = ReducedState {
             t: 0.0,
-            q: coordinates[first],
-            q_dot: velocities[first],
+            q: starts.coordinates[first],
+            q_dot: starts.velocities[first],
         };
         let orbit = is_one.then(|| Orbit::loaded(&machine, reduced_start));
         let orbit = orbit.and_then(Result::ok);
         let problem = (&scene, &machine, &initial_state);
         let (end, coordinate_range) = bound_duration(problem, orbit.as_ref(), &mut notes)?;
         if !has_motion {
-            let motion = written_motion(&scene, machine.free(), [&coordinates, &velocities], end);
-            notes.push(format!(
-                "the scene has no motion: the study takes this one, and the lines to type need it as the scene's first line: {motion}"
-            ));
+            let motion = written_motion(&scene, machine.free(), &starts, end);
+            notes.push(format!("the scene has no motion: the study takes this one, and the lines to type need it as the scene's first line: {motion}"));
         }
         // The last time is the end, to the last bit.
         let before = (1..COMPARED_TIMES).map(|k| end * k as f64 / COMPARED_TIMES as f64);
@@ -170,11 +164,11 @@ fn no_free_coordinate(scene: &SceneFile) -> StudyError {
     error.into()
 }
 
-/// A free motion of a duration (s) as the scene would write it, in one line; coordinates and speeds are those of all actuators.
+/// A free motion of a duration (s) as the scene would write it, in one line.
 fn written_motion<S: StudiedScene>(
     scene: &S,
     free: &[usize],
-    [coordinates, velocities]: [&[f64]; 2],
+    starts: &MotionStart,
     duration: f64,
 ) -> String {
     let table = |values: &[f64]| {
@@ -189,8 +183,8 @@ fn written_motion<S: StudiedScene>(
     };
     let motion = [
         ("duration", Value::Float(duration)),
-        ("initial-coordinate", table(coordinates)),
-        ("initial-velocity", table(velocities)),
+        ("initial-coordinate", table(&starts.coordinates)),
+        ("initial-velocity", table(&starts.velocities)),
     ];
     let motion = motion.map(|(key, value)| (key.to_owned(), value));
     format!("motion = {}", Value::Table(motion.into_iter().collect()))
