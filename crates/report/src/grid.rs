@@ -4,7 +4,7 @@ use crate::axis::Axis;
 
 /// Rows and columns of cells, coloured by their values: which fault each check sees, how many digits each case keeps.
 ///
-/// The panel is as wide as its cell on the page and grows with its rows: about 40 pixels each, 22 if compact. Give it a page of one
+/// The panel is as wide as its cell on the page and grows with its rows: about 40 pixels each, 21 if compact. Give it a page of one
 /// column, and no more than about 24 columns. The colours go from nearly white to dark blue, so that they can be distinguished in
 /// grey and by colour-blind readers; a bar above the cells states them.
 #[derive(Debug, Clone, PartialEq, Default)]

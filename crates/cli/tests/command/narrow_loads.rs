@@ -219,7 +219,7 @@ fn a_load_whose_switches_accumulate_is_named() {
     let dir = TestDir::new();
     dir.put(
         "m.toml",
-        &slides(law).replace("duration = 1", "duration = 2"),
+        slides(law).replace("duration = 1", "duration = 2"),
     );
     let run = dir.run(&[
         "simulate",

@@ -41,7 +41,7 @@ pub(super) fn overview(judged: &ValidationRun<'_>) -> Figure {
         name: "index".to_owned(),
         title: judged.headline(),
         caption:
-            "The least margin of each check; = where there is no difference. Reasons in cases.md."
+            "Each number: the least margin of a case in a check; = where there is no difference. Larger margins than 10⁴ have the last colour. Findings and reasons: cases.md."
                 .to_owned(),
         columns: 1,
         panels: rows.chain([matrix.into()]).collect(),

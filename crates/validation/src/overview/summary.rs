@@ -140,17 +140,18 @@ impl<'a> ValidationRun<'a> {
         let period = numbers.find(|number| number.name == "period");
         let period = period.zip(finding("period-bdf")).map(|(period, f)| {
             let note = format!(
-                "paper: {PUBLISHED_PERIOD} s; quadrature: {:.9} s; adaptive BDF: {:.1e} off",
+                "computed by quadrature: {:.9} s; paper: {PUBLISHED_PERIOD} s; adaptive BDF is {:.1e} of it off",
                 period.value, f.relative_difference
             );
             Tile::new(
-                "period, paper's case",
+                "period, single-dwell of the paper",
                 format!("{:.2} s", period.value),
                 note,
             )
         });
         let drift = finding("energy-bdf").map(|f| {
-            let note = "largest by adaptive BDF at a tolerance of 1e-13";
+            let note =
+                "largest, of the kinetic energy, by adaptive BDF with relative tolerance 1e-13";
             Tile::new(
                 "energy drift",
                 format!("{:.1e}", f.relative_difference),
@@ -160,7 +161,7 @@ impl<'a> ValidationRun<'a> {
         let unit_runs = finding("half-dm-differences").zip(finding("m-energy"));
         let unit_runs = unit_runs.map(|(slope, m)| {
             let note = format!(
-                "½m′ against differences of the kinetic energy; m: {:.1e}",
+                "relative difference of ½m′ from differences of the kinetic energy; of m: {:.1e}",
                 m.relative_difference
             );
             Tile::new(
@@ -234,7 +235,14 @@ pub(super) fn tiles(judged: &ValidationRun<'_>) -> [Vec<Tile>; 2] {
         } else {
             "FAIL".to_owned()
         };
-        let note = format!("{name}, check {}, {}", f.check, f.key);
+        let by = match f.pass {
+            true => String::new(),
+            false => format!(
+                ": difference {:.1e}, tolerance {:.1e}",
+                f.relative_difference, f.tolerance
+            ),
+        };
+        let note = format!("{name}, check {}, {}{by}", f.check, f.key);
         let words = if f.pass { "least margin" } else { "worst" };
         Tile::new(words, value, note).with_result(f.pass)
     });
