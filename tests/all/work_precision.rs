@@ -291,6 +291,28 @@ fn lines_to_type_keep_their_accuracy_once_the_scene_has_the_motion_of_the_study(
     assert_eq!(motion.initial_velocities.len(), 1);
 }
 
+/// Two rods without mass hang from a crank: an evaluation of the motion can do without them.
+#[test]
+fn what_nothing_needs_is_counted() {
+    let text = "[bodies.ground]\npoints = { A = [0, 0], D = [3, 0] }\n[bodies.crank]\npoints = { A = [0, 0], B = [1, 0] }\nmass = 1\n\
+                center = [0.5, 0]\ninertia = 0.1\n[bodies.p]\npoints = { B = [0, 0], C = [2.5, 0] }\n[bodies.r]\n\
+                points = { D = [0, 0], C = [2.5, 0] }\n[joints]\nA = { revolute = [\"ground.A\", \"crank.A\"] }\n\
+                B = { revolute = [\"crank.B\", \"p.B\"] }\nC = { revolute = [\"p.C\", \"r.C\"] }\nD = { revolute = [\"ground.D\", \"r.D\"] }\n\
+                [actuators]\nphi = { angle = [\"ground\", \"crank\"] }\n[assembly]\nphi = 0.4\np = 0.95\nr = 1.82\n\
+                [motion]\ninitial-velocity = 1\nduration = 1";
+    let idle = Scene::parse("idle.toml", text).expect("a scene");
+    let moving = text.replace(
+        "C = [2.5, 0] }\n[joints]",
+        "C = [2.5, 0] }\nmass = 1\n[joints]",
+    );
+    let moving = Scene::parse("moving.toml", &moving).expect("a scene");
+    for (scene, count) in [(idle, 1), (moving, 0)] {
+        let found = measure(&scene, &effort(&[-4, -6], &[]), &no_progress).expect("a study");
+        let idle = found.requested.without_idle.map(|(count, _)| count);
+        assert_eq!(idle, Some(count));
+    }
+}
+
 #[test]
 fn careless_scenes_are_cut_short_or_refused() {
     let effort = effort(&[-4, -6, -8], &[1e-6]);

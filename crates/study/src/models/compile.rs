@@ -137,8 +137,25 @@ pub fn machine_with_laws(
     laws: &[Option<Law>],
     reactions: &[Reaction],
 ) -> Result<Machine, StudyError> {
+    machine_of(scene, laws, compile_model(scene, reactions)?)
+}
+
+/// The same without reactions and without the groups that no inertia, load or drive needs; and how many these are.
+///
+/// # Errors
+/// [`StudyError::Scene`] when the mechanism cannot be assembled, or a load or a drive does not fit it.
+pub fn pruned_machine(scene: &Scene, laws: &[Option<Law>]) -> Result<(Machine, usize), StudyError> {
+    let loads = with_drive_loads(scene)?.loads;
+    let loaded = loads.iter().flat_map(|load| load.bodies(&scene.mechanism));
+    let loaded: Vec<BodyId> = loaded.collect();
+    let model = compile_model(scene, &[])?.pruned_for(&loaded);
+    let idle = model.plan().pruned_groups().into_iter();
+    let idle = idle.filter(|is_idle| *is_idle).count();
+    Ok((machine_of(scene, laws, model)?, idle))
+}
+
+fn machine_of(scene: &Scene, laws: &[Option<Law>], model: Model) -> Result<Machine, StudyError> {
     let modes = coordinate_modes(laws);
-    let model = compile_model(scene, reactions)?;
     let machine = Machine::new(model, &scene.loads, modes, &scene.drives);
     let machine = machine.and_then(|machine| machine.with_stops(&end_stops(&scene.stops)));
     machine.map_err(|e| explain_machine(scene, e))

@@ -7,7 +7,7 @@ mod solver_settings;
 
 pub use compile::{
     build_machine, compile_model, indeterminate_reactions, loaded_model, machine_with_laws,
-    reduced_model, with_drive_loads,
+    pruned_machine, reduced_model, with_drive_loads,
 };
 pub(crate) use compile::{
     coordinate_modes, determinate_model, end_stops, exact_model, lists_reactions,

@@ -3,6 +3,7 @@
 use super::commands::CommandRun;
 use super::exported_code::ExportedCode;
 use super::fixed_step::FixedStep;
+use super::requested::RequestedCosts;
 use dwell_dynamics::Method;
 use dwell_study::number_format::digits;
 
@@ -221,8 +222,8 @@ pub struct WorkPrecision {
     pub exported_code: Vec<ExportedCode>,
     /// The command at each accuracy that has a name.
     pub commands: Vec<CommandRun>,
-    /// By number of requested reactions: the time of an evaluation with them, in units of one without.
-    pub requested: Vec<[f64; 2]>,
+    /// What an evaluation costs by what is requested of it.
+    pub requested: RequestedCosts,
     /// What was not run or not finished, and why.
     pub omitted: Vec<String>,
     /// The reference of the errors.

@@ -35,13 +35,14 @@ pub(super) fn figure(scene: &SceneFile, found: &WorkPrecision, name: &str) -> Fi
          the other; where time is measured, crosses: single precision{hollow}. Grey line: the Pareto front, \
          with names. Reference: {}; shaded: below its error ({}, {} and {} of the three errors). An evaluation \
          is one of the equation of motion; a Jacobian counts as its dual numbers. Time is in units of one \
-         exact evaluation in the same process, the least of {}.",
+         exact evaluation in the same process, the least of {}. {}",
         digits(found.duration, 5),
         found.reference.method,
         digits(reference_error.coordinate, 1),
         digits(reference_error.energy, 1),
         digits_or_dash(reference_error.reaction, 1),
         count(found.repetitions, "run"),
+        found.requested.idle_text(),
     );
     let panels = [
         (ErrorQuantity::Coordinate, CostMeasure::Evaluations),
@@ -120,11 +121,18 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
 
 /// What is requested, and its cost.
 fn requested(found: &WorkPrecision) -> Panel {
-    let line = Series::line("", found.requested.clone()).stroke(Stroke::LineAndPoints);
+    let of = &found.requested;
+    let line = Series::line("", of.by_reactions.clone()).stroke(Stroke::LineAndPoints);
+    let without_idle = of.without_idle.filter(|(count, _)| *count > 0);
+    let without_idle = without_idle.map(|(_, time)| {
+        let point = Series::line("without idle groups", vec![[0.0, time]]);
+        point.stroke(Stroke::Points)
+    });
     let x = Axis::new("requested reactions", "");
     let y = Axis::new("time / one evaluation without reactions", "");
     let title = "What is requested";
-    Panel::from(chart(title, x, y, vec![line]))
+    let curves = [Some(line), without_idle].into_iter().flatten();
+    Panel::from(chart(title, x, y, curves.collect()))
 }
 
 /// The command by its accuracies and the exported code by its steps of a millisecond, over the error of the coordinate.

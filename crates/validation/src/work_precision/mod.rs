@@ -24,6 +24,7 @@ use commands::{PRESETS, command_runs};
 pub use evaluator::{Evaluator, ModelEvaluator, ReactionFn};
 pub use exported_code::ExportedCode;
 pub use fixed_step::FixedStep;
+pub use requested::RequestedCosts;
 pub use selected_cases::selected_case_reports;
 pub use studied_scene::{CommandedMotion, PreliminaryRun, StudiedScene};
 

@@ -1,48 +1,92 @@
-//! What an evaluation costs against what is requested of it: no reaction, one, half of them, all. What nothing requests is not evaluated.
+//! What an evaluation costs against what is requested of it: no reaction, one, half of them, all; and without what is idle.
 
 use super::studied_scene::StudiedScene;
 use super::subject::Subject;
-use dwell_dynamics::DynamicsError;
+use dwell_dynamics::{DynamicsError, Machine};
 use dwell_study::StudyError;
+use dwell_study::number_format::digits;
 use std::time::Instant;
 
 /// Passes over the states, of which the least time counts.
 const PASSES: usize = 20;
 
-/// By number of requested reactions: the time of an evaluation with them, in units of one without.
+/// Times of evaluations, each in units of one without reactions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RequestedCosts {
+    /// By number of requested reactions.
+    pub by_reactions: Vec<[f64; 2]>,
+    /// How many groups nothing needs, and the time without them; none where all is always evaluated.
+    pub without_idle: Option<(usize, f64)>,
+}
+
+impl RequestedCosts {
+    /// What is idle, as a sentence; empty where nothing can be left out.
+    pub(super) fn idle_text(&self) -> String {
+        match self.without_idle {
+            None => String::new(),
+            Some((0, _)) => {
+                "Everything in the mechanism has an inertia or a load, or moves what has one."
+                    .to_owned()
+            }
+            Some((count, time)) => format!(
+                "Of its groups of bodies {count} have neither an inertia nor a load: without them an evaluation takes {} of the time.",
+                digits(time, 2)
+            ),
+        }
+    }
+}
+
+/// What evaluations of the states of a motion cost.
 pub(super) fn requested_costs<S: StudiedScene>(
     subject: &Subject<S>,
     states: &[Vec<f64>],
-) -> Result<Vec<[f64; 2]>, StudyError> {
+) -> Result<RequestedCosts, StudyError> {
     let all = subject.scene.compared_reactions(subject.machine.model())?;
     let mut counts = vec![0, 1, all.len() / 2, all.len()];
     counts.retain(|count| *count <= all.len());
     counts.sort_unstable();
     counts.dedup();
+    let time = |machine: &Machine<S::Model>, count: usize| {
+        least_time((subject, states), machine, count > 0)
+    };
     let one = |count: usize| {
         let machine = subject.scene.machine(&all[..count])?;
-        let mut workspace = machine.workspace::<f64>();
-        let mut rates = vec![0.0; machine.state_count()];
-        let mut pass = || -> Result<f64, DynamicsError> {
-            let started = Instant::now();
-            for (y, &t) in states.iter().zip(&subject.times) {
-                let state = machine.evaluate(t, y, &mut workspace)?;
-                state.derivative(&mut rates);
-                if count > 0 {
-                    std::hint::black_box(state.inverse_dynamics().reactions[0]);
-                }
-            }
-            Ok(started.elapsed().as_secs_f64() / states.len().max(1) as f64)
-        };
-        let mut least = f64::INFINITY;
-        for _ in 0..PASSES {
-            least = least.min(pass().map_err(|e| subject.explain(&e))?);
-        }
-        Ok([count as f64, least])
+        Ok([count as f64, time(&machine, count)?])
     };
     let times: Result<Vec<_>, StudyError> = counts.into_iter().map(one).collect();
-    let mut times = times?;
-    let without = times.first().map_or(f64::NAN, |first| first[1]);
-    times.iter_mut().for_each(|time| time[1] /= without);
-    Ok(times)
+    let mut by_reactions = times?;
+    let without = by_reactions.first().map_or(f64::NAN, |first| first[1]);
+    by_reactions.iter_mut().for_each(|time| time[1] /= without);
+    let pruned = subject.scene.pruned_machine()?;
+    let pruned = pruned.map(|(machine, count)| Ok((count, time(&machine, 0)? / without)));
+    Ok(RequestedCosts {
+        by_reactions,
+        without_idle: pruned.transpose()?,
+    })
+}
+
+/// The least time of an evaluation, s, perhaps with reactions.
+fn least_time<S: StudiedScene>(
+    (subject, states): (&Subject<S>, &[Vec<f64>]),
+    machine: &Machine<S::Model>,
+    has_reactions: bool,
+) -> Result<f64, StudyError> {
+    let mut workspace = machine.workspace::<f64>();
+    let mut rates = vec![0.0; machine.state_count()];
+    let mut pass = || -> Result<f64, DynamicsError> {
+        let started = Instant::now();
+        for (y, &t) in states.iter().zip(&subject.times) {
+            let state = machine.evaluate(t, y, &mut workspace)?;
+            state.derivative(&mut rates);
+            if has_reactions {
+                std::hint::black_box(state.inverse_dynamics().reactions[0]);
+            }
+        }
+        Ok(started.elapsed().as_secs_f64() / states.len().max(1) as f64)
+    };
+    let mut least = f64::INFINITY;
+    for _ in 0..PASSES {
+        least = least.min(pass().map_err(|e| subject.explain(&e))?);
+    }
+    Ok(least)
 }

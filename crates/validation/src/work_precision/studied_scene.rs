@@ -17,7 +17,7 @@ use dwell_scene::{FreeMotionSpec, MotionDuration, Scene, SpaceScene};
 use dwell_study::explain::NamedScene;
 use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
 use dwell_study::machines::MachineScene;
-use dwell_study::models::with_drive_loads;
+use dwell_study::models::{pruned_machine, with_drive_loads};
 use dwell_study::trajectory::compute::ComputedTrajectory;
 use dwell_study::{
     ExportRequest, MotionSolver, Outcome, PictureSpan, StudyError, compute_export,
@@ -84,6 +84,12 @@ pub trait StudiedScene: MachineScene<Model: TableModel> + Clone {
     /// # Errors
     /// [`StudyError::Scene`] where it follows from a period that is not known.
     fn duration(&self) -> Result<f64, StudyError>;
+
+    /// Its machine without the groups that nothing needs, and how many these are; none where all is always evaluated.
+    ///
+    /// # Errors
+    /// [`StudyError`] where the scene cannot be put together.
+    fn pruned_machine(&self) -> Result<Option<(Machine<Self::Model>, usize)>, StudyError>;
 
     /// Integrates the motion once.
     ///
@@ -185,6 +191,10 @@ impl StudiedScene for Scene {
         let all = self.mechanism.reactions().into_iter().enumerate();
         let determinate = all.filter(|&(k, _)| model.plan().is_determinate(k));
         Ok(determinate.map(|(_, reaction)| reaction).collect())
+    }
+
+    fn pruned_machine(&self) -> Result<Option<(Machine, usize)>, StudyError> {
+        pruned_machine(self, &self.motion_start().laws).map(Some)
     }
 
     fn duration(&self) -> Result<f64, StudyError> {
@@ -295,6 +305,10 @@ impl StudiedScene for SpaceScene {
         scene.reactions = joints.flat_map(of_joint).collect();
         let [determined, _] = scene.sorted_reactions(model)?;
         Ok(determined)
+    }
+
+    fn pruned_machine(&self) -> Result<Option<(Machine<SpaceModel>, usize)>, StudyError> {
+        Ok(None)
     }
 
     fn duration(&self) -> Result<f64, StudyError> {
