@@ -58,7 +58,8 @@ pub(super) fn requested_costs<S: StudiedScene>(
     let without = by_reactions.first().map_or(f64::NAN, |first| first[1]);
     by_reactions.iter_mut().for_each(|time| time[1] /= without);
     let pruned = subject.scene.pruned_machine()?;
-    let pruned = pruned.map(|(machine, count)| Ok((count, time(&machine, 0)? / without)));
+    let pruned =
+        pruned.map(|(machine, count)| time(&machine, 0).map(|time| (count, time / without)));
     Ok(RequestedCosts {
         by_reactions,
         without_idle: pruned.transpose()?,
