@@ -303,7 +303,7 @@ fn what_nothing_needs_is_counted() {
     let idle = Scene::parse("idle.toml", text).expect("a scene");
     let moving = text.replace(
         "C = [2.5, 0] }\n[joints]",
-        "C = [2.5, 0] }\nmass = 1\n[joints]",
+        "C = [2.5, 0] }\nmass = 1\ncenter = [1, 0]\n[joints]",
     );
     let moving = Scene::parse("moving.toml", &moving).expect("a scene");
     for (scene, count) in [(idle, 1), (moving, 0)] {
