@@ -29,7 +29,7 @@ impl RequestedCosts {
                     .to_owned()
             }
             Some((count, time)) => format!(
-                "Of its groups of bodies {count} have neither an inertia nor a load: without them an evaluation takes {} of the time.",
+                "Groups of bodies with neither an inertia nor a load: {count}; without them an evaluation takes {} of the time.",
                 digits(time, 2)
             ),
         }
