@@ -123,8 +123,8 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
 fn requested(found: &WorkPrecision) -> Panel {
     let of = &found.requested;
     let line = Series::line("", of.by_reactions.clone()).stroke(Stroke::LineAndPoints);
-    let without_idle = of.without_idle.filter(|(count, _)| *count > 0);
-    let without_idle = without_idle.map(|(_, time)| {
+    let (idle, time) = of.without_idle;
+    let without_idle = (idle > 0).then(|| {
         let point = Series::line("without idle groups", vec![[0.0, time]]);
         point.stroke(Stroke::Points)
     });

@@ -15,20 +15,16 @@ const PASSES: usize = 20;
 pub struct RequestedCosts {
     /// By number of requested reactions.
     pub by_reactions: Vec<[f64; 2]>,
-    /// How many groups nothing needs, and the time without them; none where all is always evaluated.
-    pub without_idle: Option<(usize, f64)>,
+    /// How many groups nothing needs, and the time without them.
+    pub without_idle: (usize, f64),
 }
 
 impl RequestedCosts {
-    /// What is idle, as a sentence; empty where nothing can be left out.
+    /// What is idle, as a sentence; empty where nothing is.
     pub(super) fn idle_text(&self) -> String {
         match self.without_idle {
-            None => String::new(),
-            Some((0, _)) => {
-                "Everything in the mechanism has an inertia or a load, or moves what has one."
-                    .to_owned()
-            }
-            Some((count, time)) => format!(
+            (0, _) => String::new(),
+            (count, time) => format!(
                 "Groups of bodies with neither an inertia nor a load: {count}; without them an evaluation takes {} of the time.",
                 digits(time, 2)
             ),
@@ -57,12 +53,10 @@ pub(super) fn requested_costs<S: StudiedScene>(
     let mut by_reactions = times?;
     let without = by_reactions.first().map_or(f64::NAN, |first| first[1]);
     by_reactions.iter_mut().for_each(|time| time[1] /= without);
-    let pruned = subject.scene.pruned_machine()?;
-    let pruned =
-        pruned.map(|(machine, count)| time(&machine, 0).map(|time| (count, time / without)));
+    let (pruned, idle) = subject.scene.pruned_machine()?;
     Ok(RequestedCosts {
         by_reactions,
-        without_idle: pruned.transpose()?,
+        without_idle: (idle, time(&pruned, 0)? / without),
     })
 }
 

@@ -85,11 +85,11 @@ pub trait StudiedScene: MachineScene<Model: TableModel> + Clone {
     /// [`StudyError::Scene`] where it follows from a period that is not known.
     fn duration(&self) -> Result<f64, StudyError>;
 
-    /// Its machine without the groups that nothing needs, and how many these are; none where all is always evaluated.
+    /// Its machine without the groups that nothing needs, and how many these are: in space all are evaluated.
     ///
     /// # Errors
     /// [`StudyError`] where the scene cannot be put together.
-    fn pruned_machine(&self) -> Result<Option<(Machine<Self::Model>, usize)>, StudyError>;
+    fn pruned_machine(&self) -> Result<(Machine<Self::Model>, usize), StudyError>;
 
     /// Integrates the motion once.
     ///
@@ -193,8 +193,8 @@ impl StudiedScene for Scene {
         Ok(determinate.map(|(_, reaction)| reaction).collect())
     }
 
-    fn pruned_machine(&self) -> Result<Option<(Machine, usize)>, StudyError> {
-        pruned_machine(self, &self.motion_start().laws).map(Some)
+    fn pruned_machine(&self) -> Result<(Machine, usize), StudyError> {
+        pruned_machine(self, &self.motion_start().laws)
     }
 
     fn duration(&self) -> Result<f64, StudyError> {
@@ -307,8 +307,8 @@ impl StudiedScene for SpaceScene {
         Ok(determined)
     }
 
-    fn pruned_machine(&self) -> Result<Option<(Machine<SpaceModel>, usize)>, StudyError> {
-        Ok(None)
+    fn pruned_machine(&self) -> Result<(Machine<SpaceModel>, usize), StudyError> {
+        Ok((self.machine(&[])?, 0))
     }
 
     fn duration(&self) -> Result<f64, StudyError> {
