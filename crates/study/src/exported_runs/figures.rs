@@ -48,8 +48,7 @@ fn panel(runs: &ExportedRuns, model: &SampledModel, (title, symbol, unit, index)
     };
     let between = (0..=POINTS).filter_map(|k| {
         let q = first + (end - first) * k as f64 / POINTS as f64;
-        let values = model.values(q).ok()?;
-        Some([x(q), *values.get(index)?])
+        Some([x(q), model.value(q, index)?])
     });
     let line = Series::line("between the positions", between.collect());
     let stride = runs.q.len().div_ceil(MARKS).max(1);

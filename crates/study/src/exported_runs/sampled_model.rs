@@ -93,6 +93,13 @@ impl SampledModel {
             .collect())
     }
 
+    /// One of the coefficients of [`Self::values`], of which there may be thousands.
+    #[cfg(feature = "output")]
+    pub(super) fn value(&self, q: f64, index: usize) -> Option<f64> {
+        let (q, curve) = (self.within(q).ok()?, self.curves.get(index)?);
+        Some(self.positions.eval(curve, q)[0])
+    }
+
     fn within(&self, q: f64) -> Result<f64, PositionError> {
         let [from, to] = self.positions.ends();
         let within = self.positions.within(q);
