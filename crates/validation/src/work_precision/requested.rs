@@ -43,7 +43,7 @@ pub(super) fn requested_costs<S: StudiedScene>(
     counts.sort_unstable();
     counts.dedup();
     let time = |machine: &Machine<S::Model>, count: usize| {
-        least_time((subject, states), machine, count > 0)
+        evaluation_time_of((subject, states), machine, count > 0)
     };
     let one = |count: usize| {
         let machine = subject.scene.machine(&all[..count])?;
@@ -61,7 +61,7 @@ pub(super) fn requested_costs<S: StudiedScene>(
 }
 
 /// The least time of an evaluation, s, perhaps with reactions.
-fn least_time<S: StudiedScene>(
+fn evaluation_time_of<S: StudiedScene>(
     (subject, states): (&Subject<S>, &[Vec<f64>]),
     machine: &Machine<S::Model>,
     has_reactions: bool,
