@@ -84,6 +84,12 @@ pub(crate) fn error_scale(size: f64, reference: f64) -> f64 {
     }
 }
 
+/// What an energy balance shows beyond the rounding of its own sum, J: beside a potential energy of 10 J the kinetic energy of a small
+/// oscillation, 5e-8 J, would be known to eight digits only.
+pub(crate) fn beyond_rounding(difference: f64, kinetic: f64, potential: f64) -> f64 {
+    (difference - 4.0 * f64::EPSILON * (kinetic + potential)).max(0.0)
+}
+
 /// The reduced coefficients at `q` (rad or m), and the estimated rounding error of each.
 ///
 /// # Errors

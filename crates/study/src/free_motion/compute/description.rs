@@ -1,6 +1,6 @@
 //! The summary of a motion.
 
-use crate::estimate::{self, error_scale, relative};
+use crate::estimate::{self, beyond_rounding, error_scale, relative};
 use crate::free_motion::compute::{
     ComputedMotion, Energies, FreeMotionProblem, MotionProblem as _, NamedContacts,
     SegmentedMotion, balance_line, class_line, cost_line, event_line, times_of,
@@ -169,10 +169,11 @@ impl FreeMotionProblem<'_> {
         ([max_kinetic, max_potential], max_difference, at_samples)
     }
 
-    /// The largest error of the energy balance of a motion, as a part of the largest kinetic energy, or of the potential energy where that
+    /// The largest error of the energy balance of a motion beyond its rounding, as a part of the largest kinetic energy, or of the potential energy where that
     /// is a rounding.
     pub(super) fn imbalance(&self, motion: &SegmentedMotion) -> f64 {
         let ([kinetic, potential], difference, _) = self.balance(motion);
+        let difference = beyond_rounding(difference, kinetic, potential);
         relative(difference, error_scale(kinetic, potential))
     }
 

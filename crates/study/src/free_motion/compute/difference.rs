@@ -1,6 +1,6 @@
 //! The difference of two computations of one motion.
 
-use crate::estimate::{error_scale, relative};
+use crate::estimate::{beyond_rounding, error_scale, relative};
 use crate::free_motion::compute::{FreeMotionProblem, MotionProblem, SegmentedMotion};
 use crate::trajectory::compute::{TrajectorySample, force_scales};
 use dwell_dynamics::DynamicsError;
@@ -15,7 +15,7 @@ pub(crate) struct Difference {
     pub(crate) coordinate: f64,
     /// Of the kinetic energy and of the energy balance, relative to the largest kinetic energy.
     energy: f64,
-    /// What the energy balance of the first computation shows of its error, relative to the largest kinetic energy.
+    /// What the energy balance of the first computation shows of its error beyond rounding, relative to the largest kinetic energy.
     imbalance: f64,
     /// Of the reactions, relative to the largest of their unit.
     pub(crate) reactions: f64,
@@ -131,7 +131,10 @@ impl Compared<'_> {
         Ok(Difference {
             coordinate,
             energy: relative(differences.into_iter().fold(0.0, nan_max), scale),
-            imbalance: relative(max_abs(&balance), scale),
+            imbalance: relative(
+                beyond_rounding(max_abs(&balance), kinetic, potential),
+                scale,
+            ),
             reactions: self.reaction_difference(reactions, &pairs, kinetic)?,
             end: relative((end_one - end_two).abs(), end_one.max(end_two)),
         })

@@ -1,6 +1,6 @@
 //! Lines of the summary of a motion, in the plane or in space.
 
-use crate::estimate::{self, is_rounding};
+use crate::estimate::{self, ZERO_RATIO, beyond_rounding, is_rounding};
 use crate::free_motion::compute::MotionProblem;
 use crate::machines::MachineScene as _;
 use crate::number_format::{digits, digits_within, how_often};
@@ -296,8 +296,14 @@ pub(crate) fn balance_line(
     let error = drift.max(height_between(samples, value));
     record.add_within(format!("largest_{kind}_energy"), "J", largest, error);
     let energy = digits_within(largest, error, 6);
+    // Beside a large potential energy: no error of the motion.
+    let is_unknown = beyond_rounding(drift, kinetic, potential) == 0.0;
+    let cause = match is_unknown && relative > ZERO_RATIO {
+        true => ", by the rounding of the potential energy",
+        false => "",
+    };
     let line = format!(
-        "  energy balance closes to {relative:.1e} of the largest {kind} energy, {energy} J\n"
+        "  energy balance closes to {relative:.1e} of the largest {kind} energy, {energy} J{cause}\n"
     );
     (relative, line)
 }
