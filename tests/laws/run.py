@@ -45,6 +45,7 @@ LARGEST_MEMORY = 4 << 30
 MOST_REFUSED = 0.01
 # The motion again from a start this far away: where it ends elsewhere by as much as the program, it says nothing of the program.
 NEARBY = 1e-11
+KICKS, KICK = 15, 1e-8
 # Method, tolerance, and how well its motions agree: ESDIRK34 has errors of 5e-8 in smooth motions at a tolerance that takes as long.
 METHODS = [("bdf", 1e-12, AGREE), ("dop853", 1e-12, AGREE), ("tsit45", 1e-12, AGREE), ("esdirk34", 1e-11, 1e-6)]
 
@@ -55,8 +56,13 @@ def limit():
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
-def reference(scene, shift=0.0, **options):
+def reference(scene, shift=0.0, kicks=0, kick=0.0, **options):
+    """The motion from a start moved by `shift`, and whose speeds are changed by `kick` so many times on the way."""
     found = motion.Motion(scene.laws, [x + shift for x in scene.start], **options)
+    for part in range(1, kicks + 1):
+        found.run(draw.DURATION * part / (kicks + 1))
+        for k in found.speeds:
+            found.point[k] += kick
     found.run(draw.DURATION)
     return found
 
@@ -125,6 +131,9 @@ def is_sensitive(scene, found, gap):
     """Whether the motion from a start nearby, or by other steps, differs by as much."""
     try:
         others = [reference(scene, shift) for shift in (NEARBY, -NEARBY)] + [reference(scene, order=11, tolerance=1e-15)]
+        if gap > GRAZING:
+            # What stays on a threshold from which all leads away may leave it at any time.
+            others += [reference(scene, kicks=KICKS, kick=kick) for kick in (KICK, -KICK)]
     except motion.Unjudged:
         return True
     return max(difference(other.point[1:], found.point[1:], found.largest) for other in others) > 0.1 * gap

@@ -116,6 +116,8 @@ impl Stepper<'_> {
         for _ in 0..options.max_steps {
             h = self.step(h.min(longest(self.from.t)?), end)?;
             pace.step_taken(self.to.t)?;
+            let (system, to) = (&mut self.stages.system, &self.to);
+            pace.look_at_balance(to.t, || system.balance(to))?;
             let (stages, from, to) = (&mut self.stages, &self.from, &self.to);
             let (interpolant, stiffness) = (&mut self.interpolant, self.stiffness);
             let mut ready = false;

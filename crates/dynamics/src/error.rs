@@ -219,6 +219,12 @@ pub enum DynamicsError {
         /// The length of the last steps, s.
         step: f64,
     },
+    /// The energies of the bodies miss the works done on them: no step beyond belongs to the mechanism.
+    #[error("the steps up to t = {t} s lose the balance of energies and works")]
+    LostBalance {
+        /// The time reached, s.
+        t: f64,
+    },
     /// The motion is too short: its end equals its start to rounding.
     #[error("the motion is too short to compute: its end equals its start to rounding")]
     DurationTooShort,

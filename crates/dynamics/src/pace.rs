@@ -25,6 +25,13 @@ const SWITCHES: usize = 2000;
 const TOO_MANY_SWITCHES: [f64; 2] = [1.0, 0.05];
 const MORE_OFTEN: f64 = 3.0;
 
+/// Steps after which the energies are looked at. Where they have missed their balance by so large a part of the largest kinetic energy, the steps
+/// lead on without the mechanism: beyond singular positions it was seen to be 0.3 to 10. Truncation changes them by what the tolerance
+/// allows in so many steps, rounding by this part of them all.
+const LOOKED_AT: usize = 1000;
+const BROKEN: f64 = 0.1;
+const ENERGY_ROUNDING: f64 = 1e-9;
+
 /// The steps of an integration, and how far the last of them have led.
 #[derive(Debug, Clone)]
 pub(crate) struct Pace {
@@ -40,6 +47,10 @@ pub(crate) struct Pace {
     start: f64,
     /// As `TOO_MANY`, of what is counted: at a pace that may become faster, and where it has become slower and slower.
     too_many: [f64; 2],
+    /// The largest kinetic energy and the balance, J, where the energies were looked at last.
+    looked_at: Option<[f64; 2]>,
+    /// The error of energies that the tolerance allows between two looks, as a part of the largest kinetic energy.
+    truncation: f64,
 }
 
 impl Pace {
@@ -65,6 +76,8 @@ impl Pace {
             from: [of.start.t; 2],
             start: of.start.t,
             too_many: [TOO_MANY; 2],
+            looked_at: None,
+            truncation: 10.0 * LOOKED_AT as f64 * of.options.rtol,
         }
     }
 
@@ -117,6 +130,37 @@ impl Pace {
         Ok(())
     }
 
+    /// After a step to a time, s: whether the kinetic energy, and the energies less the works (`balance`, J), are still those of the mechanism. They
+    /// are evaluated once in many steps.
+    ///
+    /// # Errors
+    /// [`DynamicsError::LostBalance`].
+    #[inline]
+    pub(crate) fn look_at_balance(
+        &mut self,
+        t: f64,
+        balance: impl FnOnce() -> Option<[f64; 2]>,
+    ) -> Result<()> {
+        if !self.steps.is_multiple_of(LOOKED_AT) {
+            return Ok(());
+        }
+        let Some([kinetic, now]) = balance() else {
+            return Ok(());
+        };
+        if let Some([largest, before]) = self.looked_at {
+            let largest = largest.max(kinetic);
+            let rounding = ENERGY_ROUNDING * (now.abs() + before.abs());
+            if (now - before).abs() > BROKEN.max(self.truncation) * largest + rounding {
+                return Err(DynamicsError::LostBalance { t });
+            }
+        }
+        let largest = self
+            .looked_at
+            .map_or(kinetic, |[largest, _]| largest.max(kinetic));
+        self.looked_at = Some([largest, now]);
+        Ok(())
+    }
+
     /// How many times the steps allowed are too many where the last ones have led on by so much each, s, up to a time, s.
     fn times(&self, advance: f64, t: f64) -> f64 {
         let is_slower = MORE_OFTEN * advance * (self.steps as f64) < t - self.start;
@@ -143,5 +187,43 @@ impl Pace {
         let window = self.windows[which].filter(|window| self.steps.is_multiple_of(*window))?;
         let advance = t - std::mem::replace(&mut self.from[which], t);
         Some((window, advance))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Method, OdeState, Options};
+
+    /// Whether energies are taken for those of the mechanism over so many looks, at a tolerance.
+    fn are_kept(rtol: f64, energies: impl Fn(usize) -> [f64; 2]) -> bool {
+        let part = Part {
+            start: OdeState {
+                t: 0.0,
+                y: Vec::new(),
+            },
+            end: Some(1.0),
+            options: Options::new(Method::Bdf, rtol),
+            first_step: None,
+        };
+        let mut pace = Pace::new(&part, None);
+        (1..=3 * LOOKED_AT).all(|step| {
+            pace.steps = step;
+            pace.look_at_balance(1e-9, || Some(energies(step))).is_ok()
+        })
+    }
+
+    #[test]
+    fn energies_that_miss_their_works_end_a_motion_and_truncation_and_rounding_do_not() {
+        // A position beyond a singular one: of 28 J kinetic energy 26 J are gone.
+        let jump = |step: usize| [[28.0, 13.3], [2.0, -12.8]][usize::from(step > 1500)];
+        assert!(!are_kept(1e-10, jump));
+        assert!(are_kept(1e-10, |step| [28.0, 13.3 + 1e-6 * step as f64]));
+        assert!(are_kept(1e-4, |step| [28.0, 13.3 + 5e-3 * step as f64]));
+        // A small oscillation with a large potential energy.
+        assert!(are_kept(1e-10, |step| [
+            1e-9,
+            10.0 + [1e-9, -1e-9][step / 1000 % 2]
+        ]));
     }
 }

@@ -129,6 +129,48 @@ impl<'s, 'i> SlidingSystem<'s, 'i> {
         evaluated?;
         Ok(Some(self.sides.of(first)))
     }
+
+    /// By side: how far each function whose piece the side decides, beside the switch itself, is within its piece there, and whether it
+    /// would leave it upwards.
+    ///
+    /// # Errors
+    /// As [`side_rates`](Self::side_rates).
+    pub(crate) fn margins_beside(&mut self, t: f64, y: &[f64]) -> Result<Vec<MarginBeside>> {
+        let beside = |sliding: &Sliding| {
+            let beside = |k: &usize| sliding.decides(*k) && !sliding.switches.contains(k);
+            (0..self.shared.kinds.len()).filter(beside).collect()
+        };
+        let switches: Vec<usize> = self.sliding.as_ref().map_or_else(Vec::new, beside);
+        if switches.is_empty() {
+            return Ok(Vec::new());
+        }
+        self.side_rates(t, y)?;
+        let Some(sliding) = &self.sliding else {
+            return Ok(Vec::new());
+        };
+        let (kinds, functions) = (&self.shared.kinds, &self.sides.functions);
+        let of = |(side, k): (usize, usize)| {
+            let [low, high] = kinds[k].bounds(sliding.sides[side][k]?);
+            let [value, _] = functions[side][k];
+            let (margin, upward) = ((value - low).min(high - value), value - low > high - value);
+            Some(MarginBeside {
+                side,
+                switch: k,
+                margin,
+                upward,
+            })
+        };
+        let each = switches.into_iter().flat_map(|k| [(0, k), (1, k)]);
+        Ok(each.filter_map(of).collect())
+    }
+}
+
+/// How far a function is within its piece on one side of the switch along which the motion slides.
+pub(crate) struct MarginBeside {
+    pub(crate) side: usize,
+    pub(crate) switch: usize,
+    pub(crate) margin: f64,
+    pub(crate) upward: bool,
 }
 
 impl OdeSystem for SlidingSystem<'_, '_> {

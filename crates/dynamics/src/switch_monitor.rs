@@ -74,8 +74,21 @@ pub(crate) struct Crossing {
     pub(crate) state: OdeState,
     /// The switches, and whether each passes its upper bound.
     passed: Vec<(usize, bool)>,
-    /// Where a motion leaves the switch along which it slid: whether to its upper side.
-    left: Option<bool>,
+    /// What changes of a motion that slides along a switch.
+    slide: Option<SlideChange>,
+}
+
+/// What changes of a motion that slides along a switch.
+#[derive(Debug, Clone, Copy)]
+enum SlideChange {
+    /// It leaves the switch, upwards or not.
+    Leaves(bool),
+    /// Another switch is passed, upwards or not, on one side alone: what the load would be there changes.
+    PassesBeside {
+        side: usize,
+        switch: usize,
+        upward: bool,
+    },
 }
 
 impl Crossing {
@@ -237,11 +250,11 @@ impl SwitchMonitor {
             let each = 0..self.switches.len();
             let times = each.map(|k| self.crossing_time(k, t, system, step));
             if let Some((at, passed)) = first_of(times)? {
-                let (state, left) = (step.state_from_start(at)?, None);
+                let (state, slide) = (step.state_from_start(at)?, None);
                 return Ok(Some(Crossing {
                     state,
                     passed,
-                    left,
+                    slide,
                 }));
             }
         }
@@ -330,9 +343,8 @@ impl SwitchMonitor {
         for switch in &mut self.switches {
             switch.is_inside = false;
         }
-        if let Some(upward) = crossing.left {
-            self.leave(upward, system, &crossing.state);
-            return Ok(());
+        if let Some(change) = crossing.slide {
+            return self.change_slide(change, system, &crossing.state);
         }
         let before: Vec<Option<f64>> = self.pieces();
         self.add_operands(crossing, system)?;

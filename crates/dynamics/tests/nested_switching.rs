@@ -194,6 +194,17 @@ fn a_speed_rests_on_the_switch_that_ends_its_couple() {
 
 /// What switches exactly where the motion begins has switched.
 #[test]
+fn a_speed_is_released_when_the_couple_beyond_its_switch_turns() {
+    // Held at 1.75 rad/s between a couple beyond that speed and one below it, until the one beyond drives on.
+    let text = format!("{INERTIA}*sign(if(v >= 1.75, t - 1, 1.5))");
+    check(&text, 2.0, 2.0, [4.03125, 2.75], 100.0);
+    let text = format!("{INERTIA}*sign(if(v >= 1.75, q - 1, 1.5))");
+    let rest = 1.75 - (1.0 - 0.46875) / 1.75;
+    let end = [1.0 + (1.75 + 0.5 * rest) * rest, 1.75 + rest];
+    check(&text, 2.0, 2.0, end, 100.0);
+}
+
+#[test]
 fn a_switch_at_the_start_has_switched() {
     let a = 1.0 / INERTIA;
     for text in [

@@ -120,6 +120,8 @@ impl StepLoop<'_, '_> {
                 self.impasse.step_taken([at, &now]);
             }
             self.impasse.pace.step_taken(now.t)?;
+            let balance = self.balance;
+            self.impasse.pace.look_at_balance(now.t, || balance(&now))?;
             // It cannot step to an end that is within its rounding of time: it is there.
             let rounding = INTEGRATOR_ROUNDING * (now.t.abs() + state.h.abs());
             let reached = state.t;

@@ -1,6 +1,6 @@
 //! Where a motion begins to slide along a switch, and where it leaves it.
 
-use super::{Crossing, PROBE, SwitchMonitor};
+use super::{Crossing, PROBE, SlideChange, SwitchMonitor};
 use crate::error::{DynamicsError, Result};
 use crate::ode::{OdeState, OdeSystem, Step};
 use crate::sliding::{SideRates, Sliding};
@@ -233,7 +233,7 @@ impl SwitchMonitor {
         }
     }
 
-    /// Where a sliding motion leaves its switch in a step.
+    /// What changes of a sliding motion in a step: it leaves its switch, or another one is passed on one side of it alone.
     ///
     /// # Errors
     /// Where a state cannot be evaluated.
@@ -245,7 +245,11 @@ impl SwitchMonitor {
         if self.sliding.is_none() {
             return Ok(None);
         }
-        let (times, mut from) = (step.root_subintervals(), step.before.t);
+        let beside = self.passing_beside(system, step)?;
+        let until = beside.as_ref().map_or(step.now, |c| &c.state);
+        let mut from = step.before.t;
+        let mut step = step.until(until);
+        let times = step.root_subintervals();
         let mut sides_at = |t: f64| -> Result<(OdeState, Option<SideRates>)> {
             let state = step.state_from_start(t)?;
             let sides = system.side_rates(t, &state.y)?;
@@ -265,10 +269,90 @@ impl SwitchMonitor {
             return Ok(Some(Crossing {
                 state,
                 passed: Vec::new(),
-                left: Some(upward),
+                slide: Some(SlideChange::Leaves(upward)),
             }));
         }
+        Ok(beside)
+    }
+
+    /// Where a switch that is decided by the side of the motion leaves its piece on that side first in a step: the function of a load beside
+    /// the switch goes on changing although the motion does not go there.
+    fn passing_beside(
+        &self,
+        system: &mut SlidingSystem<'_, '_>,
+        step: &mut Step<'_>,
+    ) -> Result<Option<Crossing>> {
+        let start = system.margins_beside(step.before.t, &step.before.y)?;
+        let mut from = step.before.t;
+        if start.is_empty() {
+            return Ok(None);
+        }
+        for t in step.root_subintervals() {
+            let state = step.state_at(t)?;
+            let now = system.margins_beside(t, &state.y)?;
+            let mut first: Option<(f64, SlideChange)> = None;
+            let passed = |k: &usize| start[*k].margin > 0.0 && now[*k].margin < 0.0;
+            for k in (0..now.len()).filter(passed) {
+                let margin_at = |t: f64| -> Result<f64> {
+                    let state = step.state_from_start(t)?;
+                    Ok(system.margins_beside(t, &state.y)?[k].margin)
+                };
+                let at = root::find(margin_at, from, t)?.unwrap_or(t);
+                if first.is_none_or(|(before, _)| at < before) {
+                    let change = SlideChange::PassesBeside {
+                        side: now[k].side,
+                        switch: now[k].switch,
+                        upward: now[k].upward,
+                    };
+                    first = Some((at, change));
+                }
+            }
+            if let Some((at, change)) = first {
+                return Ok(Some(Crossing {
+                    state: step.state_from_start(at)?,
+                    passed: Vec::new(),
+                    slide: Some(change),
+                }));
+            }
+            from = t;
+        }
         Ok(None)
+    }
+
+    /// Takes a change of a sliding motion.
+    ///
+    /// # Errors
+    /// Where the state cannot be evaluated; [`DynamicsError::SlidesOnSeveral`].
+    pub(super) fn change_slide(
+        &mut self,
+        change: SlideChange,
+        system: &mut dyn OdeSystem,
+        at: &OdeState,
+    ) -> Result<()> {
+        let (side, k, upward) = match change {
+            SlideChange::Leaves(upward) => {
+                self.leave(upward, system, at);
+                return Ok(());
+            }
+            SlideChange::PassesBeside {
+                side,
+                switch,
+                upward,
+            } => (side, switch, upward),
+        };
+        let Some(mut sliding) = self.sliding.take() else {
+            return Ok(());
+        };
+        self.take(&sliding.sides[side]);
+        let switch = &mut self.switches[k];
+        switch.piece = switch.piece.map(|piece| switch.kind.next(piece, upward));
+        let (none, mut changed) = (
+            self.marked(std::iter::empty()),
+            self.marked([k].into_iter()),
+        );
+        self.settle((&none, &[]), &mut changed, system, at)?;
+        sliding.sides[side] = self.pieces();
+        self.slide_on(sliding, &[], system, at)
     }
 
     /// Holds the side to which the motion leaves its switch.
@@ -311,6 +395,17 @@ impl SwitchMonitor {
             self.settle((&none, &[]), &mut passed.to_vec(), system, at)?;
             *side = self.pieces();
         }
+        self.slide_on(sliding, &crossing.passed, system, at)
+    }
+
+    /// Slides on with other pieces on the sides, behind some switches that are `passed`; or leaves the switch.
+    fn slide_on(
+        &mut self,
+        sliding: Sliding,
+        passed: &[(usize, bool)],
+        system: &mut dyn OdeSystem,
+        at: &OdeState,
+    ) -> Result<()> {
         self.watch_others(&sliding);
         let first = sliding.switches[0];
         let source_index = system.switch_source(first);
@@ -323,7 +418,7 @@ impl SwitchMonitor {
         };
         let rates = both.of(first);
         let part = rates.upper_part().clamp(0.0, 1.0);
-        for &(k, upward) in &crossing.passed {
+        for &(k, upward) in passed {
             let [[_, lower], [_, upper]] = both.of(k).sides;
             let rate = lower + part * (upper - lower);
             if (rate < 0.0) == upward {

@@ -184,7 +184,7 @@ impl SwitchMonitor {
                 return Ok(Some(Crossing {
                     state: step.state_from_start(at)?,
                     passed: vec![(k, upward)],
-                    left: None,
+                    slide: None,
                 }));
             }
             let from = (t - ZOOM * length).max(step.before.t);
@@ -221,11 +221,11 @@ impl SwitchMonitor {
 impl Crossing {
     /// Where the integration begins anew, and nothing is passed.
     pub(super) fn begin_anew(state: OdeState) -> Self {
-        let (passed, left) = (Vec::new(), None);
+        let (passed, slide) = (Vec::new(), None);
         Self {
             state,
             passed,
-            left,
+            slide,
         }
     }
 }

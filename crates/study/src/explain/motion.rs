@@ -123,6 +123,15 @@ fn describe(
             SceneLocation::Whole,
             "",
         ),
+        DynamicsError::LostBalance { t } => (
+            format!(
+                "up to t = {} s the energies of the bodies lose their balance with the works done on them",
+                number(*t)
+            ),
+            "a limit position or a change point may be near: end the motion earlier, or use a smaller tolerance",
+            SceneLocation::Duration,
+            "beyond that time",
+        ),
         DynamicsError::AtRest => (
             "the free motion starts at rest, and no force moves the mechanism".to_owned(),
             "give an `initial-velocity` in [motion]",

@@ -40,9 +40,8 @@ pub(super) fn overview(judged: &ValidationRun<'_>) -> Figure {
     Figure {
         name: "index".to_owned(),
         title: judged.headline(),
-        caption:
-            "Each number: the least margin of a case in a check; = where there is no difference. Larger margins than 10⁴ have the last colour. Findings and reasons: cases.md."
-                .to_owned(),
+        caption: "Least margin of each case in each check; = no difference. Details: cases.md."
+            .to_owned(),
         columns: 1,
         panels: rows.chain([matrix.into()]).collect(),
         provenance: format!("Dwell {}", env!("CARGO_PKG_VERSION")),

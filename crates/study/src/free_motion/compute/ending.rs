@@ -22,7 +22,7 @@ pub(crate) fn end_where_impossible<M: MovingModel>(machine: &Machine<M>, solutio
         good: None,
     };
     let mut samples = solution.samples.iter();
-    let fault = samples.find_map(|at| Some((at.t, watch.fault(at, &solution.steps)?)));
+    let fault = samples.find_map(|at| Some((at.t, watch.fault(at, solution)?)));
     let is_found = fault.is_some();
     if let Some((t, error)) = fault {
         solution.samples.retain(|s| s.t < t);
@@ -78,8 +78,8 @@ impl<M: MovingModel> Watch<'_, M> {
         found.is_ok_and(|[_, balance]| !self.is_broken(balance, KEPT * largest))
     }
 
-    /// Why a state cannot be one of the motion, whose steps lead to it.
-    fn fault(&mut self, at: &OdeState, steps: &[OdeState]) -> Option<DynamicsError> {
+    /// Why a state cannot be one of the motion: there is no position next to it, or the motion ends where its balance breaks.
+    fn fault(&mut self, at: &OdeState, solution: &Solution) -> Option<DynamicsError> {
         let [kinetic, balance] = match self.energies(at) {
             Ok(energies) => energies,
             Err(error) => return Some(error),
@@ -89,9 +89,11 @@ impl<M: MovingModel> Watch<'_, M> {
             .map_or((at.t, 0.0), |(t, [largest, _])| (t, largest));
         let largest = largest.max(kinetic);
         if self.is_broken(balance, LARGE_ERROR * largest) {
-            let begun = steps.partition_point(|step| step.t < from);
-            let between = steps[begun..].iter().take_while(|step| step.t <= at.t);
-            if let Some(error) = between.chain([at]).find_map(|step| self.missing_near(step)) {
+            let begun = solution.steps.partition_point(|step| step.t < from);
+            let between = solution.steps[begun..].iter();
+            let mut between = between.take_while(|step| step.t <= at.t).chain([at]);
+            let missing = between.find_map(|step| self.missing_near(step));
+            if let Some(error) = missing.or_else(|| solution.error.clone()) {
                 return Some(error);
             }
         }
@@ -119,13 +121,17 @@ impl<M: MovingModel> Watch<'_, M> {
 
     /// A motion that became slow without end next to a position that does not exist ends because of that.
     fn name_cause(&mut self, solution: &mut Solution) {
-        use DynamicsError::{MaxStepsReached, NoInertia, NotFinite, StepTooSmall, TooSlow};
+        use DynamicsError::{
+            LostBalance, MaxStepsReached, NoInertia, NoProgress, NotFinite, StepTooSmall, TooSlow,
+        };
         let unnamed = matches!(
             solution.error,
             Some(
                 MaxStepsReached { .. }
                     | StepTooSmall { .. }
                     | TooSlow { .. }
+                    | NoProgress { function: None, .. }
+                    | LostBalance { .. }
                     // The inertia of several coordinates has no rank there.
                     | NoInertia { .. }
                     | NotFinite { .. }
