@@ -4,7 +4,7 @@
     python3 validation/compare_versions.py OLD_DWELL NEW_DWELL [--scenes FOLDER_OF_OLD_CASES] [--motions] [CASE...]
 
 `check`, `kinematics`, `statics`, `kinetostatics` and `reduce` must agree in every bit: the columns of each CSV file are compared in
-their order, their names by the table "Renamed columns" of docs/glossary.md. With --motions, `simulate`, `cycle`, `equilibria` and
+their order, with their names. With --motions, `simulate`, `cycle`, `equilibria` and
 `linearise` are compared, too, and the largest difference of each column is told, as a part of its largest value. The old program reads
 the cases of --scenes (a checkout of its time), since scene keys have changed their names. Exit status 1 where anything differs.
 """
@@ -20,33 +20,6 @@ TOP = pathlib.Path(__file__).resolve().parents[1]
 EXACT = ["check", "kinematics", "statics", "kinetostatics", "reduce"]
 MOTIONS = ["simulate", "cycle", "equilibria", "linearise"]
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e-?\d+)?")
-
-
-def renamed_columns():
-    """(pattern of the old name, new name with \\1, \\2 for what each * stands for), from the glossary."""
-    glossary = TOP / "docs/glossary.md"
-    text = glossary.read_text(encoding="utf-8") if glossary.exists() else ""
-    rules = []
-    section = re.search(r"^## Renamed columns\n(.*?)(?=^## |\Z)", text, re.S | re.M)
-    for line in section.group(1).splitlines() if section else []:
-        cells = re.findall(r"`([^`]+)`", line)
-        if line.startswith("|") and len(cells) >= 2:
-            pattern = re.escape(cells[0]).replace(r"\*", "(.*)")
-            rules.append((re.compile(f"^{pattern}$"), [numbered_stars(cell) for cell in cells[1:]]))
-    return rules
-
-
-def numbered_stars(name):
-    """The replacement text for a name: the first * is \\1, the second \\2."""
-    first, *rest = name.split("*")
-    return first + "".join(f"\\{k}{text}" for k, text in enumerate(rest, 1))
-
-
-def same_name(old, new, rules):
-    old_name, new_name = old.split(" [")[0], new.split(" [")[0]
-    if old_name == new_name:
-        return True
-    return any(rule.match(old_name) and new_name in {rule.sub(form, old_name) for form in forms} for rule, forms in rules)
 
 
 def run(program, command, case, scenes, folder):
@@ -80,36 +53,26 @@ def largest_difference(old, new):
     return max((abs(a - b) for a, b in values), default=0.0) / size if size else 0.0
 
 
-def compare_tables(where, old, new, rules, exact):
-    """Lines about what differs; files are paired in the order of their names' stems without letters of order."""
+def compare_tables(where, old, new, exact):
+    """Lines about what differs."""
     faults = []
     heads_old, columns_old = columns(old)
     heads_new, columns_new = columns(new)
     if len(heads_old) != len(heads_new):
         return [f"{where}: {len(heads_old)} columns have become {len(heads_new)}"]
     for head_old, head_new, a, b in zip(heads_old, heads_new, columns_old, columns_new):
-        if not same_name(head_old, head_new, rules):
-            faults.append(f"{where}: column `{head_old}` has become `{head_new}`, which the glossary does not say")
+        if head_old != head_new:
+            faults.append(f"{where}: column `{head_old}` has become `{head_new}`")
         if a != b and (exact or (largest_difference(a, b) or 1.0) > 0.0):
-            words = all(number(x) is None for x in (*a, *b))
-            if words and all(same_name(x, y, rules) for x, y in zip(a, b)):
-                continue
             faults.append(f"{where}: `{head_new}` differs by {largest_difference(a, b)} of its largest value")
     return faults
 
 
-def tables(folder, renamed_files=(("-peaks.csv", "-extrema.csv"), ("-section-", "-internal-forces-"))):
-    found = {}
-    for path in sorted(folder.glob("*.csv")):
-        name = path.name
-        for old, new in renamed_files:
-            name = name.replace(old, new)
-        # The parts of a link's name are separated by dots, formerly by hyphens.
-        found[name.removesuffix(".csv").replace(".", "-")] = path
-    return found
+def tables(folder):
+    return {path.stem: path for path in sorted(folder.glob("*.csv"))}
 
 
-def compare(case, command, arguments, rules):
+def compare(case, command, arguments):
     with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as two:
         one, two = pathlib.Path(one), pathlib.Path(two)
         old = run(arguments.old, command, case, arguments.scenes, one)
@@ -125,7 +88,7 @@ def compare(case, command, arguments, rules):
             faults.append(f"{where}: files {sorted(files_old)} have become {sorted(files_new)}")
         for name in files_old.keys() & files_new.keys():
             count += len(columns(files_old[name])[0])
-            faults += compare_tables(f"{where} {name}", files_old[name], files_new[name], rules, command in EXACT)
+            faults += compare_tables(f"{where} {name}", files_old[name], files_new[name], command in EXACT)
         if command == "check":
             numbers_old, numbers_new = NUMBER.findall(old.stdout), NUMBER.findall(new.stdout)
             count = len(numbers_old)
@@ -144,12 +107,11 @@ def main():
     arguments = parser.parse_args()
     arguments.old, arguments.new = arguments.old.resolve(), arguments.new.resolve()
     arguments.scenes = arguments.scenes.resolve()
-    rules = renamed_columns()
     cases = arguments.cases or sorted(p.parent.name for p in (TOP / "validation").glob("*/scene.toml"))
     faults, count = [], 0
     for case in cases:
         for command in EXACT + (MOTIONS if arguments.motions else []):
-            found, columns_compared = compare(case, command, arguments, rules)
+            found, columns_compared = compare(case, command, arguments)
             for line in found:
                 print(line, flush=True)
             faults += found

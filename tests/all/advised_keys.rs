@@ -1,9 +1,9 @@
 //! What messages advise can be written: sections and keys are those of `keys.toml`.
 
-use crate::glossary::{sources, split};
 use dwell_tests::fixtures::repository_root;
 use std::collections::{HashMap, HashSet};
 use std::fs;
+use std::path::{Path, PathBuf};
 
 /// The crates whose texts advise what to write in a scene.
 const CRATES: [&str; 9] = [
@@ -143,4 +143,46 @@ fn messages_advise_sections_and_keys_that_exist() {
         }
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() && path.file_name().is_some_and(|name| name != "tests") {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|e| e == "rs")
+            && path.file_stem().is_some_and(|s| s != "tests")
+        {
+            found.push(path);
+        }
+    }
+}
+
+/// The code of a file and its string literals: without comments, and without what follows the first `#[cfg(test)]`.
+fn split(text: &str) -> (String, Vec<String>) {
+    let text = text.split("#[cfg(test)]").next().unwrap_or(text);
+    let (mut code, mut strings) = (String::new(), Vec::new());
+    let mut rest = text;
+    while let Some(letter) = rest.chars().next() {
+        if rest.starts_with("//") {
+            rest = rest.split_once('\n').map_or("", |(_, after)| after);
+            code.push('\n');
+        } else if letter == '"' {
+            let mut escaped = false;
+            let end = rest[1..].find(|c| {
+                let closes = c == '"' && !escaped;
+                escaped = c == '\\' && !escaped;
+                closes
+            });
+            let end = end.map_or(rest.len(), |end| end + 1);
+            strings.push(rest[1..end].to_owned());
+            rest = rest.get(end + 1..).unwrap_or("");
+        } else if rest.starts_with("'\"'") {
+            rest = &rest[3..];
+        } else {
+            code.push(letter);
+            rest = &rest[letter.len_utf8()..];
+        }
+    }
+    (code, strings)
 }

@@ -24,7 +24,6 @@ mod equilibria_found;
 mod events;
 mod extremes;
 mod findings;
-mod glossary;
 mod invariance;
 mod joints;
 mod limits;

@@ -44,9 +44,8 @@ use times::Times;
 
 fn main() -> ExitCode {
     // clap itself exits with 2 on a bad argument, and with 0 for help.
-    let (arguments, notes) = former::with_current_names(std::env::args_os());
-    notes.iter().for_each(|note| print_note(note));
-    let matches = Options::command().get_matches_from(arguments);
+    let matches = Options::command().try_get_matches();
+    let matches = matches.unwrap_or_else(|error| former::with_current_name(error).exit());
     let options = Options::from_arg_matches(&matches).unwrap_or_else(|e| e.exit());
     match run(&options, matches.subcommand_name().unwrap_or_default()) {
         Ok(true) => ExitCode::SUCCESS,
@@ -301,7 +300,7 @@ fn read(options: &Options, command: &Command, bar: &ProgressBar) -> Result<AnySc
     Ok(scene)
 }
 
-/// Shows on standard error which former names the scene uses; the exit status does not change.
+/// Shows the warnings of a scene on standard error; the exit status does not change.
 fn print_warnings(scene: &SceneFile) {
     for warning in &scene.warnings {
         print_note(&format!("{:?}", Report::new(warning.clone())));

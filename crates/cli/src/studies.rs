@@ -1,7 +1,6 @@
 //! The commands that study one scene.
 
 use crate::options::Command;
-use crate::sweep::note_former_path;
 use dwell_scene::{AnyScene, Scene, SpaceScene};
 use dwell_study::unit_runs::compute::UnitRunScene;
 use dwell_study::{
@@ -107,13 +106,8 @@ fn in_either(
         }
         Command::Calibrate {
             parameter, period, ..
-        } => {
-            if let Some(path) = parameter {
-                note_former_path(scene, path);
-            }
-            dwell_study::calibrate(scene, parameter.as_deref(), *period)?
-        }
-        Command::Sweep(given) => dwell_study::sweep(scene, &given.sweep(scene, out), progress)?,
+        } => dwell_study::calibrate(scene, parameter.as_deref(), *period)?,
+        Command::Sweep(given) => dwell_study::sweep(scene, &given.sweep(out), progress)?,
         // The others are no studies of a scene, or their scenes are asked before.
         _ => Outcome::default(),
     };

@@ -1,10 +1,8 @@
 //! `dwell sweep`: its options, and the sweep that they ask for, of scenes in the plane and in space.
 
-use crate::print_note;
 use crate::values::{Choices, choice, parse_count};
 use clap::Args;
 use dwell_report::TableFormat;
-use dwell_scene::SceneFile;
 use dwell_study::{ParameterSweep, RowStore, Shard};
 use std::path::{Path, PathBuf};
 
@@ -58,11 +56,7 @@ pub(crate) struct SweepArgs {
 
 impl SweepArgs {
     /// The sweep that is asked for, with its files in a folder.
-    pub(crate) fn sweep<'a>(&'a self, scene: &SceneFile, folder: &'a Path) -> ParameterSweep<'a> {
-        for axis in &self.vary {
-            let path = axis.split(['=', '~', '±']).next().unwrap_or_default();
-            note_former_path(scene, path.trim());
-        }
+    pub(crate) fn sweep<'a>(&'a self, folder: &'a Path) -> ParameterSweep<'a> {
         ParameterSweep {
             vary: &self.vary,
             samples: self.samples,
@@ -73,12 +67,5 @@ impl SweepArgs {
             store: self.store,
             folder,
         }
-    }
-}
-
-/// Says on standard error that the path of a number has a former name of a key.
-pub(crate) fn note_former_path(scene: &SceneFile, path: &str) {
-    if let Some(current) = scene.renamed_path(path) {
-        print_note(&format!("note: {path} is now {current}"));
     }
 }

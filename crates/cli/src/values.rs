@@ -7,24 +7,15 @@ pub(crate) type Choices<T> = &'static [(&'static str, T, &'static str)];
 
 /// Longest name of a scene, bytes: the name of a file has at most 255.
 const MAX_NAME: usize = 100;
-/// Former names of values: still accepted, and not shown.
-const FORMER_VALUES: [(&str, &str); 1] = [("initial", "start")];
 
 /// The parser of an option that has one of these values.
 pub(crate) fn choice<T: Copy + Send + Sync>(
     choices: Choices<T>,
 ) -> impl TypedValueParser<Value = T> {
-    let value = |&(name, _, help): &(&'static str, T, &'static str)| {
-        let former = FORMER_VALUES
-            .iter()
-            .filter(move |(current, _)| *current == name);
-        let value = PossibleValue::new(name).help(help);
-        value.aliases(former.map(|(_, former)| *former))
-    };
+    let value =
+        |&(name, _, help): &(&'static str, T, &'static str)| PossibleValue::new(name).help(help);
     PossibleValuesParser::new(choices.iter().map(value)).try_map(move |given| {
-        let former = FORMER_VALUES.iter().find(|(_, former)| *former == given);
-        let name = former.map_or(given.as_str(), |(current, _)| current);
-        let found = choices.iter().find(|(known, ..)| *known == name);
+        let found = choices.iter().find(|(known, ..)| *known == given);
         let value = found.map(|(_, value, _)| *value);
         value.ok_or_else(|| format!("unknown value `{given}`"))
     })

@@ -8,7 +8,6 @@ use crate::drives::{DriveReader, reject_drives_of_prescribed, reject_shared_name
 use crate::error::{SceneError, Source};
 use crate::events::EventReader;
 use crate::file::SceneFile;
-use crate::former_keys::rename_former_keys;
 use crate::friction::add_friction;
 use crate::joints::Joints;
 use crate::keys::table;
@@ -33,12 +32,11 @@ use toml::de::DeValue;
 
 impl Scene {
     pub(crate) fn build(name: String, source: &Source) -> Result<Self, SceneError> {
-        let mut root = crate::read::syntax(source)?;
+        let root = crate::read::syntax(source)?;
         let log = &Diagnostics::new(source);
         if let Some(point) = three_numbers(root.get_ref()) {
             return Err(planar_only(source, point));
         }
-        rename_former_keys(root.get_mut(), table("scene"), log);
         read_root(root.get_ref(), log, |fields| read(name, source, fields)).map(Self::with_doubts)
     }
 }

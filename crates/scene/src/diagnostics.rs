@@ -4,7 +4,6 @@ use crate::error::{SceneError, SceneWarning, Source};
 use crate::spans::{SceneLocation, SceneSpans};
 use crate::wording::choices;
 use std::cell::{Cell, RefCell};
-use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::ops::Range;
 
@@ -28,9 +27,7 @@ pub(crate) struct Diagnostics {
     source: Source,
     found: RefCell<Vec<Diagnostic>>,
     suppressed: Cell<usize>,
-    /// Former names that the file uses: the name, what it is called now, where it stands.
-    renamed: RefCell<Vec<(String, String, Span)>>,
-    other_warnings: RefCell<Vec<SceneWarning>>,
+    warnings: RefCell<Vec<SceneWarning>>,
     /// Where the things of the scene are written.
     spans: RefCell<SceneSpans>,
 }
@@ -41,8 +38,7 @@ impl Diagnostics {
             source: Source::clone(source),
             found: RefCell::default(),
             suppressed: Cell::new(0),
-            renamed: RefCell::default(),
-            other_warnings: RefCell::default(),
+            warnings: RefCell::default(),
             spans: RefCell::default(),
         }
     }
@@ -109,38 +105,15 @@ impl Diagnostics {
         from + part.start..from + part.end
     }
 
-    /// Records that the file uses the former name of something.
-    pub(crate) fn warn_renamed(&self, former: &str, current: &str, span: Span) {
-        let renamed = (former.to_owned(), current.to_owned(), span);
-        self.renamed.borrow_mut().push(renamed);
-    }
-
     /// Warns of something that is read but may not be meant.
     pub(crate) fn warn(&self, message: String, label: &str, span: Span) {
         let warning = SceneWarning::at(&self.source, message, label, span);
-        self.other_warnings.borrow_mut().push(warning);
+        self.warnings.borrow_mut().push(warning);
     }
 
-    /// The former name that stands at `span`, if one does.
-    pub(crate) fn former_name_at(&self, span: &Span) -> Option<String> {
-        let renamed = self.renamed.borrow();
-        let found = renamed.iter().find(|(.., at)| at == span);
-        found.map(|(former, ..)| former.clone())
-    }
-
-    /// One warning for each former name, at its first use, in the order of the file; then the others.
+    /// What it warned of.
     pub(crate) fn warnings(&self) -> Vec<SceneWarning> {
-        let mut renamed = self.renamed.borrow_mut();
-        renamed.sort_by_key(|(.., span)| span.start);
-        let mut known = HashSet::new();
-        let first = renamed
-            .iter()
-            .filter(|(former, current, _)| known.insert((former, current)));
-        let warning = |(former, current, span): &(String, String, Span)| {
-            SceneWarning::renamed(&self.source, former, current, span.clone())
-        };
-        let other = self.other_warnings.take();
-        first.map(warning).chain(other).collect()
+        self.warnings.take()
     }
 
     /// How many there are: a part of the file was read well if its reading did not change this.

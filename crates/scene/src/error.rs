@@ -34,7 +34,7 @@ pub struct SceneError {
     pub related: Vec<SceneError>,
 }
 
-/// What a scene should change, though it is read: it uses a former name, or something that may not be meant. Plain data.
+/// What a scene should change, though it is read: something that may not be meant. Plain data.
 #[derive(Debug, Clone, thiserror::Error, Diagnostic)]
 #[error("{message}")]
 #[diagnostic(severity(Warning))]
@@ -50,17 +50,6 @@ pub struct SceneWarning {
 }
 
 impl SceneWarning {
-    /// `former` stands at `span` of the text and is now called `current`.
-    pub(crate) fn renamed(
-        source: &Source,
-        former: &str,
-        current: &str,
-        span: Range<usize>,
-    ) -> Self {
-        let message = format!("`{former}` is now called `{current}`");
-        Self::at(source, message, "former name", span)
-    }
-
     pub(crate) fn at(source: &Source, message: String, label: &str, span: Range<usize>) -> Self {
         let label = (span, label.to_owned());
         let located = SceneError::with_labels(source, message, None, [label]);

@@ -21,7 +21,7 @@ pub struct SceneFile {
     pub note: Option<String>,
     /// Name and text of the file. After [`with_value`](crate::Scene::with_value) the changed text.
     pub source: Arc<NamedSource<String>>,
-    /// What is read but may not be meant: former names, numbers that look like slips of units. A program should show them to its user.
+    /// What is read but may not be meant: numbers that look like slips of units. A program should show them to its user.
     pub warnings: Vec<SceneWarning>,
     pub(crate) units: Units,
     pub(crate) spans: SceneSpans,

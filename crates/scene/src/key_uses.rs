@@ -90,7 +90,7 @@ pub fn scene_keys() -> Vec<SceneKey> {
     ids.iter().flat_map(of_table).collect()
 }
 
-/// The uses of keys in the text of a scene, in its order; none where it is not valid TOML. Former names count as the current ones.
+/// The uses of keys in the text of a scene, in its order; none where it is not valid TOML.
 pub fn key_uses(text: &str) -> Vec<KeyUse> {
     let Ok(root) = toml::from_str::<Table>(text.trim_start_matches('\u{feff}')) else {
         return Vec::new();
@@ -139,11 +139,7 @@ impl UseFinder<'_> {
         found: &mut Vec<KeyUse>,
     ) {
         for (name, value) in table {
-            let described = schema.keys.iter();
-            let described = described
-                .clone()
-                .find(|key| key.name == *name)
-                .or_else(|| described.clone().find(|key| key.former_name() == name));
+            let described = schema.keys.iter().find(|key| key.name == *name);
             let Some(key) = described.or(schema.named.as_ref()) else {
                 continue;
             };
@@ -195,9 +191,7 @@ impl UseFinder<'_> {
             ValueShape::Table(id) => Some(keys::table(id)),
             ValueShape::Kinds(things) => keys::kinds(things).into_iter().find(|kind| {
                 let key = kind.keys.first();
-                key.is_some_and(|key| {
-                    table.contains_key(&key.name) || table.contains_key(key.former_name())
-                })
+                key.is_some_and(|key| table.contains_key(&key.name))
             }),
             ValueShape::Either(shapes) => {
                 let mut all = shapes
@@ -281,13 +275,13 @@ mod tests {
     fn the_uses_of_a_scene_lead_to_its_values() {
         let text = "[joints]\nA = { revolute = [\"ground.A\", \"bar.A\"] }\nG = { prismatic = [\"bar.A\", \"box.B\"], axis = [1, 0] }\n\
                     [friction]\nA = { coefficient = 0.1, radius = 5 }\nG = { coefficient = 0.2 }\n\
-                    [loads]\nf = { spring = [\"a.b\", \"c.d\"], stiffness = \"2*t\", free = 1 }\n[requests]\nsections = [{ body = \"bar\" }]";
+                    [loads]\nf = { spring = [\"a.b\", \"c.d\"], stiffness = \"2*t\", free-length = 1 }\n[requests]\nsections = [{ body = \"bar\" }]";
         let uses = key_uses(text);
         let of = |id: &str| uses.iter().filter(|u| u.key == id).collect::<Vec<_>>();
         assert_eq!(of("[friction.<pin>] coefficient").len(), 1);
         assert_eq!(of("[friction.<slide>] coefficient").len(), 1);
         assert_eq!(of("spring stiffness")[0].written, WrittenAs::Expression);
-        assert_eq!(of("spring free-length").len(), 1, "by its former name");
+        assert_eq!(of("spring free-length").len(), 1);
         let body = of("sections body");
         assert_eq!(body[0].path[2], PathStep::Index(0));
     }

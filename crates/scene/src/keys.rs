@@ -3,6 +3,7 @@
 use serde::Deserialize;
 use std::collections::HashMap;
 use std::sync::LazyLock;
+use toml::de::DeTable;
 
 #[derive(Deserialize)]
 struct Keys {
@@ -25,6 +26,7 @@ pub(crate) struct TableSchema {
 #[derive(Debug, Deserialize)]
 pub(crate) struct KeySchema {
     pub(crate) name: String,
+    /// Its name before the first release, for the help of an error.
     pub(crate) former: Option<String>,
     #[serde(rename = "value")]
     pub(crate) shape: ValueShape,
@@ -121,12 +123,36 @@ pub(crate) fn kind_ids(things: &str) -> &'static [String] {
     &KEYS.kinds[things]
 }
 
-impl KeySchema {
-    /// Its name before it was renamed; its name if it never was.
-    pub(crate) fn former_name(&self) -> &str {
-        self.former.as_ref().unwrap_or(&self.name)
+/// The schemas that describe the keys of a table which is a value of this shape. A table of one of several kinds has that of its kind.
+pub(crate) fn schemas_of(
+    of: &DeTable<'_>,
+    shape: &'static ValueShape,
+) -> Vec<&'static TableSchema> {
+    match shape {
+        ValueShape::Table(id) => vec![table(id)],
+        ValueShape::Kinds(things) => {
+            let mut kinds = kinds(things);
+            kinds.retain(|kind| of.contains_key(kind.kind_key()));
+            kinds
+        }
+        ValueShape::Either(shapes) => {
+            let each = shapes.iter().flat_map(|shape| schemas_of(of, shape));
+            each.collect()
+        }
+        _ => Vec::new(),
     }
+}
 
+/// The name among `names` of a key that was called `former` before the first release.
+pub(crate) fn renamed<'n>(
+    former: &str,
+    mut names: impl Iterator<Item = &'n str>,
+) -> Option<&'n str> {
+    let keys = || KEYS.tables.values().flat_map(|table| &table.keys);
+    names.find(|name| keys().any(|key| key.name == *name && key.former.as_deref() == Some(former)))
+}
+
+impl KeySchema {
     pub(crate) fn is_one_of(&self) -> bool {
         matches!(self.presence, Some(Presence::OneOf(_)))
     }

@@ -45,8 +45,7 @@
 //! - `[motion]`: none; its `initial-coordinate`: that at assembly; its `initial-velocity`: 0 where loads,
 //!   drives or motion laws can move the mechanism; its `prescribed` and `events`: none.
 //!
-//! Former names of keys are still read, with a warning in [`Scene::warnings`] that names the current one. Numbers that look like slips
-//! of units are warned of there, too.
+//! [`Scene::warnings`] names numbers that look like slips of units.
 //!
 //! Names are made of letters and digits of any script, `_`, `-`, primes and inner spaces. They
 //! hold no dot, so that `body.point` and `joint.component` are unambiguous. Bodies,
@@ -72,7 +71,6 @@ mod error;
 mod events;
 mod expression;
 mod file;
-mod former_keys;
 mod friction;
 mod joints;
 mod key_uses;

@@ -12,7 +12,7 @@ use crate::value::{NumberRule, SignRule, Value};
 use crate::wording::shorten;
 use dwell_geometry::Coordinate;
 use dwell_kinetostatics::{Magnitude, Signal};
-use dwell_laws::{Expression, Interpolation, Law};
+use dwell_laws::{Interpolation, Law};
 use toml::de::DeValue;
 
 /// What the loads, the drives and the events of a scene can name.
@@ -24,25 +24,24 @@ pub(crate) struct Names<'r> {
 
 /// Reads magnitudes.
 pub(crate) struct Magnitudes<C = Coordinate> {
-    /// The signals an expression can name: name, former name that is still read, and signal; none if its coordinate was wrong.
-    signals: Vec<(String, Option<String>, Option<Signal<C>>)>,
+    /// The signals an expression can name; none if its coordinate was wrong.
+    signals: Vec<(String, Option<Signal<C>>)>,
 }
 
 impl<C: AnyCoordinate> Magnitudes<C> {
     pub(crate) fn new(named: &ParsedCoordinates<'_, C>) -> Self {
-        let mut signals = vec![("t".to_owned(), None, Some(Signal::Time))];
+        let mut signals = vec![("t".to_owned(), Some(Signal::Time))];
         for c in &named.list {
-            signals.push((c.name.to_owned(), None, c.coordinate.map(Signal::Value)));
-            let [former, velocity] = ["speed", "velocity"].map(|s| format!("{}.{s}", c.name));
-            let signal = c.coordinate.map(Signal::Velocity);
-            signals.push((velocity, Some(former), signal));
+            signals.push((c.name.to_owned(), c.coordinate.map(Signal::Value)));
+            let velocity = format!("{}.velocity", c.name);
+            signals.push((velocity, c.coordinate.map(Signal::Velocity)));
         }
         Self { signals }
     }
 
-    /// Current names of the signals.
+    /// Names of the signals.
     fn names(&self) -> impl Iterator<Item = &str> + Clone {
-        self.signals.iter().map(|(name, ..)| name.as_str())
+        self.signals.iter().map(|(name, _)| name.as_str())
     }
 
     /// The magnitude that an entry of `fields` is: a number, an expression, or a table.
@@ -67,32 +66,17 @@ impl<C: AnyCoordinate> Magnitudes<C> {
     }
 
     fn expression(&self, value: Value<'_>, what: &str) -> Option<Magnitude<C>> {
-        let text = value.string(what)?;
         let names: Vec<_> = self.names().collect();
-        let former = self.signals.iter().filter_map(|(_, f, _)| f.as_deref());
-        let with_former: Vec<_> = self.names().chain(former).collect();
-        let parsed = match Expression::parse(text, &with_former) {
-            Ok(parsed) => parsed,
-            // The message lists the current names only.
-            Err(_) => expression(value, &names, what)?,
-        }
-        .retain_used();
+        let parsed = expression(value, &names, what)?.retain_used();
         let used = parsed.variables().iter();
-        // Collected before any is missed: every former name is to be reported.
-        let signals: Vec<_> = used.map(|name| self.signal(name, value)?).collect();
-        let signals = signals.into_iter().collect::<Option<Vec<_>>>()?;
+        let signals = used.map(|name| self.signal(name)?).collect::<Option<_>>()?;
         Some(Magnitude::Expression(parsed, signals))
     }
 
-    /// The signal of that name, which `value` uses, if there is one.
-    fn signal(&self, name: &str, value: Value<'_>) -> Option<Option<Signal<C>>> {
-        let named = |former: &Option<String>| former.as_deref() == Some(name);
+    /// The signal of that name, if there is one; none in it where its coordinate was wrong.
+    fn signal(&self, name: &str) -> Option<Option<Signal<C>>> {
         let mut signals = self.signals.iter();
-        let (current, former, signal) = signals.find(|(n, f, _)| n == name || named(f))?;
-        if named(former) {
-            value.log().warn_renamed(name, current, value.span());
-        }
-        Some(*signal)
+        signals.find(|(n, _)| n == name).map(|(_, signal)| *signal)
     }
 
     fn table(&self, entry: &Entry<'_>, what: &str, rule: &NumberRule<'_>) -> Option<Magnitude<C>> {
@@ -122,7 +106,7 @@ impl<C: AnyCoordinate> Magnitudes<C> {
 
     fn of(&self, value: Value<'_>, what: &str) -> Option<Signal<C>> {
         let name = value.string(format_args!("`of` in {what}"))?;
-        if let Some(signal) = self.signal(name, value) {
+        if let Some(signal) = self.signal(name) {
             return signal;
         }
         let help = value.log().choices(name, "signals", self.names());

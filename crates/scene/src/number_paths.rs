@@ -4,8 +4,7 @@
 use crate::bodies::Bodies;
 use crate::diagnostics::Span;
 use crate::dimensions::Dimensions;
-use crate::former_keys::schemas_of;
-use crate::keys::{KeySchema, ValueShape, table};
+use crate::keys::{ValueShape, schemas_of, table};
 use crate::spans::SceneLocation;
 use crate::table_reader::TableReader;
 use crate::value::written_number;
@@ -17,10 +16,8 @@ use toml::de::DeValue;
 /// A number of the scene that may be changed, and where it is written.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SceneNumber {
-    /// The keys that lead to it, by their current names.
+    /// The keys that lead to it.
     pub(crate) path: String,
-    /// The same by their former names; equal to `path` where no key was renamed.
-    pub(crate) former_path: String,
     /// As written, in the scene's unit.
     pub(crate) value: f64,
     pub(crate) span: Span,
@@ -42,16 +39,15 @@ const SECTIONS: [&str; 9] = [
 ];
 
 /// The numbers outside the bodies, section by section: `loads.brake.damping`, `motion.initial-velocity.phi`,
-/// `joints.guide.axis[0]`. The keys of `root` have their current names.
+/// `joints.guide.axis[0]`.
 pub(crate) fn section_numbers(root: &TableReader<'_>) -> Vec<SceneNumber> {
     let mut found = Vec::new();
     for section in SECTIONS {
         if let (Some(entry), Some(key)) = (root.get(section), table("scene").key(section)) {
-            let paths = [section, key.former_name()].map(str::to_owned);
-            let location = SceneLocation::Whole;
+            let (location, path) = (SceneLocation::Whole, section.to_owned());
             gather(
                 location,
-                paths,
+                path,
                 entry.value.tree,
                 Some(&key.shape),
                 &mut found,
@@ -70,9 +66,9 @@ pub(crate) fn body_numbers<D: Dimensions>(
     for (k, (body, entry)) in bodies.list.iter().zip(&fields.entries).enumerate() {
         let (id, body_table) = (BodyId(k), entry.value.get());
         let mut add = |location, keys: String, value: Option<&Spanned<DeValue<'_>>>| {
-            let paths = [(); 2].map(|()| format!("{}.{keys}", body.name));
+            let path = format!("{}.{keys}", body.name);
             if let Some(value) = value {
-                gather(location, paths, value, None, &mut found);
+                gather(location, path, value, None, &mut found);
             }
         };
         for (k, (name, _)) in body.points.iter().enumerate() {
@@ -93,10 +89,10 @@ pub(crate) fn body_numbers<D: Dimensions>(
     found
 }
 
-/// Appends the numbers below `value`, whose paths by current and former names are `paths`.
+/// Appends the numbers below `value`, which is at `path`.
 fn gather(
     location: SceneLocation,
-    paths: [String; 2],
+    path: String,
     value: &Spanned<DeValue<'_>>,
     shape: Option<&'static ValueShape>,
     found: &mut Vec<SceneNumber>,
@@ -107,27 +103,20 @@ fn gather(
             for (key, value) in table {
                 let name = key.get_ref().as_ref();
                 let schema = schemas.iter().find_map(|schema| schema.key(name));
-                // A name of the scene's own has no former one.
-                let described = schema.filter(|s| s.name == name);
-                let former = described.map_or(name, KeySchema::former_name);
-                let [path, former_path] = &paths;
-                let paths = [format!("{path}.{name}"), format!("{former_path}.{former}")];
-                gather(location, paths, value, schema.map(|s| &s.shape), found);
+                let path = format!("{path}.{name}");
+                gather(location, path, value, schema.map(|s| &s.shape), found);
             }
         }
         DeValue::Array(array) => {
             for (i, value) in array.iter().enumerate() {
-                let paths = paths.each_ref().map(|path| format!("{path}[{i}]"));
-                gather(location, paths, value, None, found);
+                gather(location, format!("{path}[{i}]"), value, None, found);
             }
         }
         number => {
             let span = value.span();
             if let Some(value) = written_number(number).filter(|n| n.is_finite()) {
-                let [path, former_path] = paths;
                 found.push(SceneNumber {
                     path,
-                    former_path,
                     value,
                     span,
                     location,

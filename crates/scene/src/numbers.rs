@@ -31,13 +31,6 @@ impl SceneFile {
         self.find_number(path).map(|n| n.value)
     }
 
-    /// The current path of a number whose keys were renamed since `path` was written; none where `path` is current or leads nowhere.
-    pub fn renamed_path(&self, path: &str) -> Option<&str> {
-        let mut numbers = self.section_numbers.iter();
-        let number = numbers.find(|n| n.former_path == path && n.path != path)?;
-        Some(&number.path)
-    }
-
     /// The unit of the number at `path`, such as `mm` or `kg m2`; empty if there is no such number.
     pub fn unit_of(&self, path: &str) -> &str {
         match self.location_of(path) {
@@ -90,7 +83,7 @@ impl SceneFile {
     /// The number at a path; of a body that is called as a section is, before the section's.
     fn find_number(&self, path: &str) -> Result<&SceneNumber, SceneError> {
         let mut all = self.body_numbers.iter().chain(&self.section_numbers);
-        let found = all.find(|n| n.path == path || n.former_path == path);
+        let found = all.find(|n| n.path == path);
         found.ok_or_else(|| {
             let all = self.body_numbers.iter().chain(&self.section_numbers);
             let (message, help) = no_number(path, all);

@@ -1,7 +1,7 @@
 //! Tables of the file, and their entries by key.
 
 use crate::diagnostics::{Diagnostics, Span};
-use crate::keys::TableSchema;
+use crate::keys::{self, TableSchema};
 use crate::spans::SceneLocation;
 use crate::units::Units;
 use crate::value::{Context, NumberRule, Value};
@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue};
 /// A key of a table with its value.
 #[derive(Debug, Clone)]
 pub(crate) struct Entry<'a> {
-    /// The current name of the key.
+    /// The key.
     pub(crate) name: &'a str,
     pub(crate) key: Span,
     pub(crate) value: Value<'a>,
@@ -23,10 +23,9 @@ impl<'a> Entry<'a> {
         self.key.start..self.value.span().end
     }
 
-    /// The key as the file has it: its former name, where the file uses that.
+    /// The key in a message.
     pub(crate) fn written(&self) -> String {
-        let former = self.log().former_name_at(&self.key);
-        former.unwrap_or_else(|| shorten(self.name))
+        shorten(self.name)
     }
 
     pub(crate) fn log(&self) -> &'a Diagnostics {
@@ -182,7 +181,10 @@ impl<'a> TableReader<'a> {
         kind: &str,
         names: impl Iterator<Item = &'n str> + Clone,
     ) {
-        let help = self.log().choices(entry.name, kind, names);
+        let help = match keys::renamed(entry.name, names.clone()) {
+            Some(name) => format!("it is called `{name}`"),
+            None => self.log().choices(entry.name, kind, names),
+        };
         let message = format!("unknown key `{}` in {}", shorten(entry.name), self.what);
         entry.reject::<()>(message, "unknown key", help);
     }

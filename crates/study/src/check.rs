@@ -41,7 +41,7 @@ pub fn describe_scene(scene: &Scene) -> Result<String, StudyError> {
 fn description(scene: &Scene, record: &mut Record) -> Result<String, StudyError> {
     let mechanism = &scene.mechanism;
     let model = loaded_model(scene)?;
-    let notes = check_variables(scene, &model)?;
+    check_variables(scene, &model)?;
     let plan = model.plan();
     let parts = [mechanism.bodies.len() - 1, mechanism.joints.len()];
     let actuators = mechanism.actuators.iter().map(|a| a.name.as_str());
@@ -57,7 +57,7 @@ fn description(scene: &Scene, record: &mut Record) -> Result<String, StudyError>
     if let Some(note) = &scene.note {
         text += &format!("  note: {note}\n");
     }
-    Ok(text + &notes)
+    Ok(text)
 }
 
 /// The title, the numbers of moving bodies and of joints, and the degrees of freedom with what drives them.

@@ -31,7 +31,6 @@ pub mod bodies;
 mod branch_note;
 pub mod estimate;
 pub mod explain;
-pub mod former_names;
 pub mod models;
 pub mod number_format;
 #[cfg(feature = "output")]

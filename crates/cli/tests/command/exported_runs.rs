@@ -105,25 +105,6 @@ fn careless_exports_are_refused() {
         assert_eq!(done.status, Some(status), "{arguments:?}: {text}");
         assert!(text.contains(message), "{arguments:?}: {text}");
     }
-    // As it was written before two files followed.
-    let former = dir.run(&[
-        "reduce",
-        "dwell.toml",
-        "--table-accuracy",
-        "1e-6",
-        "--from",
-        "0",
-        "--to",
-        "1",
-        "--pictures",
-        "none",
-    ]);
-    assert_eq!(former.status, Some(0), "{}", former.err);
-    assert!(
-        former.err.contains("--from is now --table-from"),
-        "{}",
-        former.err
-    );
 }
 
 /// The scene that `reduce --from` writes moves as the mechanism that the runs are of, with its reactions.

@@ -367,7 +367,7 @@ fn machines() {
     let mut group = Group::new();
     group.scene("nothing drives it", "cycle", four_bar_with(&[]));
     let drive = |change: &str, engine: &str| format!("{change}\n[drives]\nengine = {{ {engine} }}");
-    let action = "action = \"phi\", magnitude = 2.0";
+    let action = "applied-force = \"phi\", magnitude = 2.0";
     let limited = [LIMITED[0], LIMITED[1], LIMITED[2]];
     let text = drive("duration = 2", action);
     let limited: Vec<_> = limited
@@ -379,7 +379,10 @@ fn machines() {
         "cycle",
         four_bar_with(&limited),
     );
-    let text = drive("duration = 2", "action = \"phi\", magnitude = \"2 + t\"");
+    let text = drive(
+        "duration = 2",
+        "applied-force = \"phi\", magnitude = \"2 + t\"",
+    );
     group.scene(
         "a drive that follows time",
         "cycle",

@@ -9,8 +9,7 @@ fn tables() {
     let mut group = Group::new();
     group.dir.put("scene.toml", four_bar_with(&[]));
     group.dir.put("limited.toml", four_bar_with(&LIMITED));
-    let spring =
-        "\n[loads]\nspring = { torsion = [\"ground\", \"crank\"], stiffness = 2, free = 0 }\n";
+    let spring = "\n[loads]\nspring = { torsion-spring = [\"ground\", \"crank\"], stiffness = 2, free-angle = 0 }\n";
     group.dir.put("winds.toml", four_bar_with(&[]) + spring);
     for accuracy in ["0", "1e-20", "1", "-1e-9", "fine", "nan"] {
         group.refused(

@@ -7,7 +7,6 @@ mod branch_hints;
 mod early_stops;
 mod errors;
 mod forces;
-mod former_names;
 mod gears;
 mod honest_estimates;
 mod machines;

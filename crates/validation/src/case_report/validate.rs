@@ -104,7 +104,7 @@ fn validate_case(
     Ok(Validation {
         source_kinds: reference.kinds.clone(),
         outcome: Outcome {
-            summary: summary(scene, &analysis) + &reference.notes + &reference.tolerances.notes,
+            summary: summary(scene, &analysis),
             files,
             record,
             findings: analysis.findings,

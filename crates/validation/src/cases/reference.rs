@@ -4,17 +4,14 @@ mod kinds;
 mod states;
 mod tolerances;
 
-use crate::cases::state_quantity::current_name;
 use crate::error::ValidationError;
 use dwell_findings::Finding;
 use dwell_geometry::{BodyId, Vec2};
 use dwell_scene::Scene;
-use dwell_study::former_names;
 use dwell_verify::checks::{PublishedPoint, PublishedSample};
 pub(crate) use kinds::{SourceKind, SourceKinds};
 use serde_json::{Map, Value};
 use states::{ReferenceStates, read_states};
-use std::collections::BTreeSet;
 use std::path::Path;
 use tolerances::Tolerances;
 
@@ -43,8 +40,6 @@ pub(crate) struct Reference {
     pub(crate) published_states: Option<ReferenceStates>,
     /// By finding.
     pub(crate) tolerances: Tolerances,
-    /// A line for each former name of a quantity in it.
-    pub(crate) notes: String,
     /// The file.
     path: String,
 }
@@ -91,8 +86,6 @@ const KEYS: [&str; 13] = [
     "published",
     "confirmed",
 ];
-/// The former name of `confirmed`, which is still read.
-const FORMER_CONFIRMED: &str = "truths";
 /// The keys of a sample besides points, such as `P_m`, and angles, such as `theta_guide_rad`.
 const SAMPLE_KEYS: [&str; 5] = ["phi_rad", "phi_deg", "m1_kg_m2", "half_dm1", "reactions"];
 
@@ -111,16 +104,14 @@ impl Reference {
         let bytes = std::fs::read(&path).map_err(|e| wrong(format!("cannot be read: {e}")))?;
         let text = String::from_utf8(bytes).map_err(|_| wrong("is not UTF-8 text".to_owned()))?;
         let text = text.trim_start_matches('\u{feff}');
-        let mut value: Value = toml::from_str(text).map_err(|e| {
+        let value: Value = toml::from_str(text).map_err(|e| {
             let before = e.span().and_then(|span| text.get(..span.start));
             let line = before.map_or(1, |before| before.lines().count().max(1));
             let message = e.message().trim_end();
             wrong(format!("line {line}: not valid TOML: {message}"))
         })?;
-        let notes = rename_quantities(&mut value, scene);
         let read = Self::from_value(&value, scene).map_err(wrong)?;
         Ok(Self {
-            notes,
             path: path.display().to_string(),
             ..read
         })
@@ -137,9 +128,7 @@ impl Reference {
     }
 
     fn from_value(value: &Value, scene: &Scene) -> Result<Self, String> {
-        let mut fields = object(value, "the file")?.clone();
-        fields.remove(FORMER_CONFIRMED);
-        check_keys(&fields, &KEYS)?;
+        check_keys(object(value, "the file")?, &KEYS)?;
         let has_values = |s: &Value| s.get("values").is_some();
         let all = list(value, "samples")?;
         let (states, samples) = if all.iter().any(has_values) {
@@ -179,28 +168,6 @@ impl Reference {
             ..Self::default()
         })
     }
-}
-
-/// Gives quantities that are called by a former name their current one, and returns a line for each of them.
-fn rename_quantities(value: &mut Value, scene: &Scene) -> String {
-    let mut notes = BTreeSet::new();
-    for states in ["/samples", "/published/samples", "/free_motion/states"] {
-        let states = value.pointer_mut(states).and_then(Value::as_array_mut);
-        for state in states.into_iter().flatten() {
-            let Some(values) = state.get_mut("values").and_then(Value::as_object_mut) else {
-                continue;
-            };
-            let rename = |(name, value): (String, Value)| match current_name(scene, &name) {
-                Some(current) => {
-                    notes.insert(former_names::note(&name, [&current]));
-                    (current, value)
-                }
-                None => (name, value),
-            };
-            *values = std::mem::take(values).into_iter().map(rename).collect();
-        }
-    }
-    notes.into_iter().collect()
 }
 
 /// The period of a free motion, s, and states along it.
@@ -403,23 +370,5 @@ fn point(key: &str, at: &Value, scene: &Scene) -> Result<PublishedPoint, String>
             position: Vec2 { x, y },
         }),
         _ => Err(format!("`{key}` is not a pair of numbers: {at}")),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use serde_json::json;
-
-    #[test]
-    fn former_names_of_quantities_become_current_ones() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/cam");
-        let scene = Scene::read(folder.join("scene.toml")).expect("a scene");
-        let mut value =
-            json!({ "samples": [{ "values": { "rise.speed": 1, "phi.action": 2, "phi": 3 } }] });
-        let notes = rename_quantities(&mut value, &scene);
-        let expected = json!({ "rise.velocity": 1, "phi.actuator_force": 2, "phi": 3 });
-        assert_eq!(value["samples"][0]["values"], expected);
-        assert_eq!(notes.lines().count(), 2, "{notes}");
     }
 }

@@ -4,7 +4,6 @@ use crate::cases::model_states::StateValues;
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, Component, Coordinate, JointId, Vec2};
 use dwell_scene::Scene;
-use dwell_study::former_names;
 
 /// The kinds of quantities, as findings call them: each is compared relative to the largest of its unit.
 pub(crate) const KINDS: [&str; 5] = [
@@ -28,14 +27,6 @@ pub(crate) enum StateQuantity {
     Reaction(usize, Component),
     /// An actuator force.
     ActuatorForce(usize),
-}
-
-/// The name that a quantity has now, if `name` is one that it had before.
-pub(crate) fn current_name(scene: &Scene, name: &str) -> Option<String> {
-    if StateQuantity::find(scene, name).is_some() {
-        return None;
-    }
-    former_names::current_columns(name).find(|name| StateQuantity::find(scene, name).is_some())
 }
 
 /// The index of a word.

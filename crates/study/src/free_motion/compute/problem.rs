@@ -29,7 +29,7 @@ pub struct FreeMotionProblem<'a> {
     pub(crate) spec: &'a FreeMotionSpec,
     /// The model with all loads and reactions, for outputs.
     pub output_model: Model,
-    /// A line for each requested column that is called by a former name.
+    /// A line for each body that is far from its approximate angle.
     pub(crate) notes: String,
     /// The equations of motion.
     pub machine: Machine,
@@ -48,8 +48,8 @@ impl<'a> FreeMotionProblem<'a> {
         spec: &'a FreeMotionSpec,
     ) -> Result<Self, StudyError> {
         let output_model = loaded_model(loaded_scene)?;
-        let notes = check_variables(scene, &output_model)?
-            + &branch_note(loaded_scene, output_model.plan());
+        check_variables(scene, &output_model)?;
+        let notes = branch_note(loaded_scene, output_model.plan());
         let machine = build_machine(scene, spec, &[])?;
         let reactions = &scene.requests.reactions;
         let impact_machine =

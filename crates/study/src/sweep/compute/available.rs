@@ -1,6 +1,5 @@
 //! The quantities that a scene may be swept for, in the order of their columns.
 
-use crate::former_names;
 use crate::number_format::{coordinate_unit, force_unit};
 use crate::reduce::compute::inertia_units;
 use crate::sweep::compute::motions::NamedUnit;
@@ -20,7 +19,6 @@ pub(super) struct Available {
 impl Available {
     fn add(&mut self, name: String, unit: &str, kind: ResultKind, index: usize) {
         self.quantities.push(SweepQuantity {
-            former: former_names::former_result(&name),
             name,
             unit: unit.to_owned(),
             kind,

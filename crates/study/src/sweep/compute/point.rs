@@ -1,7 +1,6 @@
 //! One point of a sweep: the scene with its input values, and the results.
 
 use crate::explain::{StudyError, SweepError};
-use crate::former_names;
 use crate::sweep::compute::SweptScene;
 use crate::sweep::compute::available::Available;
 use crate::sweep::compute::extremes::ExtremeValues;
@@ -38,8 +37,6 @@ pub(crate) enum ResultKind {
 #[derive(Debug)]
 pub(crate) struct SweepQuantity {
     pub(crate) name: String,
-    /// The name it had before it was renamed, which a request may still use.
-    pub(super) former: Option<String>,
     pub(crate) unit: String,
     pub(crate) kind: ResultKind,
     /// Its index among the results of its kind.
@@ -66,15 +63,9 @@ impl SweepQuantity {
         matches!(self.kind, Inertia | Reaction | FreeReaction | ActuatorForce)
     }
 
-    /// Whether a request names it: its whole name, the part before one of its dots, or its former name.
+    /// Whether a request names it: its whole name, or the part before one of its dots.
     fn matches(&self, request: &str) -> bool {
-        is_prefix_of(request, &self.name) || self.matches_former(request)
-    }
-
-    fn matches_former(&self, request: &str) -> bool {
-        let former = self.former.as_deref();
-        former.is_some_and(|former| is_prefix_of(request, former))
-            && !is_prefix_of(request, &self.name)
+        is_prefix_of(request, &self.name)
     }
 }
 
@@ -82,7 +73,7 @@ impl SweepQuantity {
 #[derive(Debug)]
 pub struct RequestedQuantities {
     pub(crate) quantities: Vec<SweepQuantity>,
-    /// A line for each request that uses a former name, and for each body far from its approximate angle.
+    /// A line for each body far from its approximate angle.
     pub(crate) notes: String,
 }
 
@@ -110,7 +101,7 @@ impl RequestedQuantities {
     pub(crate) fn new(scene: &impl SweptScene, requests: &[String]) -> Result<Self, StudyError> {
         let Available {
             mut quantities,
-            notes: of_scene,
+            notes,
         } = available_quantities(scene)?;
         for request in requests {
             if !quantities.iter().any(|q| q.matches(request)) {
@@ -128,12 +119,6 @@ impl RequestedQuantities {
             let message = "this scene has no results to sweep: add a [prescribed] motion or a [coordinate-sweep]";
             return Err(SweepError::Design(message.to_owned()).into());
         }
-        let notes = requests.iter().map(|request| {
-            let renamed = quantities.iter().filter(|q| q.matches_former(request));
-            former_names::note(request, renamed.map(|q| &q.name))
-        });
-        let mut notes: String = notes.collect();
-        notes += &of_scene;
         quantities.retain(|q| match requests {
             [] => q.kind.on_request().is_none(),
             requests => requests.iter().any(|request| q.matches(request)),

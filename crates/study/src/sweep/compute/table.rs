@@ -15,7 +15,7 @@ pub struct ComputedSweep {
     pub table: Table,
     /// By point: why not all results could be computed.
     pub messages: Vec<Option<String>>,
-    /// A line for each requested result that is called by a former name.
+    /// A line for each body far from its approximate angle.
     pub notes: String,
 }
 

@@ -58,8 +58,6 @@ pub(crate) enum Quantity {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Column {
     pub(crate) name: String,
-    /// The name it had before it was renamed, unless another column has that name now.
-    pub(crate) former: Option<String>,
     pub(crate) unit: &'static str,
     pub(crate) quantity: Quantity,
     /// Its meaning, where the name alone does not say.
@@ -106,21 +104,10 @@ impl Quantity {
 }
 
 impl Column {
-    /// Whether `request` names it: by its name, the first part of it, or its former name.
-    pub(crate) fn matches(&self, request: &str) -> bool {
-        self.names_it(request, &self.name) || self.matches_former(request)
-    }
-
-    /// Whether `request` names it by its former name.
-    pub(crate) fn matches_former(&self, request: &str) -> bool {
-        let former = self.former.as_deref();
-        former.is_some_and(|former| self.names_it(request, former))
-            && !self.names_it(request, &self.name)
-    }
-
-    /// Whether `request` is `name` or the first part of it. A column that has no value in some positions must be
+    /// Whether `request` is its name or the first part of it. A column that has no value in some positions must be
     /// named itself: a body's name does not ask for its pole.
-    fn names_it(&self, request: &str, name: &str) -> bool {
+    pub(crate) fn matches(&self, request: &str) -> bool {
+        let name = &self.name;
         let optional_suffix = match self.quantity {
             Quantity::MechanicalAdvantage(..) => 0,
             Quantity::Pole(..) => ".x".len(),
@@ -208,7 +195,6 @@ impl ColumnList {
     ) {
         self.0.push(Column {
             name: name.into(),
-            former: None,
             unit,
             quantity,
             meaning: meaning.into(),

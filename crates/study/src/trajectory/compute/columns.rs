@@ -1,6 +1,5 @@
 //! The columns of a trajectory table, each with its unit and meaning.
 
-use crate::former_names::former_column;
 use crate::trajectory::compute::{Column, ColumnList, Quantity, dyads, units};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{
@@ -8,7 +7,6 @@ use dwell_geometry::{
 };
 use dwell_kinetostatics::{Load, LoadKind, Model};
 use dwell_scene::Scene;
-use std::collections::HashSet;
 
 const BODY_ANGLE: [(&str, &str); 3] = [
     (
@@ -34,12 +32,7 @@ pub(crate) fn all_columns(scene: &Scene, model: &Model, timed: bool) -> Vec<Colu
     columns.known_reactions();
     columns.loads();
     columns.totals();
-    let mut list = columns.list.0;
-    let names: HashSet<String> = list.iter().map(|c| c.name.clone()).collect();
-    for column in &mut list {
-        column.former = former_column(&column.name).filter(|name| !names.contains(name));
-    }
-    list
+    columns.list.0
 }
 
 /// Collects columns.

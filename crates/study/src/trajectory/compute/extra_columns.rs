@@ -48,7 +48,6 @@ fn columns_of_integration<'a>(
     all.extend(further);
     let column = |(k, (name, unit, meaning)): (usize, (String, _, &str))| Column {
         name,
-        former: None,
         unit,
         quantity: Quantity::Extra(k),
         meaning: meaning.to_owned(),

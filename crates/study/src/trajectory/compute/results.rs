@@ -391,7 +391,7 @@ pub struct ComputedTrajectory<'a> {
     pub table: Table,
     /// Why the trajectory ended early, if it did.
     pub early_stop: Option<StudyError>,
-    /// A line for each requested column that is called by a former name.
+    /// A line for each body that is far from its approximate angle.
     pub notes: String,
 }
 
@@ -419,7 +419,8 @@ pub(crate) fn compute_trajectory_in<'a>(
     progress: Progress<'_>,
 ) -> Result<ComputedTrajectory<'a>, StudyError> {
     let model = loaded_model(scene)?;
-    let notes = check_variables(scene, &model)? + &branch_note(scene, model.plan());
+    check_variables(scene, &model)?;
+    let notes = branch_note(scene, model.plan());
     let followed = FollowedScene::in_plane(scene, model.plan());
     let trajectory = Trajectory::new(&followed, analysis, points)?;
     let along = (trajectory, None);

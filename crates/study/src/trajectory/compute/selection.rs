@@ -2,7 +2,6 @@
 //! others.
 
 use crate::explain::{StudyError, scene_error};
-use crate::former_names;
 use crate::models::{build_machine, compile_model, requested_reaction_bodies, with_drive_loads};
 use crate::trajectory::compute::{Column, all_columns, extra_columns, is_prefix_of};
 use dwell_geometry::{BodyId, JointId};
@@ -33,20 +32,17 @@ fn columns_of_all_analyses(scene: &Scene, model: &Model) -> Result<Vec<Column>, 
     Ok(columns)
 }
 
-/// Rejects requested names that select no column of any analysis, and returns a line for each former name.
+/// Rejects requested names that select no column of any analysis.
 ///
 /// # Errors
 /// [`StudyError::Scene`] at the first of them.
-pub(crate) fn check_variables(scene: &Scene, model: &Model) -> Result<String, StudyError> {
+pub(crate) fn check_variables(scene: &Scene, model: &Model) -> Result<(), StudyError> {
     let Some(variables) = &scene.requests.variables else {
-        return Ok(String::new());
+        return Ok(());
     };
     let columns = columns_of_all_analyses(scene, model)?;
-    let mut notes = String::new();
     for (k, name) in variables.iter().enumerate() {
         if columns.iter().any(|c| c.matches(name)) {
-            let renamed = columns.iter().filter(|c| c.matches_former(name));
-            notes += &former_names::note(name, renamed.map(|c| &c.name));
             continue;
         }
         if let Some(error) = indeterminate_error(scene, model, k, name) {
@@ -57,7 +53,7 @@ pub(crate) fn check_variables(scene: &Scene, model: &Model) -> Result<String, St
         let help = suggestion(name, &columns);
         return Err(scene_error(scene, message, help, [place]));
     }
-    Ok(notes)
+    Ok(())
 }
 
 /// The error of a request for a statically indeterminate reaction.

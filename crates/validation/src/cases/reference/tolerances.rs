@@ -4,30 +4,6 @@ use super::{object, parse};
 use dwell_findings::Finding;
 use serde_json::Value;
 
-/// Keys of findings that were renamed, with the new ones; a case may still use them.
-const FORMER_KEYS: [(&str, &str); 20] = [
-    ("balance-force", "momentum-force"),
-    ("balance-moment", "momentum-moment"),
-    ("bodies-force", "newton-force"),
-    ("bodies-moment", "euler-moment"),
-    ("convergence-bdf", "drift-convergence-bdf"),
-    ("curvature", "half-ddm"),
-    ("motion-actions", "motion-actuator-forces"),
-    ("period-event", "period-integrated"),
-    ("period-slope", "period-convergence"),
-    ("periodic-speed-bdf", "periodic-velocity-bdf"),
-    ("periodic-speed-tsit45", "periodic-velocity-tsit45"),
-    ("published-actions", "published-actuator-forces"),
-    ("published-names", "published-unknown-names"),
-    ("reference-actions", "reference-actuator-forces"),
-    ("reference-names", "reference-unknown-names"),
-    ("state-balance", "state-momentum"),
-    ("state-differenced", "state-newton-euler-differences"),
-    ("state-inertia", "state-mass-matrix"),
-    ("state-kinetic", "state-kinetic-energy"),
-    ("state-newton", "state-newton-euler"),
-];
-
 /// How the keys of findings over written files begin.
 const WRITTEN_PREFIX: &str = "written-";
 
@@ -35,8 +11,6 @@ const WRITTEN_PREFIX: &str = "written-";
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Tolerances {
     by_key: Vec<(String, f64)>,
-    /// A line for each former key that was read, naming the current one.
-    pub(crate) notes: String,
 }
 
 impl Tolerances {
@@ -51,12 +25,7 @@ impl Tolerances {
                     "tolerances: `{key}` is not a number from zero on: {value}"
                 ));
             };
-            let former = FORMER_KEYS.iter().find(|(former, _)| former == key);
-            let key = former.map_or(key.as_str(), |&(former, current)| {
-                tolerances.notes += &format!("  note: tolerance `{former}` is now `{current}`\n");
-                current
-            });
-            tolerances.by_key.push((key.to_owned(), tolerance));
+            tolerances.by_key.push((key.clone(), tolerance));
         }
         Ok(tolerances)
     }
@@ -121,16 +90,6 @@ mod tests {
         assert_eq!(
             all.iter().map(|f| f.pass).collect::<Vec<_>>(),
             [false, true, false]
-        );
-    }
-
-    #[test]
-    fn a_former_key_is_read_with_a_note() {
-        let read = Tolerances::read(&json!({ "state-newton": 1e-15 })).unwrap();
-        assert_eq!(read.by_key, [("state-newton-euler".to_owned(), 1e-15)]);
-        assert_eq!(
-            read.notes,
-            "  note: tolerance `state-newton` is now `state-newton-euler`\n"
         );
     }
 
