@@ -261,8 +261,9 @@ def accuracy_kept(run):
         return None
     wanted = run.arguments[run.arguments.index("--accuracy") + 1]
     wanted = {"draft": 1e-3, "standard": 1e-6, "precise": 1e-9, "reference": 1e-10}.get(wanted) or float(wanted)
-    line = re.search(r"estimated errors over the whole motion: (.*)", run.out)
-    estimates = re.findall(rf"({NUMBER}) (?:in|of) the", line[1]) if line else []
+    # Each error is in its own unit of a coordinate, or a part of the largest.
+    line = re.search(r"estimated errors? over the whole motion: (.*)", run.out)
+    estimates = re.findall(rf"({NUMBER}) (?:\S+ in|in the|of the)", line[1]) if line else []
     if not estimates:
         return "status 0 and no estimated error"
     # Two digits are printed.
