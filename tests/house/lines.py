@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Counts the lines of code in crates/*/src: no tests, no documentation, no comments, no blank lines.
+"""Counts the lines of code in crates/*/src: no tests, no documentation, no comments, no blank lines; in a second column those of Python,
+JavaScript, style and templates in other languages (their comments count), which includes the programs in tests/ and validation/.
 
     python3 tests/house/lines.py             # this checkout, crate by crate
     python3 tests/house/lines.py FOLDER      # another checkout
@@ -32,12 +33,27 @@ def lines_of(path, left_out):
     return sum(1 for line in text.split("\n") if line.strip())
 
 
-total = 0
+OTHERS = {".py", ".js", ".mjs", ".c", ".h", ".m", ".css", ".html"}
+# Made or fetched, not written.
+MADE = {"node_modules", "target", "__pycache__"}
+
+
+def others_of(folder):
+    paths = (p for p in folder.rglob("*") if p.suffix in OTHERS and not MADE & set(p.parts[len(folder.parts):]))
+    return sum(1 for path in paths for line in path.read_text(encoding="utf-8").splitlines() if line.strip())
+
+
+total, others = 0, 0
 for crate in sorted(TOP.glob("crates/*/src")):
     left_out, counts = [], {}
     for path in sorted(crate.rglob("*.rs")):
         counts[path] = lines_of(path, left_out)
     counts = {p: n for p, n in counts.items() if not any(p == out or out in p.parents for out in left_out)}
-    print(f"{sum(counts.values()):6} {crate.parent.name}")
-    total += sum(counts.values())
-print(f"{total:6} in all")
+    other = others_of(crate.parent)
+    print(f"{sum(counts.values()):6} {other:6} {crate.parent.name}")
+    total, others = total + sum(counts.values()), others + other
+for name in ("docs", "tests", "validation"):
+    other = others_of(TOP / name)
+    print(f"{0:6} {other:6} {name}")
+    others += other
+print(f"{total:6} {others:6} in all")
