@@ -63,7 +63,7 @@ const FINE: Options = Options {
 #[test]
 fn a_damped_flywheel() {
     let scene =
-        wheel_scene("drag = { torsion-damper = [\"ground\", \"wheel\"], constant = 0.003 }");
+        wheel_scene("drag = { rotational-damper = [\"ground\", \"wheel\"], damping = 0.003 }");
     let push = drive(&scene, DriveKind::AppliedForce(Magnitude::Constant(-0.06)));
     let machine = machine(&scene, &[], &[push]);
     for method in [Method::Tsit45, Method::Bdf] {
@@ -217,7 +217,7 @@ impl Windmill {
     }
 
     fn machine() -> Machine {
-        let law = format!("{PUSH} + {SWAY}*sin(phi) - {DRAG}*phi.speed^2");
+        let law = format!("{PUSH} + {SWAY}*sin(phi) - {DRAG}*phi.velocity^2");
         let scene = wheel_scene(&format!(
             "wind = {{ torque = \"wheel\", magnitude = \"{law}\" }}"
         ));
@@ -391,10 +391,11 @@ fn cycles_that_there_are_not() {
         matches!(time_dependent, DynamicsError::NoCycle { .. }),
         "{time_dependent}"
     );
-    let wound = "s = { torsion = [\"ground\", \"wheel\"], stiffness = 1.0, free = 0.0 }";
+    let wound =
+        "s = { torsion-spring = [\"ground\", \"wheel\"], stiffness = 1.0, free-angle = 0.0 }";
     let wound = reason(&wheel_scene(wound), &[], 3.0);
     assert!(matches!(wound, DynamicsError::NoCycle { .. }), "{wound}");
-    let hill = "m = { torque = \"wheel\", magnitude = \"-2*sin(phi) - 0.1*phi.speed\" }";
+    let hill = "m = { torque = \"wheel\", magnitude = \"-2*sin(phi) - 0.1*phi.velocity\" }";
     let hill = reason(&wheel_scene(hill), &[], 3.0);
     assert!(matches!(hill, DynamicsError::ComesToRest { .. }), "{hill}");
 }

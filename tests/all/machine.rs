@@ -207,9 +207,9 @@ fn a_double_pendulum_by_hand() {
 pub(crate) fn everything() -> (Machine, Vec<f64>) {
     let text = DOUBLE.to_owned()
         + r#"
-spring = { spring = ["ground.A", "two.B"], stiffness = "40 + 5*sin(p)*q.speed", free = 0.1 }
-drag = { torsion-damper = ["one", "two"], constant = 0.3 }
-push = { torque = "two", magnitude = { table = [[-4, 1], [0, 2], [4, -1]], of = "q.speed" } }
+spring = { spring = ["ground.A", "two.B"], stiffness = "40 + 5*sin(p)*q.velocity", free-length = 0.1 }
+drag = { rotational-damper = ["one", "two"], damping = 0.3 }
+push = { torque = "two", magnitude = { table = [[-4, 1], [0, 2], [4, -1]], of = "q.velocity" } }
 "#;
     let scene = parse(&text);
     let friction = |name: &str, j: usize| Load {

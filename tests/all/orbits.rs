@@ -196,7 +196,7 @@ slide = { prismatic = ["ground.O", "block.P"], axis = [1, 0] }
 [actuators.s]
 length = "slide"
 [loads]
-spring = { spring = ["ground.W", "block.P"], stiffness = 50.0, free = 1.25 }
+spring = { spring = ["ground.W", "block.P"], stiffness = 50.0, free-length = 1.25 }
 "#,
     );
     let machine = machine(&scene, &[], &[]);

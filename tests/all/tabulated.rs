@@ -33,7 +33,7 @@ fn full_machine(scene: &Scene) -> Machine {
 const GRAVITY_AND_SPRING: &str = r#"
 [loads]
 weight = { gravity = [0, -9.81] }
-spring = { spring = ["ground.A", "rocker.C"], stiffness = 15, free = 2.5 }
+spring = { spring = ["ground.A", "rocker.C"], stiffness = 15, free-length = 2.5 }
 "#;
 
 /// Name, machine, first coordinate and speed, and how long it is followed (s).
@@ -41,8 +41,8 @@ spring = { spring = ["ground.A", "rocker.C"], stiffness = 15, free = 2.5 }
 fn machines() -> Vec<(&'static str, Machine, [f64; 2], f64)> {
     let time_dependent = r#"
 [loads]
-push = { torque = "crank", magnitude = "3*sin(7*t) + 0.2*phi.speed*cos(phi)" }
-spring = { spring = ["ground.A", "rocker.C"], stiffness = "15 + 3*t", free = 2.5 }
+push = { torque = "crank", magnitude = "3*sin(7*t) + 0.2*phi.velocity*cos(phi)" }
+spring = { spring = ["ground.A", "rocker.C"], stiffness = "15 + 3*t", free-length = 2.5 }
 "#;
     let friction_and_damper = r#"
 [coordinates]
@@ -50,7 +50,7 @@ psi = { angle = ["ground", "rocker"] }
 winds = { angle = ["crank", "coupler"] }
 wide = { length = ["ground.A", "rocker.C"] }
 [loads]
-push = { torque = "rocker", magnitude = "psi^2 - 0.3*psi.speed + sin(winds) + 0.02*winds + wide*wide.speed" }
+push = { torque = "rocker", magnitude = "psi^2 - 0.3*psi.velocity + sin(winds) + 0.02*winds + wide*wide.velocity" }
 "#;
     vec![
         (
@@ -411,7 +411,7 @@ fn machines_without_a_table_say_why() {
     assert_eq!(endless, TabulationError::Table(TableError::Unbounded));
     let winds = r#"
 [loads]
-spring = { torsion = ["ground", "crank"], stiffness = 2, free = 0 }
+spring = { torsion-spring = ["ground", "crank"], stiffness = 2, free-angle = 0 }
 "#;
     let winds = full_machine(&with("crank-rocker", winds));
     let what = TableQuantity::V;

@@ -327,7 +327,7 @@ fn careless_scenes_are_cut_short_or_refused() {
         );
         Scene::parse("short.toml", &text).expect("a scene")
     };
-    for more in ["", "[motion]\nspeed = 1\nduration = 50"] {
+    for more in ["", "[motion]\ninitial-velocity = 1\nduration = 50"] {
         let found = measure(&shortened(more), &effort, &no_progress).expect("a study");
         assert!(found.duration < 2.0, "{}", found.duration);
         let notes = found.motion_notes.join("; ");
@@ -353,8 +353,8 @@ fn careless_scenes_are_cut_short_or_refused() {
     let path = repository_root().join("validation/slider-crank-friction/scene.toml");
     let text = std::fs::read_to_string(path).expect("a file");
     let stiff = text
-        .replace("fade = 0.5", "fade = 1e-4")
-        .replace("fade = 5,", "fade = 1e-4,");
+        .replace("regularization-speed = 0.5", "regularization-speed = 1e-4")
+        .replace("regularization-speed = 5,", "regularization-speed = 1e-4,");
     let stiff = Scene::parse("stiff.toml", &stiff).expect("a scene");
     let found = measure(&stiff, &effort, &no_progress).expect("a study");
     assert!(

@@ -422,7 +422,10 @@ fn requests() {
         ]
     );
     let variables = requests.variables.unwrap();
-    assert_eq!(variables, ["crank.angle", "rod.Q.x", "phi.action", "lift"]);
+    assert_eq!(
+        variables,
+        ["crank.angle", "rod.Q.x", "phi.actuator_force", "lift"]
+    );
     let [section] = requests.sections.as_slice() else {
         panic!("one section");
     };
@@ -458,7 +461,7 @@ fn a_later_error_points_at_what_is_new() {
         (Load(1), "push"),
         (Magnitude(1), "100"),
         (Magnitude(0), "[0, -9.81]"),
-        (Variable(2), "\"phi.action\""),
+        (Variable(2), "\"phi.actuator_force\""),
         (Section(0), "{ body = \"rod\", from = \"P\", to = \"Q\" }"),
         // Not written down: the nearest thing that is.
         (CouplingLaw(JointId(4)), "slide"),

@@ -52,7 +52,10 @@ fn a_sweep_stops_at_a_limit_position_and_keeps_what_it_found() {
             .iter()
             .map(|(text, _)| (*text).to_owned())
             .collect();
-        assert!(pointed.contains(&"[sweep]".to_owned()), "{pointed:?}");
+        assert!(
+            pointed.contains(&"[coordinate-sweep]".to_owned()),
+            "{pointed:?}"
+        );
     }
 }
 
@@ -82,7 +85,7 @@ center = "P"
 [joints]
 O = { revolute = ["ground.O", "cam.O"] }
 slide = { prismatic = ["ground.O", "follower.P"], axis = [0, 1] }
-lift = { relation = ["rise", "phi"], expression = "0.01*x" }
+lift = { coupling = ["rise", "phi"], expression = "0.01*x" }
 [actuators]
 phi = { angle = ["ground", "cam"] }
 [coordinates]
@@ -288,7 +291,7 @@ d = { length = "T" }
 [assembly]
 d = 0.2
 arm = 0.5
-[sweep]
+[coordinate-sweep]
 "#;
 
 #[test]

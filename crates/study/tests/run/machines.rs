@@ -22,7 +22,7 @@ angle = ["ground", "shaft"]
 [loads]
 load = { torque = "shaft", magnitude = -1.5 }
 [drives]
-motor = { motor = "phi", voltage = 24, constant = 0.05, resistance = 1.2, inductance = 0.002, ratio = 10, inertia = 1e-5 }
+motor = { motor = "phi", voltage = 24, torque-constant = 0.05, resistance = 1.2, inductance = 0.002, gear-ratio = 10, inertia = 1e-5 }
 [motion]
 duration = 1
 "#;
@@ -103,7 +103,7 @@ fn a_pendulum_hangs_and_stands_and_swings_with_the_root_of_its_moments() {
 #[test]
 fn a_damped_pendulum_tells_its_damping_ratio() {
     let damped =
-        format!("{PENDULUM}oil = {{ torsion-damper = [\"ground\", \"bar\"], constant = 0.7 }}\n");
+        format!("{PENDULUM}oil = {{ rotational-damper = [\"ground\", \"bar\"], damping = 0.7 }}\n");
     let outcome = equilibria(&scene(&damped)).unwrap();
     let table = text(&outcome, "equilibria.csv");
     let inertia = 0.05 + 2.0 * 0.3 * 0.3;

@@ -112,7 +112,7 @@ fn a_part_that_is_not_modelled_still_ends_the_way() {
              B = {{ revolute = [\"one.B\", \"left.B\"] }}\nC = {{ revolute = [\"two.C\", \"right.C\"] }}\n\
              E = {{ revolute = [\"left.E\", \"right.E\"] }}\n\
              [actuators]\nphi = {{ angle = [\"ground\", \"one\"] }}\npsi = {{ angle = [\"ground\", \"two\"] }}\n\
-             [assembly]\nphi = 0.0\npsi = {PI:?}\nleft = 1.0\n[sweep]\nphi = [0.0, 3.0]\npsi = {PI:?}\n\
+             [assembly]\nphi = 0.0\npsi = {PI:?}\nleft = 1.0\n[coordinate-sweep]\nphi = [0.0, 3.0]\npsi = {PI:?}\n\
              [requests]\nvariables = [{variables}]\n"
         );
         stop(&text)

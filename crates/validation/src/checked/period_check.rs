@@ -182,7 +182,7 @@ mod tests {
             "[bodies.ground]\npoints = {{ A = [0, 0] }}\n[bodies.bar]\npoints = {{ A = [0, 0] }}\nmass = 2.0\n\
              center = [0.5, 0]\ninertia = 0.3\n[joints]\nA = {{ revolute = [\"ground.A\", \"bar.A\"] }}\n\
              [actuators]\nphi = {{ angle = [\"ground\", \"bar\"] }}\n[assembly]\nbar = -90\n\
-             [loads]\nweight = {{ gravity = [0, -9.81] }}\n{more}\n[motion]\nspeed = {speed}\nduration = 1"
+             [loads]\nweight = {{ gravity = [0, -9.81] }}\n{more}\n[motion]\ninitial-velocity = {speed}\nduration = 1"
         );
         Scene::parse("pendulum.toml", &text).expect("a scene")
     }
@@ -204,7 +204,7 @@ mod tests {
     fn a_motion_without_a_period_has_the_cause() {
         let with_friction = pendulum(
             1.0,
-            "brake = { torque = [\"ground\", \"bar\"], magnitude = \"-0.1*phi.speed\" }",
+            "brake = { torque = [\"ground\", \"bar\"], magnitude = \"-0.1*phi.velocity\" }",
         );
         assert_eq!(
             check_period(&with_friction).expect("a scene"),

@@ -355,7 +355,7 @@ mod tests {
     fn what_is_stiff_goes_by_bdf() {
         let text = text("crank-rocker").replace("periods = 10", "duration = 2")
             + "\n[loads]\npush = { torque = [\"ground\", \"crank\"], magnitude = \"2000*sin(3*t)\" }\n\
-               brake = { torsion-damper = [\"ground\", \"crank\"], constant = 2000 }\n";
+               brake = { rotational-damper = [\"ground\", \"crank\"], damping = 2000 }\n";
         let method_text = picked_method(&text, 1e-6, 2.0, (Method::Esdirk34, 1e-11));
         assert!(method_text.starts_with("BDF"), "{method_text}");
     }
