@@ -45,7 +45,8 @@ LARGEST_MEMORY = 4 << 30
 MOST_REFUSED = 0.01
 # The motion again from a start this far away: where it ends elsewhere by as much as the program, it says nothing of the program.
 NEARBY = 1e-11
-KICKS, KICK = 15, 1e-8
+# Where a motion differs by more than this, it is kicked so often on the way, by so much.
+FAR, KICKS, KICK = 1e-3, 15, 1e-8
 # Method, tolerance, and how well its motions agree: ESDIRK34 has errors of 5e-8 in smooth motions at a tolerance that takes as long.
 METHODS = [("bdf", 1e-12, AGREE), ("dop853", 1e-12, AGREE), ("tsit45", 1e-12, AGREE), ("esdirk34", 1e-11, 1e-6)]
 
@@ -131,7 +132,7 @@ def is_sensitive(scene, found, gap):
     """Whether the motion from a start nearby, or by other steps, differs by as much."""
     try:
         others = [reference(scene, shift) for shift in (NEARBY, -NEARBY)] + [reference(scene, order=11, tolerance=1e-15)]
-        if gap > GRAZING:
+        if gap > FAR:
             # What stays on a threshold from which all leads away may leave it at any time.
             others += [reference(scene, kicks=KICKS, kick=kick) for kick in (KICK, -KICK)]
     except motion.Unjudged:

@@ -2,46 +2,38 @@
 
 use clap::error::{ContextKind, ContextValue};
 
-/// The former name, the current one.
-const NAMES: [(&str, &str); 9] = [
-    ("--at", "--about"),
-    ("--every", "--sample-interval"),
-    ("--long", "--slow"),
-    ("--set", "--parameter"),
-    ("--table", "--table-accuracy"),
-    ("--to", "--format"),
-    ("--to", "--table-to"),
-    ("--want", "--result"),
-    ("tradeoff", "work-precision"),
+/// Of which command, the former option, the current one.
+const OPTIONS: [(&str, &str, &str); 8] = [
+    ("calibrate", "--set", "--parameter"),
+    ("linearise", "--at", "--about"),
+    ("reduce", "--table", "--table-accuracy"),
+    ("reduce", "--to", "--table-to"),
+    ("simulate", "--every", "--sample-interval"),
+    ("sweep", "--want", "--result"),
+    ("symbolic", "--to", "--format"),
+    ("validate", "--long", "--slow"),
 ];
+/// The former command, the current one.
+const COMMAND: (&str, &str) = ("tradeoff", "work-precision");
 
-/// An error of the arguments, with a current name where it is about a former one that the command knows under that.
+/// An error of the arguments, with the current name where it is about a former one of the command that is called.
 pub(crate) fn with_current_name(mut error: clap::Error) -> clap::Error {
-    let arguments: Vec<String> = std::env::args().collect();
-    for (wrong, suggestion) in [
-        (ContextKind::InvalidArg, ContextKind::SuggestedArg),
-        (
-            ContextKind::InvalidSubcommand,
-            ContextKind::SuggestedSubcommand,
-        ),
-    ] {
-        let Some(ContextValue::String(given)) = error.get(wrong) else {
-            continue;
-        };
-        let given = given.split(['=', ' ']).next().unwrap_or_default();
-        let named = NAMES.iter().filter(|(former, _)| *former == given);
-        let is_known =
-            |current: &str| current != "--table-to" || arguments.iter().any(|a| a == "reduce");
-        let current = named
-            .map(|(_, current)| *current)
-            .rfind(|current| is_known(current));
-        if let Some(current) = current {
-            let value = match suggestion {
-                ContextKind::SuggestedSubcommand => ContextValue::Strings(vec![current.to_owned()]),
-                _ => ContextValue::String(current.to_owned()),
-            };
-            error.insert(suggestion, value);
-        }
+    let given = |error: &clap::Error, kind| match error.get(kind) {
+        Some(ContextValue::String(given)) => given.split(['=', ' ']).next().map(str::to_owned),
+        _ => None,
+    };
+    let called: Vec<String> = std::env::args().collect();
+    let option = given(&error, ContextKind::InvalidArg).and_then(|given| {
+        let is_meant = |of: &str, former: &str| former == given && called.iter().any(|a| a == of);
+        OPTIONS.iter().find(|(of, former, _)| is_meant(of, former))
+    });
+    if let Some((.., current)) = option {
+        let value = ContextValue::String((*current).to_owned());
+        error.insert(ContextKind::SuggestedArg, value);
+    }
+    if given(&error, ContextKind::InvalidSubcommand).is_some_and(|given| given == COMMAND.0) {
+        let value = ContextValue::Strings(vec![COMMAND.1.to_owned()]);
+        error.insert(ContextKind::SuggestedSubcommand, value);
     }
     error
 }

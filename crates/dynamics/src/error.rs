@@ -219,8 +219,8 @@ pub enum DynamicsError {
         /// The length of the last steps, s.
         step: f64,
     },
-    /// The energies of the bodies miss the works done on them: no step beyond belongs to the mechanism.
-    #[error("the steps up to t = {t} s lose the balance of energies and works")]
+    /// The computed energies do not match the work of the loads: the steps have left the mechanism.
+    #[error("near t = {t} s the computed energies stop matching the work of the loads")]
     LostBalance {
         /// The time reached, s.
         t: f64,

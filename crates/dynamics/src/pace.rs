@@ -25,11 +25,12 @@ const SWITCHES: usize = 2000;
 const TOO_MANY_SWITCHES: [f64; 2] = [1.0, 0.05];
 const MORE_OFTEN: f64 = 3.0;
 
-/// Steps after which the energies are looked at. Where they have missed their balance by so large a part of the largest kinetic energy, the steps
-/// lead on without the mechanism: beyond singular positions it was seen to be 0.3 to 10. Truncation changes them by what the tolerance
-/// allows in so many steps, rounding by this part of them all.
+/// Steps between two evaluations of the energy balance.
 const LOOKED_AT: usize = 1000;
+/// A balance that changes between two looks by more than this part of the largest kinetic energy is lost: beyond singular positions it was
+/// seen to change by 0.3 to 10 times that energy.
 const BROKEN: f64 = 0.1;
+/// A change below this part of the balance itself says nothing: a small oscillation may have a large potential energy.
 const ENERGY_ROUNDING: f64 = 1e-9;
 
 /// The steps of an integration, and how far the last of them have led.

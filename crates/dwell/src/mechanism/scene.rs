@@ -78,7 +78,7 @@ impl Scene {
         self.0.source.inner()
     }
 
-    /// What it should change, though it is read: former names, and numbers that may not be meant.
+    /// What it should change, though it is read: numbers that may not be meant.
     ///
     /// ```
     /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;

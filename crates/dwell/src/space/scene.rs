@@ -73,7 +73,7 @@ impl Scene {
         self.0.source.inner()
     }
 
-    /// Warnings of its reader, such as former names of keys.
+    /// Warnings of its reader, such as numbers that may not be meant.
     ///
     /// ```
     /// # let scene = dwell::space::Scene::read("../../validation/spatial/rssr.toml")?;

@@ -125,7 +125,7 @@ fn describe(
         ),
         DynamicsError::LostBalance { t } => (
             format!(
-                "up to t = {} s the energies of the bodies lose their balance with the works done on them",
+                "near t = {} s the computed energies stop matching the work of the loads",
                 number(*t)
             ),
             "a limit position or a change point may be near: end the motion earlier, or use a smaller tolerance",
