@@ -52,6 +52,13 @@ impl SideRates {
         }
     }
 
+    /// Whether a motion that leaves the switch does so upwards: where the rates of both sides lead there, or one does and the other is next
+    /// to zero. Where a side has changed, the part α says nothing: it is negative where both lead upwards and the upper one does so faster.
+    pub(crate) fn leaves_upward(&self) -> bool {
+        let [[_, lower], [_, upper]] = self.sides;
+        lower + upper > 0.0
+    }
+
     /// Whether both sides lead back to the switch.
     pub(crate) fn both_return(&self) -> bool {
         let [[_, lower], [_, upper]] = self.sides;

@@ -192,7 +192,6 @@ fn a_speed_rests_on_the_switch_that_ends_its_couple() {
     }
 }
 
-/// What switches exactly where the motion begins has switched.
 #[test]
 fn a_speed_is_released_when_the_couple_beyond_its_switch_turns() {
     // Held at 1.75 rad/s between a couple beyond that speed and one below it, until the one beyond drives on.
@@ -204,6 +203,19 @@ fn a_speed_is_released_when_the_couple_beyond_its_switch_turns() {
     check(&text, 2.0, 2.0, end, 100.0);
 }
 
+/// Where the couple beyond a switch turns as that on this side of it vanishes, both drive the speed on: with t − 0.5 s behind the turn.
+#[test]
+fn a_speed_is_released_where_the_couple_that_held_it_turns() {
+    for beyond in ["sign(q - 0.5)", "if(q < 0.5, -1, 1)"] {
+        let text = format!("{INERTIA}*if(v >= 1, {beyond}, (q - 0.5)^2)");
+        check(&text, 1.0, 1.0, [1.125, 1.5], 10.0);
+    }
+    // Against it, on the other side.
+    let text = format!("{INERTIA}*if(v <= 1, sign(0.5 - q), -(q - 0.5)^2)");
+    check(&text, 1.0, 1.0, [0.875, 0.5], 10.0);
+}
+
+/// What switches exactly where the motion begins has switched.
 #[test]
 fn a_switch_at_the_start_has_switched() {
     let a = 1.0 / INERTIA;

@@ -265,7 +265,7 @@ impl SwitchMonitor {
             let margin_at = |t: f64| -> Result<f64> { Ok(margin(sides_at(t)?.1)) };
             let found = root::find(margin_at, from, t)?;
             let (state, sides) = sides_at(found.unwrap_or(from))?;
-            let upward = sides.is_some_and(|sides| sides.upper_part() > 0.5);
+            let upward = sides.is_some_and(|sides| sides.leaves_upward());
             return Ok(Some(Crossing {
                 state,
                 passed: Vec::new(),
@@ -417,7 +417,11 @@ impl SwitchMonitor {
             return Err(several);
         };
         let rates = both.of(first);
-        let part = rates.upper_part().clamp(0.0, 1.0);
+        let (stays, leaves_upward) = (rates.margin() > 0.0, rates.leaves_upward());
+        let part = match stays {
+            true => rates.upper_part(),
+            false => f64::from(leaves_upward),
+        };
         for &(k, upward) in passed {
             let [[_, lower], [_, upper]] = both.of(k).sides;
             let rate = lower + part * (upper - lower);
@@ -425,11 +429,10 @@ impl SwitchMonitor {
                 return Err(several);
             }
         }
-        let upward = rates.upper_part() > 0.5;
         self.sliding = Some(sliding);
-        match rates.margin() > 0.0 {
+        match stays {
             true => self.hold(system),
-            false => self.leave(upward, system, at),
+            false => self.leave(leaves_upward, system, at),
         }
         Ok(())
     }
