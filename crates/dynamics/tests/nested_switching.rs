@@ -215,6 +215,23 @@ fn a_speed_is_released_where_the_couple_that_held_it_turns() {
     check(&text, 1.0, 1.0, [0.875, 0.5], 10.0);
 }
 
+/// A function of an angle that leaves its threshold from rest, with the square or a higher power of the angle, has left it at once.
+#[test]
+fn what_an_angle_at_rest_decides_it_decides_as_it_moves() {
+    let a = 1.0 / INERTIA;
+    for text in [
+        "floor(2*cos(q))",
+        "1 + step(cos(q) - 1)",
+        "2 + floor(-(q*q))",
+        "1 + sign(max(0, cos(q) - 1))",
+        "if(cos(q) >= 1, 2, 1)",
+        "2 + sign(cos(q) - 1)",
+        "0.5 - 0.5*floor(-q*q*q)",
+    ] {
+        check(text, 0.0, 0.2, [0.02 * a, 0.2 * a], 10.0);
+    }
+}
+
 /// What switches exactly where the motion begins has switched.
 #[test]
 fn a_switch_at_the_start_has_switched() {

@@ -54,6 +54,11 @@ impl SwitchMonitor {
         if self.slide_from_rest(&moving, system, at)? {
             return Ok(true);
         }
+        // On a whole number a function is on the piece above it or below it, whichever the motion leads into.
+        let is_whole = |k: &usize| {
+            self.switches[*k].kind == SwitchKind::Integers && self.values[*k].fract() == 0.0
+        };
+        moving.extend((0..all.len()).filter(is_whole));
         let moving = self.marked(moving.into_iter());
         let agrees = self.settle((&moving, &[]), &mut changed, system, at)?;
         self.hold(system);
@@ -253,7 +258,8 @@ impl SwitchMonitor {
         Ok(rate)
     }
 
-    /// The values and the rates of all functions soon behind a state, on the pieces that are held.
+    /// The values and the rates of all functions soon behind a state, on the pieces that are held. What begins at rest has moved there, too:
+    /// by the second order of a step.
     fn shortly_after(
         &mut self,
         system: &mut dyn OdeSystem,
@@ -262,8 +268,16 @@ impl SwitchMonitor {
         let mut rates = vec![0.0; at.y.len()];
         system.rhs(at.t, &at.y, &mut rates)?;
         let h = PROBE * self.step;
-        let y = at.y.iter().zip(&rates).map(|(y, rate)| y + h * rate);
-        let (t, y) = (at.t + h, y.collect());
+        let along = |rates: &[f64]| -> Vec<f64> {
+            let moved = at.y.iter().zip(rates).map(|(y, rate)| y + h * rate);
+            moved.collect()
+        };
+        let (t, mut later) = (at.t + h, rates.clone());
+        system.rhs(t, &along(&rates), &mut later)?;
+        for (rate, later) in rates.iter_mut().zip(later) {
+            *rate = 0.5 * (*rate + later);
+        }
+        let y = along(&rates);
         self.rates_at(system, &OdeState { t, y })
     }
 
