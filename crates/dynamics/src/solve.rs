@@ -86,6 +86,18 @@ impl Solution {
         self.event_occurrences.retain(|o| o.state.t <= end.t);
     }
 
+    /// Ends it at its last sample up to a time, s: what follows is not known.
+    pub fn end_at(&mut self, t: f64) {
+        let end = self.samples.iter().rfind(|sample| sample.t <= t).cloned();
+        self.steps.retain(|step| step.t <= t);
+        self.samples.retain(|sample| sample.t <= t);
+        self.event_occurrences.retain(|o| o.state.t <= t);
+        self.contact_events.retain(|event| event.t() <= t);
+        let last = self.steps.last().map_or(f64::NEG_INFINITY, |step| step.t);
+        self.steps.extend(end.filter(|end| end.t > last));
+        (self.error, self.terminated_by_event) = (None, false);
+    }
+
     /// Adds the end to the samples, unless one of them is there up to rounding.
     pub fn sample_end(&mut self) {
         let Some(end) = self.steps.last() else {

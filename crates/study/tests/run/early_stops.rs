@@ -3,8 +3,8 @@
 use crate::table::{Table, WEIGHTS, analyse, case, file, scene};
 use dwell_study::equilibria::compute::SearchedRange;
 use dwell_study::{
-    Analysis, OperatingPoint, StudyError, analyse_trajectory, check, equilibria, linearise,
-    no_progress,
+    Analysis, MotionSolver, OperatingPoint, SolverSettings, StudyError, analyse_trajectory, check,
+    compute_free_motion, equilibria, linearise, no_progress,
 };
 
 /// Crank 0.3, coupler 0.2, rocker 0.25 on a base of 0.4 m.
@@ -196,6 +196,51 @@ fn a_way_ends_where_a_load_leaves_its_table() {
     );
     let whole = "magnitude = { table = [[0, 1], [5, 2]], of = \"phi\" }";
     assert_eq!(changed("magnitude = 1", whole).0, 51);
+}
+
+/// Nothing is known of a motion behind the end of a table: its events there are none, and it does not end by them.
+#[test]
+fn a_motion_ends_where_a_load_leaves_its_table() {
+    let text = r#"
+bodies.ground.points = { O = [0, 0] }
+bodies.cart = { points = { P = [0, 0] }, mass = 2, center = "P" }
+joints.way = { prismatic = ["ground.O", "cart.P"], axis = [1, 0] }
+actuators.x = { length = "way" }
+assembly.x = 0
+loads.push = { force = "cart.P", direction = [1, 0], magnitude = { table = [[-1, 0], [0.55, 0]], of = "x" } }
+[motion]
+duration = 1
+initial-velocity = { x = 1 }
+events = { early = { reaches = "x", value = 0.2 }, late = { reaches = "x", value = 0.8, stop = true } }
+"#;
+    let settings = SolverSettings {
+        sample_interval: Some(0.1),
+        ..SolverSettings::default()
+    };
+    let solvers = [
+        MotionSolver::Settings(settings),
+        MotionSolver::Accuracy {
+            accuracy: 1e-6,
+            sample_interval: Some(0.1),
+        },
+    ];
+    for solver in solvers {
+        let motion = compute_free_motion(&scene(text), &solver, &no_progress).unwrap();
+        assert_eq!(motion.computed.table.rows.len(), 6);
+        let stop = motion.computed.early_stop.unwrap().to_string();
+        assert!(stop.contains("the table of load `push` covers x from -1 m to 0.55 m, but x is 0.6 m soon after t = 0.5 s"), "{stop}");
+        let [(t, name)] = &motion.events[..] else {
+            panic!("{:?}", motion.events);
+        };
+        assert!((t - 0.2).abs() < 1e-9 && name == "early", "{name} at {t}");
+        assert_eq!(motion.event_table.rows.len(), 1);
+        let said = &motion.summary;
+        assert!(said.starts_with("  0.5 of 1 s"), "{said}");
+        assert!(
+            said.contains("early: once") && said.contains("late: never\n"),
+            "{said}"
+        );
+    }
 }
 
 #[test]

@@ -8,7 +8,10 @@ use dwell_geometry::space::{ActuatorKind, BodyMotion, Placement, Rotation, Vec3,
 use dwell_kinetostatics::Magnitude;
 use dwell_kinetostatics::space::{Axes, Component, Load};
 use dwell_scene::SpaceScene;
-use dwell_study::{Analysis, PictureSpan, TrajectoryOutcome, analyse_in_space, no_progress};
+use dwell_study::{
+    Analysis, MotionSolver, PictureSpan, SolverSettings, TrajectoryOutcome, analyse_in_space,
+    compute_free_motion_in_space, no_progress,
+};
 use dwell_verify::space::DenseSpace;
 
 /// Relative to the largest of the unit: a hundred times what rounding and the digits of a rotation as a vector leave.
@@ -406,4 +409,40 @@ fn rows_end_where_a_load_leaves_its_table() {
     let expected = "the table of load `push` covers q from 0 rad (0°) to 1 rad (57.2958°), but q is 1.1 rad (63.0254°) \
                     soon after q = 1 rad (57.2958°)";
     assert_eq!(message.as_deref(), Some(expected));
+}
+
+/// So does a motion, whose events behind that are none.
+#[test]
+fn a_motion_ends_where_a_load_leaves_its_table() {
+    let text = r#"
+bodies.ground.points = { O = [0, 0, 0] }
+bodies.cart = { points = { P = [0, 0, 0] }, mass = 2, center = "P" }
+joints.way = { prismatic = ["ground.O", "cart.P"], axis = [1, 2, 2] }
+actuators.x = { length = "way" }
+assembly.x = 0
+loads.push = { force = "cart.P", direction = [1, 2, 2], magnitude = { table = [[-1, 0], [0.55, 0]], of = "x" } }
+[motion]
+duration = 1
+initial-velocity = { x = 1 }
+events = { early = { reaches = "x", value = 0.2 }, late = { reaches = "x", value = 0.8, stop = true } }
+"#;
+    let scene = SpaceScene::parse("cart", text).unwrap_or_else(|e| panic!("{e}"));
+    let settings = SolverSettings {
+        sample_interval: Some(0.1),
+        ..SolverSettings::default()
+    };
+    let solver = MotionSolver::Settings(settings);
+    let motion = compute_free_motion_in_space(&scene, &solver, &no_progress).unwrap();
+    let rows = &motion.computed.table.rows;
+    let names: Vec<&str> = motion.events.iter().map(|(_, name)| &name[..]).collect();
+    assert!(
+        rows.len() == 6 && names == ["early"],
+        "{} rows, {names:?}",
+        rows.len()
+    );
+    let stop = motion.computed.early_stop.unwrap().to_string();
+    assert!(
+        stop.contains("the table of load `push` covers x from -1 m to 0.55 m"),
+        "{stop}"
+    );
 }

@@ -65,6 +65,16 @@ impl SegmentedMotion {
         }
     }
 
+    /// Ends it at its last sample up to a time, s: where the table of a load ends, what follows is not known.
+    pub(crate) fn end_at(&mut self, t: f64) {
+        self.segments
+            .iter_mut()
+            .for_each(|(_, solution)| solution.end_at(t));
+        self.segments
+            .retain(|(_, solution)| !solution.steps.is_empty());
+        self.failure = None;
+    }
+
     /// The events that happened, each with the chart of its segment.
     pub fn occurrences(&self) -> impl Iterator<Item = (usize, &EventOccurrence)> {
         let segments = self.segments.iter();

@@ -117,6 +117,15 @@ pub(crate) fn compute_free_motion_at(
         progress,
     );
     let (mut computed, (mut summary, mut record)) = rows?;
+    if let Some(end) = computed.end_of_rows() {
+        let second = integrated.comparison.as_mut();
+        second
+            .into_iter()
+            .chain([&mut integrated.motion])
+            .for_each(|motion| motion.end_at(end));
+        (summary, record) = problem.summary(&integrated, duration);
+    }
+    let motion = &integrated.motion;
     let shortfall = problem.shortfall(&integrated, solver);
     computed.early_stop = shortfall.or(computed.early_stop);
     record.extend(integrated.record.clone());

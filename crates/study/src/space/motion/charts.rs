@@ -98,6 +98,15 @@ impl Motion {
         }
     }
 
+    /// Ends it at its last sample up to a time, s: where the table of a load ends, what follows is not known.
+    pub(super) fn end_at(&mut self, t: f64) {
+        self.parts
+            .iter_mut()
+            .for_each(|(_, solution)| solution.end_at(t));
+        self.parts
+            .retain(|(_, solution)| !solution.steps.is_empty());
+    }
+
     /// The error that ended it early, if one did.
     pub(super) fn error(&self) -> Option<&DynamicsError> {
         self.last().and_then(|solution| solution.error.as_ref())

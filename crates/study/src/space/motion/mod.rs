@@ -129,7 +129,7 @@ impl SpaceMotionProblem<'_> {
         reject_unknown_variables(self.scene(), (&self.reactions, self.output_model.plan()))?;
         let duration = self.duration()?;
         times.map_or(Ok(()), |times| check_times(times, duration))?;
-        let run = self.run(solver, duration)?;
+        let mut run = self.run(solver, duration)?;
         if let (Some(error), true) = (run.motion.explained_error(self), run.motion.end() == 0.0) {
             return Err(error);
         }
@@ -157,7 +157,13 @@ impl SpaceMotionProblem<'_> {
             self.rows((motion, text), samples, None, &no_progress).ok()
         });
         computed.set_errors(second.map(SecondRows::of).as_ref());
-        // Rows end before the motion where the table of a load does.
+        if let Some(end) = computed.end_of_rows() {
+            let second = run.second.as_mut();
+            second
+                .into_iter()
+                .chain([&mut run.motion])
+                .for_each(|motion| motion.end_at(end));
+        }
         let shortfall = self.shortfall(&run, solver);
         computed.early_stop = computed.early_stop.or(shortfall);
         Ok(SimulatedMotion { run, computed })

@@ -395,6 +395,16 @@ pub struct ComputedTrajectory<'a> {
     pub notes: String,
 }
 
+impl ComputedTrajectory<'_> {
+    /// The time (s) of the last row of a free motion that the rows have ended early; none where they have not.
+    pub(crate) fn end_of_rows(&self) -> Option<f64> {
+        let motion = self.trajectory.free_motion()?;
+        let last = self.results.len().checked_sub(1)?;
+        self.early_stop.as_ref()?;
+        motion.samples.get(last).map(|sample| sample.t)
+    }
+}
+
 /// Analyses a scene along its prescribed motion, its sweep, or the range of its only actuator, at `points` positions
 /// (two or more) if given.
 ///
