@@ -418,7 +418,7 @@ fn a_motion_ends_where_a_load_leaves_its_table() {
 bodies.ground.points = { O = [0, 0, 0] }
 bodies.cart = { points = { P = [0, 0, 0] }, mass = 2, center = "P" }
 joints.way = { prismatic = ["ground.O", "cart.P"], axis = [1, 2, 2] }
-actuators.x = { length = "way" }
+actuators.x = { travel = "way" }
 assembly.x = 0
 loads.push = { force = "cart.P", direction = [1, 2, 2], magnitude = { table = [[-1, 0], [0.55, 0]], of = "x" } }
 [motion]
