@@ -118,6 +118,28 @@ fn every_stair_is_met() {
     check(&stepped, 1.0, machine_end, [q, v], 2.0);
 }
 
+/// From rest on a point of a table in steps, down the stairs and up: which couple holds is decided by where it leads.
+#[test]
+fn an_angle_at_rest_on_a_point_of_a_table_is_decided_as_it_moves() {
+    for [below, above] in [[-1.0, -2.0], [2.0, 1.0]] {
+        let points = [[-50.0, below], [0.5, above], [50.0, above]];
+        let curve = Spline::interpolating(&points, Interpolation::Step).expect("a curve");
+        let signal = Signal::Value(angle([0, 1]).coordinate());
+        let machine = wheel(Magnitude::Law(signal, Law::Spline(curve)), &[]);
+        let couple = if above < 0.0 { below } else { above };
+        let acceleration = couple / INERTIA;
+        for method in Method::ALL {
+            let y = machine.initial_state(&[0.5], &[0.0]);
+            let (start, options) = (OdeState { t: 0.0, y }, Options::new(method, 1e-11));
+            let solution = solve(&machine, machine.model(), &start, 0.5, &options, &[]);
+            let [_, speed] = end_state(&solution.expect("a start"));
+            // Of a constant acceleration; the couple above, for the time of a rounding of the angle, would change it by 1e-8.
+            let error = (speed / (0.5 * acceleration) - 1.0).abs();
+            assert!(error < 1e-11, "{method:?}: {error:e}");
+        }
+    }
+}
+
 /// A switch of angle and time together: the couple acts while the wheel is behind a hand that turns uniformly.
 #[test]
 fn a_switch_of_angle_and_time_is_located() {

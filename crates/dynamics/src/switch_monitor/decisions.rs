@@ -24,6 +24,19 @@ struct Choice<'c> {
     most: usize,
 }
 
+/// The piece above a bound that a value is within a distance of.
+fn piece_above_bound(kind: &SwitchKind, value: f64, within: f64) -> Option<f64> {
+    let is_near = |bound: f64| (value - bound).abs() <= within;
+    match kind {
+        SwitchKind::Zero => is_near(0.0).then_some(1.0),
+        SwitchKind::Integers => Some(value.round()).filter(|&whole| is_near(whole)),
+        SwitchKind::Knots(knots) => {
+            let near = knots.iter().position(|&knot| is_near(knot));
+            near.map(|k| (k + 1) as f64)
+        }
+    }
+}
+
 impl SwitchMonitor {
     /// Holds the pieces in which a state is; whether the motion agrees with them.
     pub(super) fn decide(&mut self, system: &mut dyn OdeSystem, at: &OdeState) -> Result<bool> {
@@ -54,11 +67,12 @@ impl SwitchMonitor {
         if self.slide_from_rest(&moving, system, at)? {
             return Ok(true);
         }
-        // On a whole number a function is on the piece above it or below it, whichever the motion leads into.
-        let is_whole = |k: &usize| {
-            self.switches[*k].kind == SwitchKind::Integers && self.values[*k].fract() == 0.0
+        // On a whole number, or a point of a table, a function is on the piece above it or below it, whichever the motion leads into.
+        let is_on_bound = |k: &usize| {
+            let (kind, value) = (&self.switches[*k].kind, self.values[*k]);
+            *kind != SwitchKind::Zero && piece_above_bound(kind, value, 0.0).is_some()
         };
-        moving.extend((0..all.len()).filter(is_whole));
+        moving.extend((0..all.len()).filter(is_on_bound));
         let moving = self.marked(moving.into_iter());
         let agrees = self.settle((&moving, &[]), &mut changed, system, at)?;
         self.hold(system);
@@ -187,23 +201,22 @@ impl SwitchMonitor {
         let reach = near * self.step * rate;
         let kind = &self.switches[k].kind;
         let by_rate = kind.piece_at(value + reach);
-        let whole = value.round();
-        Ok(match kind {
-            SwitchKind::Zero if value.abs() <= reach.abs() => {
-                let sides = match by_rate {
-                    Some(side) => [side, -side, 0.0],
-                    None => [0.0, 1.0, -1.0],
-                };
+        let Some(above) = piece_above_bound(kind, value, reach.abs()) else {
+            return Ok(vec![(by_rate, 0.0)]);
+        };
+        Ok(match (kind, by_rate) {
+            (SwitchKind::Zero, None) => [0.0, 1.0, -1.0].map(|side| (Some(side), side)).to_vec(),
+            (SwitchKind::Zero, Some(side)) => {
+                let sides = [side, -side, 0.0];
                 sides.map(|side| (Some(side), side)).to_vec()
             }
-            SwitchKind::Integers if (value - whole).abs() <= reach.abs() => {
-                let mut sides = vec![(Some(whole), 1.0), (Some(whole - 1.0), -1.0)];
-                if by_rate < Some(whole) {
+            _ => {
+                let mut sides = vec![(Some(above), 1.0), (Some(above - 1.0), -1.0)];
+                if by_rate < Some(above) {
                     sides.reverse();
                 }
                 sides
             }
-            _ => vec![(by_rate, 0.0)],
         })
     }
 
@@ -219,13 +232,13 @@ impl SwitchMonitor {
         }
         self.hold(system);
         let rates = self.shortly_after(system, at)?;
-        // A function that rests on a whole number is on the piece above it.
+        // A function that rests on a whole number, or a point of a table, is on the piece above it.
         Ok(ties.iter().all(|&(k, sign)| {
             let [_, rate] = rates[k];
             match self.switches[k].kind {
-                SwitchKind::Integers => (rate < 0.0) == (sign < 0.0),
-                _ if sign == 0.0 => rate == 0.0,
-                _ => rate * sign > 0.0,
+                SwitchKind::Zero if sign == 0.0 => rate == 0.0,
+                SwitchKind::Zero => rate * sign > 0.0,
+                SwitchKind::Integers | SwitchKind::Knots(_) => (rate < 0.0) == (sign < 0.0),
             }
         }))
     }
