@@ -27,6 +27,15 @@ pub(crate) struct ComputedMotion {
     pub(crate) delay: Option<f64>,
 }
 
+impl ComputedMotion {
+    /// Ends it and its second computation at their last samples up to a time, s.
+    pub(crate) fn end_at(&mut self, t: f64) {
+        let second = self.comparison.as_mut();
+        let both = second.into_iter().chain([&mut self.motion]);
+        both.for_each(|motion| motion.end_at(t));
+    }
+}
+
 /// A free motion as a sequence of segments, each in one chart.
 #[derive(Default)]
 pub struct SegmentedMotion {

@@ -118,14 +118,9 @@ pub(crate) fn compute_free_motion_at(
     );
     let (mut computed, (mut summary, mut record)) = rows?;
     if let Some(end) = computed.end_of_rows() {
-        let second = integrated.comparison.as_mut();
-        second
-            .into_iter()
-            .chain([&mut integrated.motion])
-            .for_each(|motion| motion.end_at(end));
+        integrated.end_at(end);
         (summary, record) = problem.summary(&integrated, duration);
     }
-    let motion = &integrated.motion;
     let shortfall = problem.shortfall(&integrated, solver);
     computed.early_stop = shortfall.or(computed.early_stop);
     record.extend(integrated.record.clone());
@@ -133,8 +128,8 @@ pub(crate) fn compute_free_motion_at(
     summary += &integrated.remarks;
     Ok(FreeMotion {
         computed,
-        events: named_events(&problem, &motion.segments),
-        event_table: problem.event_table(motion),
+        events: named_events(&problem, &integrated.motion.segments),
+        event_table: problem.event_table(&integrated.motion),
         estimated_error: integrated.accuracy.map(|[_, error]| error),
         summary,
         record,
