@@ -2,7 +2,7 @@
 //! prismatic joints where those have none.
 
 use crate::fixtures::repository_root;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// A mechanism, and the number of unknowns of its largest structural group.
 #[derive(Debug, Clone, Copy)]
@@ -93,8 +93,8 @@ impl Case {
     }
 
     /// Its scene.
-    pub fn scene(self) -> Scene {
+    pub fn scene(self) -> PlaneScene {
         let file = format!("{}.toml", self.name);
-        Scene::parse(&file, &self.text()).unwrap_or_else(|e| panic!("{}: {e:?}", self.name))
+        PlaneScene::parse(&file, &self.text()).unwrap_or_else(|e| panic!("{}: {e:?}", self.name))
     }
 }

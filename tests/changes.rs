@@ -28,7 +28,7 @@ use dwell_geometry::{
     AssemblyConfiguration, BodyId, Joint, JointKind, Mechanism, Plan, Pose, Range, Vec2, vec2,
 };
 use dwell_kinetostatics::{Coefficients, ExactModel, Mass, Model, ModelError};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::f64::consts::TAU;
 
 /// A mechanism with all a model is made from, and how it answers to the one it was made from.
@@ -65,7 +65,7 @@ pub struct Sample {
 
 impl Setup {
     /// A scene's mechanism as it is.
-    pub fn of(scene: &Scene) -> Self {
+    pub fn of(scene: &PlaneScene) -> Self {
         let start = scene.assembly.to_configuration();
         Self::new(scene.mechanism.clone(), scene.masses.clone(), start)
     }

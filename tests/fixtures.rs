@@ -2,7 +2,7 @@
 
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::{ExactModel, Model};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::path::{Path, PathBuf};
 
 /// The repository's folder.
@@ -36,21 +36,21 @@ pub fn space_case_names() -> Vec<String> {
 }
 
 /// The scene of a case in `validation/`.
-pub fn scene(case: &str) -> Scene {
+pub fn scene(case: &str) -> PlaneScene {
     let path = repository_root()
         .join("validation")
         .join(case)
         .join("scene.toml");
-    Scene::read(path).unwrap_or_else(|e| panic!("{case}: {e:?}"))
+    PlaneScene::read(path).unwrap_or_else(|e| panic!("{case}: {e:?}"))
 }
 
 /// A scene's model with every reaction.
-pub fn model(scene: &Scene) -> ExactModel {
+pub fn model(scene: &PlaneScene) -> ExactModel {
     model_for(scene, &scene.mechanism.reactions())
 }
 
 /// A scene's model with some reactions.
-pub fn model_for(scene: &Scene, reactions: &[Reaction]) -> ExactModel {
+pub fn model_for(scene: &PlaneScene, reactions: &[Reaction]) -> ExactModel {
     let start = scene.assembly.to_configuration();
     let model = Model::new(&scene.mechanism, &scene.masses, &start, reactions)
         .unwrap_or_else(|e| panic!("{}: {e}", scene.name));

@@ -1,7 +1,7 @@
 //! A motion to a wanted accuracy is as near to the truth as it says.
 
 use dwell_dynamics::Method;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::{PRESETS, SolverSettings, TrajectoryOutcome, simulate, simulate_to_accuracy};
 use dwell_tests::fixtures::scene;
 
@@ -11,7 +11,7 @@ struct MotionTable {
     rows: Vec<Vec<f64>>,
 }
 
-fn motion_table(scene: &Scene, results: &TrajectoryOutcome) -> MotionTable {
+fn motion_table(scene: &PlaneScene, results: &TrajectoryOutcome) -> MotionTable {
     let name = format!("{}-motion.csv", scene.name);
     let mut files = results.outcome.files.iter();
     let file = files.find(|(path, _)| path.ends_with(&name));
@@ -43,7 +43,7 @@ fn motion_table(scene: &Scene, results: &TrajectoryOutcome) -> MotionTable {
 }
 
 /// The largest difference of coordinates (rad), and of forces and moments as parts of their largest.
-fn max_difference(scene: &Scene, reference: &MotionTable, other: &MotionTable) -> f64 {
+fn max_difference(scene: &PlaneScene, reference: &MotionTable, other: &MotionTable) -> f64 {
     let mut worst = 0.0_f64;
     assert_eq!(reference.columns, other.columns);
     assert_eq!(reference.rows.len(), other.rows.len());

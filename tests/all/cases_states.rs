@@ -3,7 +3,7 @@
 
 use dwell_findings::{Check, Finding};
 use dwell_geometry::Mechanism;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::no_progress;
 use dwell_tests::fixtures::{case_names, repository_root, scene};
 use dwell_validation::{CheckedStates, Validation, check_case, validate};
@@ -35,7 +35,7 @@ fn folder(case: &str) -> PathBuf {
     repository_root().join("validation").join(case)
 }
 
-fn checked_states(scene: &Scene, folder: &Path) -> CheckedStates {
+fn checked_states(scene: &PlaneScene, folder: &Path) -> CheckedStates {
     check_case(scene, folder).unwrap_or_else(|e| panic!("{}: {e}", scene.name))
 }
 

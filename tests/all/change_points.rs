@@ -3,12 +3,12 @@
 
 use dwell_geometry::PositionError;
 use dwell_kinetostatics::ReducedModel;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_tests::fixtures::model;
 use std::f64::consts::PI;
 
 /// A parallelogram whose ground is turned, so that no round angle is a flat position.
-fn parallelogram(rotation: f64) -> Scene {
+fn parallelogram(rotation: f64) -> PlaneScene {
     let (sin, cos) = rotation.sin_cos();
     let text = format!(
         r#"
@@ -43,7 +43,7 @@ rocker = 1.0
         0.4 * cos,
         0.4 * sin
     );
-    Scene::parse("parallelogram.toml", &text).expect("a scene")
+    PlaneScene::parse("parallelogram.toml", &text).expect("a scene")
 }
 
 #[test]

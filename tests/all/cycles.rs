@@ -5,12 +5,12 @@ use dwell_dynamics::{
     DynamicsError, Machine, Method, Options, initial_transient, size_flywheel, steady_cycle,
 };
 use dwell_kinetostatics::{Drive, DriveKind, Magnitude, Motor, SpeedController};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_tests::fixtures::scene;
 use std::f64::consts::TAU;
 
 /// A wheel of 0.02 kg m² with a load on it.
-fn wheel_scene(load: &str) -> Scene {
+fn wheel_scene(load: &str) -> PlaneScene {
     parse(&format!(
         r#"
 [bodies.ground]
@@ -30,7 +30,7 @@ angle = ["ground", "wheel"]
     ))
 }
 
-fn drive(scene: &Scene, kind: DriveKind) -> Drive {
+fn drive(scene: &PlaneScene, kind: DriveKind) -> Drive {
     Drive {
         name: "drive".into(),
         coordinate: scene.mechanism.actuators[0].coordinate(),
@@ -374,7 +374,7 @@ fn multipliers_agree_with_differences() {
 
 #[test]
 fn cycles_that_there_are_not() {
-    let reason = |scene: &Scene, drives: &[Drive], q_dot: f64| {
+    let reason = |scene: &PlaneScene, drives: &[Drive], q_dot: f64| {
         let machine = machine(scene, &[], drives);
         steady_cycle(&machine, &machine.initial_state(&[0.0], &[q_dot]), &FINE)
             .expect_err("no cycle")

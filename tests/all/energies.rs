@@ -2,7 +2,7 @@
 //! product says of its states must be seen.
 
 use dwell_findings::Finding;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_tests::fixtures::{repository_root, scene};
 use dwell_validation::{CheckedStates, check_case};
 use dwell_verify::{ClaimedState, check_energies};
@@ -14,7 +14,7 @@ const STATES: usize = 6;
 const MUTATED_STATE: usize = 2;
 
 struct ClaimedStates {
-    scene: Scene,
+    scene: PlaneScene,
     start: Vec<[f64; 3]>,
     states: Vec<ClaimedState>,
     mass_matrices: Vec<Vec<f64>>,

@@ -1,7 +1,7 @@
 //! The findings of `dwell validate` on every case: verdicts and digits, and how far within them the numbers are.
 
 use dwell_findings::{Finding, all_pass};
-use dwell_scene::{Scene, SpaceScene};
+use dwell_scene::{PlaneScene, SpaceScene};
 use dwell_study::no_progress;
 use dwell_tests::fixtures::{case_names, repository_root, scene, space_case_names};
 use dwell_validation::{Validation, validate, validate_in_space};
@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::fmt::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-fn validated(scene: &Scene, case: &str) -> Validation {
+fn validated(scene: &PlaneScene, case: &str) -> Validation {
     let folder = repository_root().join("validation").join(case);
     validate(scene, &folder, &no_progress).unwrap_or_else(|e| panic!("{case}: {e}"))
 }

@@ -3,7 +3,7 @@
 
 use dwell_geometry::{Range, Vec2, vec2};
 use dwell_kinetostatics::{Coefficients, ExactModel, ReducedModel};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_tests::cases::{CASES, Case};
 use dwell_tests::changes::{Rng, Sample, Setup, positions, travels};
 use toml::{Table, Value};
@@ -248,7 +248,8 @@ fn units_do_not_matter() {
         let original = Setup::of(&case.scene());
         for units in UNITS {
             let text = rewritten(&table, units).to_string();
-            let scene = Scene::parse("rewritten.toml", &text).unwrap_or_else(|e| panic!("{e:?}"));
+            let scene =
+                PlaneScene::parse("rewritten.toml", &text).unwrap_or_else(|e| panic!("{e:?}"));
             let setup = Setup::of(&scene).matched_by_name(&original.mechanism);
             assert_invariant(case, &original, units[0].0, ROUNDING, &[setup]);
         }

@@ -8,12 +8,12 @@ use dwell_kinetostatics::{
     Drive, DriveKind, Friction, FrictionContact, Guide, Load, LoadKind, MachineModel as _,
     Magnitude, Model, Motor, SpeedController,
 };
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_tests::cases::CASES;
 use dwell_tests::fixtures::scene;
 
 /// The machine of a scene, all coordinates free, with more loads and drives.
-pub(crate) fn machine(scene: &Scene, more: &[Load], drives: &[Drive]) -> Machine {
+pub(crate) fn machine(scene: &PlaneScene, more: &[Load], drives: &[Drive]) -> Machine {
     let loads = [&scene.loads, more].concat();
     let start = scene.assembly.to_configuration();
     let model = Model::new(&scene.mechanism, &scene.masses, &start, &[]).expect("a model");
@@ -47,8 +47,8 @@ pub(crate) fn final_state(
     termination.state.y
 }
 
-pub(crate) fn parse(text: &str) -> Scene {
-    Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e:?}"))
+pub(crate) fn parse(text: &str) -> PlaneScene {
+    PlaneScene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e:?}"))
 }
 
 /// What a machine without loads does by its two unit runs alone is what inverse dynamics and its mass matrix say, and so is the

@@ -2,7 +2,7 @@
 //! deliberate faults that must be found.
 
 use dwell_findings::Finding;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_tests::fixtures::{case_names, repository_root, scene};
 use dwell_validation::{FreeMotionRun, free_motion_run};
 use std::time::Instant;
@@ -45,7 +45,7 @@ const KEYS: [&str; 5] = [
     "motion-energy",
 ];
 
-fn run(scene: &Scene) -> FreeMotionRun {
+fn run(scene: &PlaneScene) -> FreeMotionRun {
     let run = free_motion_run(scene).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
     run.unwrap_or_else(|| panic!("{} has no motion", scene.name))
 }
@@ -148,7 +148,7 @@ fn what_moves_a_machine_is_judged_too() {
         let text = std::fs::read_to_string(path).expect("a scene");
         let changed = change(&text);
         assert_ne!(text, changed, "{case}");
-        let wrong = Scene::parse("scene.toml", &changed).expect("a scene");
+        let wrong = PlaneScene::parse("scene.toml", &changed).expect("a scene");
         assert!(failed(&run(&right).check(&wrong)), "{case}");
     }
 }

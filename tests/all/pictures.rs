@@ -2,7 +2,7 @@
 //! is not there to see.
 
 use dwell_dynamics::Method;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::output::Picture;
 use dwell_study::{
     Analysis, Outcome, ParameterSweep, SolverSettings, StudyError, TrajectoryOutcome,
@@ -62,7 +62,7 @@ fn of_trajectory(study: &str, done: Result<TrajectoryOutcome, StudyError>) -> Ch
     of_outcome(study, done.map(|done| done.outcome))
 }
 
-fn all_studies(scene: &Scene) -> Checked {
+fn all_studies(scene: &PlaneScene) -> Checked {
     let settings = SolverSettings {
         method: Method::Bdf,
         ..SolverSettings::default()
@@ -97,7 +97,7 @@ fn the_pictures_of_the_validation_are_legible() {
         validate(&scene(case), &folder, &no_progress).expect("a validation")
     };
     let done: Vec<_> = cases.par_iter().map(of_case).collect();
-    let scenes: Vec<Scene> = cases.iter().map(|case| scene(case)).collect();
+    let scenes: Vec<PlaneScene> = cases.iter().map(|case| scene(case)).collect();
     let judged = scenes.iter().zip(&done).map(|(scene, done)| ValidatedCase {
         name: &scene.name,
         title: &scene.title,
@@ -115,7 +115,7 @@ fn the_pictures_of_the_validation_are_legible() {
             .map(|d| checked("validate", &d.outcome.pictures)),
     );
     all.push(of_outcome("extremes", extremes::study(false, 1)));
-    let scenes: Vec<&Scene> = scenes.iter().collect();
+    let scenes: Vec<&PlaneScene> = scenes.iter().collect();
     let exported = scenes.iter().find(|s| s.name == export_study::CASE);
     let exported = export_study::study(exported.expect("the case"));
     all.push(of_outcome("exported-runs", exported));
@@ -127,7 +127,7 @@ fn the_pictures_of_the_validation_are_legible() {
 }
 
 /// A chain of pinned links from one bearing, folded so that its joints lie close together.
-fn folded_chain(links: usize) -> Scene {
+fn folded_chain(links: usize) -> PlaneScene {
     let mut text =
         "title = \"Folded chain\"\n[bodies.ground]\npoints = { P = [0, 0] }\n".to_owned();
     let [mut joints, mut actuators, mut angles, mut speeds] = [const { String::new() }; 4];
@@ -154,7 +154,7 @@ fn folded_chain(links: usize) -> Scene {
         "[joints]\n{joints}[actuators]\n{actuators}[assembly]\n{angles}[loads]\nweight = {{ gravity = [0, -9.81] }}\n\
          [prescribed]\nduration = 1.0\n{speeds}"
     );
-    Scene::parse("folded-chain.toml", &text).expect("a scene")
+    PlaneScene::parse("folded-chain.toml", &text).expect("a scene")
 }
 
 #[test]

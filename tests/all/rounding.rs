@@ -2,13 +2,13 @@
 
 use dwell_kinetostatics::{Model, Workspace};
 use dwell_numerics::{DoubleDouble, Scalar};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_tests::fixtures::{case_names, scene};
 
 /// The cases of one actuator whose relations have no laws: those are evaluated in plain numbers.
 fn models() -> Vec<(String, Model, Vec<f64>)> {
     let model = |name: String| {
-        let scene: Scene = scene(&name);
+        let scene: PlaneScene = scene(&name);
         let start = scene.assembly.to_configuration();
         let reactions = scene.mechanism.reactions();
         let model =

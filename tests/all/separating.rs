@@ -3,7 +3,7 @@
 
 use dwell_findings::Finding;
 use dwell_geometry::Component;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_tests::fixtures::repository_root;
 use dwell_validation::{CheckedStates, check_case};
 use dwell_verify::{ClaimedState, check_states};
@@ -15,7 +15,7 @@ const TOOTHED: [(&str, &[&str]); 2] = [
 ];
 
 /// A case whose teeth have a pressure angle of 0.35 rad, and the case itself.
-fn with_and_without(case: &str, teeth: &[&str]) -> [Scene; 2] {
+fn with_and_without(case: &str, teeth: &[&str]) -> [PlaneScene; 2] {
     let path = repository_root().join("validation").join(case);
     let text = std::fs::read_to_string(path.join("scene.toml"));
     let plain = text.unwrap_or_else(|e| panic!("{case}: {e}"));
@@ -24,12 +24,13 @@ fn with_and_without(case: &str, teeth: &[&str]) -> [Scene; 2] {
         assert_eq!(text.matches(teeth).count(), 1, "{case}: {teeth}");
         text = text.replace(teeth, &format!("{teeth}, pressure-angle = 0.35"));
     }
-    [text, plain]
-        .map(|text| Scene::parse("scene.toml", &text).unwrap_or_else(|e| panic!("{case}: {e}")))
+    [text, plain].map(|text| {
+        PlaneScene::parse("scene.toml", &text).unwrap_or_else(|e| panic!("{case}: {e}"))
+    })
 }
 
 /// Without the references of a case, whose bearings carry no separating force.
-fn checked(scene: &Scene) -> CheckedStates {
+fn checked(scene: &PlaneScene) -> CheckedStates {
     let folder = repository_root().join("tests");
     check_case(scene, &folder).unwrap_or_else(|e| panic!("{}: {e}", scene.title))
 }

@@ -2,13 +2,13 @@
 //! holds on them as on the cases.
 
 use dwell_kinetostatics::ReducedModel;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_validation::PlanSubject;
 use dwell_verify::{Case, spread, verify_all};
 
 /// Judges a scene by every truth, and says how large its largest group is.
 fn check_scene(name: &str, text: &str, largest: usize) {
-    let scene = Scene::parse(name, text).unwrap_or_else(|e| panic!("{name}: {e:?}"));
+    let scene = PlaneScene::parse(name, text).unwrap_or_else(|e| panic!("{name}: {e:?}"));
     let subject = PlanSubject::new(&scene).unwrap_or_else(|e| panic!("{name}: {e:?}"));
     let groups = subject.exact().model().plan().group_methods();
     assert!(

@@ -2,7 +2,7 @@
 //! compiled and run.
 
 use dwell_kinetostatics::ReducedModel;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::{FormulaFormat, Language, StudyError, symbolic, symbolic_findings};
 use dwell_symbolic::{ClosedForm, Symbolic};
 use dwell_tests::cases::CASES;
@@ -59,7 +59,7 @@ fn prismatic_joints_agree() {
 }
 
 /// Holds a scene to 1e-12; whether it has closed forms.
-fn check_scene(scene: &Scene) -> bool {
+fn check_scene(scene: &PlaneScene) -> bool {
     let findings = symbolic_findings(scene).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
     for f in &findings {
         // Next to its change points a chain of parallelograms is not better known than this.

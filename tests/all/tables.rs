@@ -10,7 +10,7 @@ use dwell_kinetostatics::{
     Coefficients, ExactModel, Model, ReducedModel, TableDomain, TableError, TableQuantity,
     TabulatedModel,
 };
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_tests::fixtures::{self, scene};
 use std::f64::consts::TAU;
 use std::num::NonZeroUsize;
@@ -19,7 +19,7 @@ use std::num::NonZeroUsize;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// A scene's model with every reaction and all loads; none of several actuators.
-fn loaded(scene: &Scene) -> Option<ExactModel> {
+fn loaded(scene: &PlaneScene) -> Option<ExactModel> {
     let start = scene.assembly.to_configuration();
     let all = scene.mechanism.reactions();
     let model = Model::new(&scene.mechanism, &scene.masses, &start, &all).expect("a model");
@@ -333,7 +333,7 @@ fn drift<R: ReducedModel>(model: &R, start: ReducedState, options: &Options) -> 
         .collect()
 }
 
-fn labels(exact: &ExactModel, scene: &Scene) -> Labels {
+fn labels(exact: &ExactModel, scene: &PlaneScene) -> Labels {
     let reactions = exact.model().reactions().iter();
     Labels {
         scene: scene.hash(),

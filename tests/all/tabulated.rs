@@ -11,12 +11,12 @@ use dwell_geometry::PositionError;
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_kinetostatics::{Model, TableDomain, TableError, TableQuantity};
 use dwell_laws::{Law, Polynomial};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_tests::fixtures::{repository_root, scene};
 use std::f64::consts::TAU;
 
 /// A case with more loads or drives at its end.
-fn with(case: &str, more: &str) -> Scene {
+fn with(case: &str, more: &str) -> PlaneScene {
     let path = repository_root()
         .join("validation")
         .join(case)
@@ -26,7 +26,7 @@ fn with(case: &str, more: &str) -> Scene {
 }
 
 /// The machine of a scene with its own drives.
-fn full_machine(scene: &Scene) -> Machine {
+fn full_machine(scene: &PlaneScene) -> Machine {
     machine(scene, &[], &scene.drives)
 }
 

@@ -4,7 +4,7 @@
 use dwell_geometry::{Range, Reaction};
 use dwell_kinetostatics::variants::{Extremum, Turn, TurningVariant, VariantModel};
 use dwell_kinetostatics::{ExactModel, Model, ReducedModel};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_tests::fixtures;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -22,14 +22,14 @@ const POSITIONS: usize = 512;
 const TOLERANCE: f64 = 1e-12;
 
 /// A scene with one reaction; the Watt six-bar without what only loads it.
-fn variant_base(case: &str, reaction: &str) -> (Scene, Reaction) {
+fn variant_base(case: &str, reaction: &str) -> (PlaneScene, Reaction) {
     let scene = fixtures::scene(case);
     let text = scene.source.inner();
     let (before, rest) = match (text.find("[loads]"), text.find("[requests]")) {
         (Some(loads), Some(requests)) => (&text[..loads], &text[requests..]),
         _ => (text.as_str(), ""),
     };
-    let scene = Scene::parse(case, &format!("{before}{rest}")).expect("a scene");
+    let scene = PlaneScene::parse(case, &format!("{before}{rest}")).expect("a scene");
     let all = scene.mechanism.reactions();
     let named = |r: &&Reaction| scene.mechanism.reaction_name(**r) == reaction;
     let reaction = *all.iter().find(named).expect("a reaction");
@@ -45,12 +45,12 @@ fn random(counter: u64) -> f64 {
 }
 
 /// All numbers of the bodies changed by up to a part of them; those that are zero, by a part of the reach.
-fn variant(scene: &Scene, deviation: f64, number: u64) -> Scene {
+fn variant(scene: &PlaneScene, deviation: f64, number: u64) -> PlaneScene {
     variant_in(scene, &scene.number_paths(), deviation, number)
 }
 
 /// The same of the numbers at some paths.
-fn variant_in(scene: &Scene, paths: &[String], deviation: f64, number: u64) -> Scene {
+fn variant_in(scene: &PlaneScene, paths: &[String], deviation: f64, number: u64) -> PlaneScene {
     let mut values = Vec::new();
     for (k, path) in paths.iter().enumerate() {
         let value = scene.value(path).expect("a number");
@@ -64,7 +64,7 @@ fn variant_in(scene: &Scene, paths: &[String], deviation: f64, number: u64) -> S
     scene.with_values(&values).expect("a scene")
 }
 
-fn compile(scene: &Scene, reaction: Reaction) -> Option<Model> {
+fn compile(scene: &PlaneScene, reaction: Reaction) -> Option<Model> {
     let start = scene.assembly.to_configuration();
     Model::new(&scene.mechanism, &scene.masses, &start, &[reaction]).ok()
 }
@@ -174,7 +174,7 @@ fn compare(case: &str, reaction: &str, deviation: f64) -> (usize, usize, f64) {
     let model = compile(&variant(&scene, 0.01, u64::MAX / 4096), reaction).expect("a model");
     let structure = VariantModel::new(model).expect("a structure");
     let (start, seed) = (0.7, (1e4 * deviation) as u64 * VARIANTS as u64);
-    let variants: Vec<Scene> = (0..VARIANTS as u64)
+    let variants: Vec<PlaneScene> = (0..VARIANTS as u64)
         .into_par_iter()
         .map(|k| variant(&scene, deviation, seed + k))
         .collect();

@@ -3,7 +3,7 @@
 use dwell_dynamics::Method;
 use dwell_geometry::{PositionError, Range};
 use dwell_kinetostatics::{Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel};
-use dwell_scene::{MotionDuration, Scene, SpaceScene};
+use dwell_scene::{MotionDuration, PlaneScene, SpaceScene};
 use dwell_study::no_progress;
 use dwell_tests::fixtures::{repository_root, scene};
 use dwell_validation::work_precision::{
@@ -284,7 +284,7 @@ fn lines_to_type_keep_their_accuracy_once_the_scene_has_the_motion_of_the_study(
     let line = notes.find_map(|note| note.split_once("first line: "));
     let (_, line) = line.expect("a motion to write");
     let text = format!("{line}\n{}", scene("cam").source.inner());
-    let written = Scene::parse("cam.toml", &text).expect("a scene");
+    let written = PlaneScene::parse("cam.toml", &text).expect("a scene");
     let motion = written.motion.expect("its motion");
     assert_eq!(motion.duration, MotionDuration::Seconds(found.duration));
     assert_eq!(motion.initial_coordinates, [0.4]);
@@ -300,12 +300,12 @@ fn what_nothing_needs_is_counted() {
                 B = { revolute = [\"crank.B\", \"p.B\"] }\nC = { revolute = [\"p.C\", \"r.C\"] }\nD = { revolute = [\"ground.D\", \"r.D\"] }\n\
                 [actuators]\nphi = { angle = [\"ground\", \"crank\"] }\n[assembly]\nphi = 0.4\np = 0.95\nr = 1.82\n\
                 [motion]\ninitial-velocity = 1\nduration = 1";
-    let idle = Scene::parse("idle.toml", text).expect("a scene");
+    let idle = PlaneScene::parse("idle.toml", text).expect("a scene");
     let moving = text.replace(
         "C = [2.5, 0] }\n[joints]",
         "C = [2.5, 0] }\nmass = 1\ncenter = [1, 0]\n[joints]",
     );
-    let moving = Scene::parse("moving.toml", &moving).expect("a scene");
+    let moving = PlaneScene::parse("moving.toml", &moving).expect("a scene");
     for (scene, count) in [(idle, 1), (moving, 0)] {
         let found = measure(&scene, &effort(&[-4, -6], &[]), &no_progress).expect("a study");
         assert_eq!(found.requested.without_idle.0, count);
@@ -325,7 +325,7 @@ fn careless_scenes_are_cut_short_or_refused() {
              C = {{ revolute = [\"coupler.C\", \"rocker.C\"] }}\nD = {{ revolute = [\"ground.D\", \"rocker.D\"] }}\n\
              [actuators]\nphi = {{ angle = [\"ground\", \"crank\"] }}\n[assembly]\nphi = 0.4\ncoupler = 0.6\nrocker = 1.8\n{more}"
         );
-        Scene::parse("short.toml", &text).expect("a scene")
+        PlaneScene::parse("short.toml", &text).expect("a scene")
     };
     for more in ["", "[motion]\ninitial-velocity = 1\nduration = 50"] {
         let found = measure(&shortened(more), &effort, &no_progress).expect("a study");
@@ -343,7 +343,7 @@ fn careless_scenes_are_cut_short_or_refused() {
                  [bodies.two]\npoints = { D = [0, 0], B = [2, 0] }\n[joints]\nA = { revolute = [\"ground.A\", \"one.A\"] }\n\
                  B = { revolute = [\"one.B\", \"two.B\"] }\nD = { revolute = [\"ground.D\", \"two.D\"] }\n[assembly]\n\
                  one = 0.4\ntwo = 1.8";
-    let still = Scene::parse("still.toml", still).expect("a scene");
+    let still = PlaneScene::parse("still.toml", still).expect("a scene");
     let refused = measure(&still, &effort, &no_progress).expect_err("nothing moves");
     assert!(
         refused.to_string().starts_with("nothing can move"),
@@ -355,7 +355,7 @@ fn careless_scenes_are_cut_short_or_refused() {
     let stiff = text
         .replace("regularization-speed = 0.5", "regularization-speed = 1e-4")
         .replace("regularization-speed = 5,", "regularization-speed = 1e-4,");
-    let stiff = Scene::parse("stiff.toml", &stiff).expect("a scene");
+    let stiff = PlaneScene::parse("stiff.toml", &stiff).expect("a scene");
     let found = measure(&stiff, &effort, &no_progress).expect("a study");
     assert!(
         !found

@@ -4,7 +4,7 @@
 #![allow(clippy::print_stdout, reason = "a study, run by hand")]
 
 use dwell_findings::{Check, Finding};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Measures a case and writes its tolerances; how many.
 fn rewrite(case: &Path) -> Result<usize, Box<dyn Error>> {
-    let scene = Scene::read(case.join("scene.toml"))?;
+    let scene = PlaneScene::read(case.join("scene.toml"))?;
     let file = case.join("case.toml");
     let old = std::fs::read_to_string(&file).unwrap_or_default();
     let rest = without_tolerances(&old);

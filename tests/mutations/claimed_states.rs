@@ -5,7 +5,7 @@ use super::detection::Detection;
 use super::tested_mechanism::{CheckMode, ClaimedStates, TestedMechanism};
 use dwell_geometry::{BodyId, JointKind, Vec2, vec2};
 use dwell_kinetostatics::{LoadKind, Magnitude};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_verify::ClaimedState;
 
 /// A fault in states under loads.
@@ -114,7 +114,7 @@ impl Mutation {
 
     /// Describes the machine wrongly, if it can be.
     // Long: an arm for each mutation.
-    fn alter_scene(self, scene: &mut Scene) -> bool {
+    fn alter_scene(self, scene: &mut PlaneScene) -> bool {
         match self {
             Self::HalvedInertia => {
                 let masses = scene.masses.iter_mut().filter(|m| m.inertia > 0.0);
@@ -271,7 +271,7 @@ fn reverse_friction(machine: &TestedMechanism, claimed: &mut ClaimedStates) -> b
 }
 
 /// Takes off the velocities of bodies on moving guides what these carry along.
-fn remove_carrier_velocity(scene: &Scene, state: &mut ClaimedState) {
+fn remove_carrier_velocity(scene: &PlaneScene, state: &mut ClaimedState) {
     for joint in &scene.mechanism.joints {
         let [carrier, body] = joint.bodies.map(|b| b.0);
         if !matches!(joint.kind, JointKind::Prismatic { .. }) || body == scene.mechanism.ground {

@@ -5,7 +5,7 @@ use dwell_dynamics::ReducedState;
 use dwell_findings::Check;
 use dwell_geometry::{PositionError, Range, Vec2};
 use dwell_kinetostatics::{Coefficients, ExactModel, Inertia, LoadKind, Model, ReducedModel};
-use dwell_scene::{MotionDuration, Scene};
+use dwell_scene::{MotionDuration, PlaneScene};
 use dwell_validation::{PlanSubject, free_motion_run};
 use dwell_verify::{Finding, FreeMotionCase, check_free_motion};
 
@@ -109,7 +109,7 @@ impl ReducedModel for ScaledSlopeModel<'_> {
 }
 
 /// The free motion of a reduced model with ½m′ wrong by a factor, checked over one revolution.
-pub fn reduced(scene: &Scene, mutation: Option<Mutation>) -> Option<Detection> {
+pub fn reduced(scene: &PlaneScene, mutation: Option<Mutation>) -> Option<Detection> {
     let factor = match mutation {
         None => 1.0,
         Some(mutation) => mutation.factor()?,
@@ -138,7 +138,7 @@ pub fn reduced(scene: &Scene, mutation: Option<Mutation>) -> Option<Detection> {
 
 /// The free motion of a scene under its weight alone, checked by the multibody equations (6) and by the
 /// energy of what is claimed (4).
-pub fn under_gravity(scene: &Scene, mutation: Option<Mutation>) -> Option<Detection> {
+pub fn under_gravity(scene: &PlaneScene, mutation: Option<Mutation>) -> Option<Detection> {
     let mut scene_unaltered = scene.clone();
     if let Some(motion) = &mut scene_unaltered.motion {
         motion.duration = MotionDuration::Seconds(0.5);
@@ -168,7 +168,7 @@ pub fn under_gravity(scene: &Scene, mutation: Option<Mutation>) -> Option<Detect
 }
 
 /// Kinetic and potential energy of the claimed coordinates and speeds, by the right description.
-fn energy(scene: &Scene, run: &dwell_validation::FreeMotionRun) -> Option<Finding> {
+fn energy(scene: &PlaneScene, run: &dwell_validation::FreeMotionRun) -> Option<Finding> {
     let start = scene.assembly.to_configuration();
     let model = Model::new(&scene.mechanism, &scene.masses, &start, &[]).ok()?;
     let model = model.with_loads(scene.loads.clone()).ok()?;

@@ -4,13 +4,13 @@ use super::mutating_scalar::{MutatingScalar, with_mutation};
 use super::tested_mechanism::OperationMutation;
 use super::to_f64::pose_to_f64;
 use dwell_kinetostatics::Model;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_verify::{Coefficients, InverseDynamics, Subject, SubjectError};
 
 /// The reduced model of a mechanism with its scene, evaluated in mutating numbers.
 pub(super) struct MutatedModel<'a> {
     pub(super) model: &'a Model,
-    pub(super) scene: &'a Scene,
+    pub(super) scene: &'a PlaneScene,
     pub(super) mutation: OperationMutation,
 }
 

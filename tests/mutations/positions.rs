@@ -1,7 +1,7 @@
 //! The positions at which a mechanism is checked.
 
 use dwell_geometry::Plan;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_verify::spread;
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ const MAX_COORDINATE_STEP: f64 = 0.05;
 const RANGE_MARGIN: f64 = 0.1;
 
 /// Some positions inside the range, or near the start where there are several actuators.
-pub(super) fn positions(scene: &Scene, plan: &Plan) -> Vec<Vec<f64>> {
+pub(super) fn positions(scene: &PlaneScene, plan: &Plan) -> Vec<Vec<f64>> {
     let start = plan.assembly_coordinates();
     if start.len() > 1 {
         let near = |k: usize| {
@@ -44,7 +44,7 @@ pub(super) fn positions(scene: &Scene, plan: &Plan) -> Vec<Vec<f64>> {
 
 /// The frames at the start and at some positions, whole revolutions counted.
 pub(super) fn poses_along(
-    scene: &Scene,
+    scene: &PlaneScene,
     plan: &Plan,
     positions: &[Vec<f64>],
 ) -> (Vec<[f64; 3]>, Vec<Vec<[f64; 3]>>) {

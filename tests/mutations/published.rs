@@ -1,12 +1,12 @@
 //! The published samples of a reduced model, as the case's reference holds them.
 
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_verify::checks::PublishedSample;
 use serde_json::Value;
 use std::path::Path;
 
 /// The samples of m, ½m′, a and b.
-pub(super) fn samples(folder: &Path, scene: &Scene) -> Vec<PublishedSample> {
+pub(super) fn samples(folder: &Path, scene: &PlaneScene) -> Vec<PublishedSample> {
     let text = std::fs::read_to_string(folder.join("case.toml")).expect("a reference");
     let value: Value = toml::from_str(&text).expect("TOML");
     let number = |v: &Value| v.as_str().and_then(|s| s.parse::<f64>().ok());

@@ -6,7 +6,7 @@ use super::unit_wrenches::{BodyMotion, UnitWrenches};
 use dwell_findings::Check;
 use dwell_geometry::{Component, JointKind, Vec2};
 use dwell_kinetostatics::ReducedModel as _;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_validation::PlanSubject;
 use dwell_verify::checks::PublishedSample;
 use dwell_verify::{
@@ -125,7 +125,7 @@ impl Mutation {
 
 /// A mechanism on which the faults are tried.
 pub struct TestedModel {
-    pub scene: Scene,
+    pub scene: PlaneScene,
     subject: PlanSubject,
     /// The same mechanism put together the other way, where it can be.
     other_branch: Option<PlanSubject>,
@@ -136,8 +136,12 @@ pub struct TestedModel {
 
 impl TestedModel {
     /// A mechanism; `other` is the same on another branch.
-    pub fn new(scene: Scene, other: Option<&Scene>, published: Vec<PublishedSample>) -> Self {
-        let compile = |scene: &Scene| PlanSubject::new(scene).expect("a subject");
+    pub fn new(
+        scene: PlaneScene,
+        other: Option<&PlaneScene>,
+        published: Vec<PublishedSample>,
+    ) -> Self {
+        let compile = |scene: &PlaneScene| PlanSubject::new(scene).expect("a subject");
         let subject = compile(&scene);
         let range = subject.exact().range();
         let positions = match scene.sweep.as_ref().and_then(|sweep| sweep.range) {

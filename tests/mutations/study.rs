@@ -5,7 +5,7 @@ use super::operations::{self, MutationOutcome, MutationResult};
 use super::tested_mechanism::{CheckMode, TestedMechanism};
 use super::{claimed_states, motions, published, reduced_model};
 use crate::fixtures::repository_root;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use rayon::prelude::*;
 use std::path::PathBuf;
 
@@ -44,7 +44,7 @@ pub struct Study {
 }
 
 /// The scenes of the cases, then those of the study itself, by name.
-fn scenes() -> Vec<Scene> {
+fn scenes() -> Vec<PlaneScene> {
     let names = |folder: PathBuf| {
         let entries = std::fs::read_dir(folder).expect("a folder");
         let mut paths: Vec<PathBuf> = entries.map(|e| e.expect("an entry").path()).collect();
@@ -58,13 +58,14 @@ fn scenes() -> Vec<Scene> {
     let paths: Vec<PathBuf> = cases
         .chain(names(repository_root().join("tests/mutations/scenes")))
         .collect();
-    let read =
-        |path: &PathBuf| Scene::read(path).unwrap_or_else(|e| panic!("{}: {e:?}", path.display()));
+    let read = |path: &PathBuf| {
+        PlaneScene::read(path).unwrap_or_else(|e| panic!("{}: {e:?}", path.display()))
+    };
     paths.iter().map(read).collect()
 }
 
 /// A scene of a case, or of the study itself.
-pub fn scene(name: &str) -> Scene {
+pub fn scene(name: &str) -> PlaneScene {
     let all = ["validation", "tests/mutations/scenes"];
     let [case, extra] = all.map(|folder| repository_root().join(folder).join(name));
     let extra = extra.with_extension("toml");
@@ -73,11 +74,11 @@ pub fn scene(name: &str) -> Scene {
     } else {
         case.join("scene.toml")
     };
-    Scene::read(path).unwrap_or_else(|e| panic!("{name}: {e:?}"))
+    PlaneScene::read(path).unwrap_or_else(|e| panic!("{name}: {e:?}"))
 }
 
 /// The mechanisms, the quickest to check first.
-pub fn tested_mechanisms(scenes: Vec<Scene>) -> Vec<TestedMechanism> {
+pub fn tested_mechanisms(scenes: Vec<PlaneScene>) -> Vec<TestedMechanism> {
     let all = scenes.into_par_iter().flat_map_iter(|scene| {
         let single = scene.mechanism.actuators.len() == 1;
         let reduced = single.then(|| TestedMechanism::new(scene.clone(), CheckMode::Reduced));
@@ -135,18 +136,20 @@ impl Study {
 
     /// All faults on some machines.
     // Long: the three groups of mutations.
-    pub fn run(scenes: Vec<Scene>, models: &[reduced_model::TestedModel]) -> Self {
+    pub fn run(scenes: Vec<PlaneScene>, models: &[reduced_model::TestedModel]) -> Self {
         let mechanisms = tested_mechanisms(scenes);
         let states: Vec<&TestedMechanism> = mechanisms
             .iter()
             .filter(|m| m.mode == CheckMode::States)
             .collect();
         let moving_scenes = ["single-dwell", "double-pendulum"].map(scene);
-        let check_motion =
-            |scene: &Scene, mutation: Option<motions::Mutation>| match scene.loads.is_empty() {
-                true => motions::reduced(scene, mutation),
-                false => motions::under_gravity(scene, mutation),
-            };
+        let check_motion = |scene: &PlaneScene, mutation: Option<motions::Mutation>| match scene
+            .loads
+            .is_empty()
+        {
+            true => motions::reduced(scene, mutation),
+            false => motions::under_gravity(scene, mutation),
+        };
         let by_mechanism = mechanisms.iter().map(|machine| machine.check(None));
         let by_model = models.iter().filter_map(|model| model.check(None));
         let by_motion = moving_scenes

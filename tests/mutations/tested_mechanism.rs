@@ -12,7 +12,7 @@ use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::{
     EvaluatedState, InverseDynamics as Kinetostatic, KinematicState, MachineModel as _, Model,
 };
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_verify::{
     Case, ClaimedState, Subject, check_energies, check_states, load_wrenches, verify_all,
 };
@@ -44,7 +44,7 @@ pub enum CheckMode {
 pub struct TestedMechanism {
     pub name: String,
     pub mode: CheckMode,
-    scene: Scene,
+    scene: PlaneScene,
     model: Model,
     positions: Vec<Vec<f64>>,
     /// By position, the frames of all bodies, revolutions counted from the start.
@@ -69,7 +69,7 @@ pub const UNCHANGED_TOLERANCE: f64 = 1e-9;
 
 impl TestedMechanism {
     /// A mechanism with its results.
-    pub fn new(scene: Scene, mode: CheckMode) -> Self {
+    pub fn new(scene: PlaneScene, mode: CheckMode) -> Self {
         let name = scene.name.clone();
         let mut tested = Self::from_scene(scene, mode).unwrap_or_else(|| panic!("{name} is none"));
         if mode == CheckMode::States {
@@ -83,7 +83,7 @@ impl TestedMechanism {
     }
 
     /// A mechanism as described; none if it cannot be assembled.
-    pub fn from_scene(scene: Scene, mode: CheckMode) -> Option<Self> {
+    pub fn from_scene(scene: PlaneScene, mode: CheckMode) -> Option<Self> {
         let mechanism = &scene.mechanism;
         let start = scene.assembly.to_configuration();
         let mut model =
@@ -192,7 +192,7 @@ impl TestedMechanism {
         &self.positions
     }
 
-    pub fn scene(&self) -> &Scene {
+    pub fn scene(&self) -> &PlaneScene {
         &self.scene
     }
 

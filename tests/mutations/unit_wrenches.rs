@@ -2,7 +2,7 @@
 
 use dwell_geometry::{BodyId, JointId, JointKind, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::{InverseDynamics, KinetostaticsError, Load, LoadKind, Magnitude, Model};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_verify::SubjectError;
 
 /// A body in motion, in ground axes.
@@ -32,7 +32,7 @@ pub(super) struct UnitWrenches {
 }
 
 impl UnitWrenches {
-    pub(super) fn new(scene: &Scene) -> Self {
+    pub(super) fn new(scene: &PlaneScene) -> Self {
         let mechanism = scene.mechanism.clone();
         let ground = BodyId(mechanism.ground);
         let given = || Magnitude::External(Vec::new());

@@ -24,7 +24,7 @@ mod view;
 use clap::{CommandFactory as _, FromArgMatches as _};
 use dwell_findings::all_pass;
 use dwell_report::{Files, OutputFolder, ReportError};
-use dwell_scene::{AnyScene, Scene, SceneError, SceneFile};
+use dwell_scene::{Scene, SceneError, SceneFile};
 use dwell_study::{
     CommandResult, Outcome, PictureFormat, Pictures, Shard, Step, StudyError, TrajectoryOutcome,
     add_page, add_summary, no_progress,
@@ -115,7 +115,7 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
                 Ok(Done {
                     outcome,
                     early_stop: early_stop.map(SceneError::from),
-                    scene: Some(scene.file().clone()),
+                    scene: Some(SceneFile::clone(&scene)),
                     ..Done::default()
                 })
             });
@@ -287,14 +287,14 @@ fn progress_bar() -> ProgressBar {
 }
 
 /// Reads the scene of a command.
-fn read(options: &Options, command: &Command, bar: &ProgressBar) -> Result<AnyScene, StudyError> {
+fn read(options: &Options, command: &Command, bar: &ProgressBar) -> Result<Scene, StudyError> {
     let path = command.scene().unwrap_or_else(|| Path::new(STANDARD_INPUT));
     let scene = match path == Path::new(STANDARD_INPUT) {
-        true => AnyScene::read_from(std::io::stdin().lock(), STANDARD_INPUT_NAME, "<stdin>")?,
-        false => AnyScene::read(path)?,
+        true => Scene::read_from(std::io::stdin().lock(), STANDARD_INPUT_NAME, "<stdin>")?,
+        false => Scene::read(path)?,
     };
     let scene = scene.named(scene_name(options, path));
-    print_warnings(scene.file());
+    print_warnings(&scene);
     // From now on a terminal shows every second that the study goes on.
     bar.enable_steady_tick(Duration::from_secs(1));
     Ok(scene)

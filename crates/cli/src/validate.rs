@@ -3,7 +3,7 @@
 use crate::interface::interface;
 use crate::options::DEFAULT_CASE_FOLDER;
 use crate::{cases, print_warnings, validation_error};
-use dwell_scene::{Scene, SceneError, SpaceScene};
+use dwell_scene::{PlaneScene, SceneError, SpaceScene};
 use dwell_study::{Outcome, Step, StudyError};
 use dwell_validation::manual::KeyStudy;
 use dwell_validation::{
@@ -29,7 +29,7 @@ pub(crate) fn validate(
         true => cases::find(&others, folder)?,
         false => Vec::new(),
     };
-    let read = |case: &PathBuf| Scene::read(case.join("scene.toml"));
+    let read = |case: &PathBuf| PlaneScene::read(case.join("scene.toml"));
     let scenes: Vec<_> = cases.iter().map(read).collect();
     reject_duplicate_names(&cases, &scenes)?;
     scenes
@@ -37,7 +37,7 @@ pub(crate) fn validate(
         .flatten()
         .for_each(|scene| print_warnings(scene));
     let program = std::env::current_exe().ok();
-    let one = |(scene, case): (&Result<Scene, SceneError>, &PathBuf)| {
+    let one = |(scene, case): (&Result<PlaneScene, SceneError>, &PathBuf)| {
         let scene = scene.as_ref().map_err(Clone::clone)?;
         let progress = |step: Step<'_>| {
             bar.set_length((step.total * cases.len()) as u64);
@@ -52,7 +52,7 @@ pub(crate) fn validate(
         done.map_err(validation_error)
     };
     let all_cases = names.is_empty() && folder == Path::new(DEFAULT_CASE_FOLDER);
-    let read: Vec<&Scene> = scenes.iter().flatten().collect();
+    let read: Vec<&PlaneScene> = scenes.iter().flatten().collect();
     let all = all_cases.then_some(&read[..]);
     let (results, (studies, keys)): (Vec<Result<Validation, SceneError>>, _) = rayon::join(
         || scenes.par_iter().zip(&cases).map(one).collect(),
@@ -124,7 +124,7 @@ fn add(all: &mut Outcome, added: Outcome) {
 /// The studies beside the cases: extreme parameters, and with all of Dwell's own cases what accuracy costs and what exported
 /// runs are worth.
 fn studies(
-    all: Option<&[&Scene]>,
+    all: Option<&[&PlaneScene]>,
     (slow, seed): (bool, u64),
 ) -> Result<Vec<(&'static str, Outcome)>, StudyError> {
     let exported = all.and_then(|scenes| scenes.iter().find(|s| s.name == export_study::CASE));
@@ -196,11 +196,11 @@ fn validated_cases<'a>(
 /// Refuses two cases of one name: they would write the same files.
 fn reject_duplicate_names(
     cases: &[PathBuf],
-    scenes: &[Result<Scene, SceneError>],
+    scenes: &[Result<PlaneScene, SceneError>],
 ) -> Result<(), Report> {
     for (k, scene) in scenes.iter().enumerate() {
         let Ok(scene) = scene else { continue };
-        let same = |s: &Result<Scene, SceneError>| matches!(s, Ok(s) if s.name == scene.name);
+        let same = |s: &Result<PlaneScene, SceneError>| matches!(s, Ok(s) if s.name == scene.name);
         if let Some(other) = scenes[..k].iter().position(same) {
             return Err(miette!(
                 help = "validate them one after the other, each with its own --out",
@@ -217,7 +217,7 @@ fn reject_duplicate_names(
 /// Each case by its name with its result.
 fn case_results<'a>(
     names: &'a [String],
-    scenes: &'a [Result<Scene, SceneError>],
+    scenes: &'a [Result<PlaneScene, SceneError>],
     results: &'a [Result<Validation, SceneError>],
 ) -> Vec<CaseResult<'a>> {
     let results_of = scenes.iter().zip(results).map(|of_case| match of_case {

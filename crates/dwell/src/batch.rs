@@ -2,8 +2,6 @@
 
 use crate::error::Error;
 use crate::reduced::ReducedModel;
-use dwell_kinetostatics::Batch;
-use dwell_study::explain::explain_position;
 use rayon::prelude::*;
 
 /// Coordinates that one thread evaluates with one working memory.
@@ -56,13 +54,7 @@ impl ReducedModel {
         if q.len() <= FEW {
             return self.one_by_one(q);
         }
-        let mut inertial = Batch::default();
-        self.exact.reduce_batch(q, &mut inertial);
-        let first = inertial.errors.iter().min_by_key(|(index, _)| *index);
-        if let Some((_, error)) = first {
-            let plan = self.exact.model().plan();
-            return Err(explain_position(self.scene.inner(), plan, error).into());
-        }
+        let inertial = self.source.inertial_batch(q)?;
         let (w, c) = self.load_batch(q)?;
         Ok(CoefficientBatch {
             m: inertial.m,
@@ -93,7 +85,7 @@ impl ReducedModel {
 
     /// w and c at many coordinates.
     fn load_batch(&self, q: &[f64]) -> Result<(Vec<f64>, Vec<f64>), Error> {
-        let loads = self.loaded.as_ref().map_or(0, |m| m.loads().len());
+        let loads = self.loads().len();
         if loads == 0 {
             return Ok((Vec::new(), Vec::new()));
         }

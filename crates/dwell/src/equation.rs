@@ -1,51 +1,11 @@
 //! The equation of a free motion as a function, for integrators of one's own.
 
 use crate::error::Error;
-use crate::mechanism::Mechanism;
-use crate::mechanism::scene::Scene;
 use dwell_dynamics::{DynamicsError, Machine, MachineWorkspace};
 use dwell_numerics::{Dual, Scalar as _};
-use dwell_study::explain::explain_motion;
-use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
+use dwell_study::StudyScene;
+use std::fmt;
 use std::sync::Arc;
-
-impl Mechanism {
-    /// The equation of the scene's free motion, ẏ = f(t, y), with the states y = [free coordinates; their velocities; states of
-    /// drives and contacts; works of the sources that have no potential].
-    ///
-    /// # Errors
-    /// [`Error::Study`] where the scene has no motion, or its machine cannot be built.
-    ///
-    /// ```
-    /// let study = dwell::Scene::read("../../validation/single-dwell/scene.toml")?.assemble()?;
-    /// let mut equation = study.equation_of_motion()?;
-    /// let start = equation.initial_state();
-    /// assert_eq!(start, [0.0, 1.0]); // φ and φ̇
-    /// let rates = equation.rates(0.0, &start)?.to_vec();
-    /// assert_eq!(rates[0], 1.0);
-    /// # Ok::<(), dwell::Error>(())
-    /// ```
-    pub fn equation_of_motion(&self) -> Result<EquationOfMotion, Error> {
-        let scene = self.scene.inner();
-        let Some(spec) = &scene.motion else {
-            let help = Some("add a motion".to_owned());
-            return Err(scene
-                .error("the scene has no [motion]".to_owned(), help, &[])
-                .into());
-        };
-        let problem = FreeMotionProblem::new(scene, scene, spec)?;
-        let start = problem.initial_state().y;
-        let machine = Arc::new(problem.machine);
-        Ok(EquationOfMotion {
-            scene: self.scene.clone(),
-            workspace: machine.workspace(),
-            dual_workspace: machine.workspace(),
-            rates: vec![0.0; start.len()],
-            machine,
-            start,
-        })
-    }
-}
 
 /// The equation of motion of a machine with the working memory of one thread.
 ///
@@ -60,16 +20,13 @@ impl Mechanism {
 /// # Ok::<(), dwell::Error>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct EquationOfMotion {
-    scene: Scene,
-    machine: Arc<Machine>,
-    start: Vec<f64>,
-    workspace: MachineWorkspace<f64>,
-    dual_workspace: MachineWorkspace<Dual>,
-    rates: Vec<f64>,
-}
+pub struct EquationOfMotion(Box<dyn EquationSource>);
 
 impl EquationOfMotion {
+    pub(crate) fn new(source: Box<dyn EquationSource>) -> Self {
+        Self(source)
+    }
+
     /// The states at t = 0: rad or m, per s.
     ///
     /// ```
@@ -78,7 +35,7 @@ impl EquationOfMotion {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn initial_state(&self) -> Vec<f64> {
-        self.start.clone()
+        self.0.initial_state()
     }
 
     /// ẏ at time t, s. It allocates nothing.
@@ -94,12 +51,7 @@ impl EquationOfMotion {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn rates(&mut self, t: f64, y: &[f64]) -> Result<&[f64], Error> {
-        self.check(y)?;
-        match self.machine.evaluate(t, y, &mut self.workspace) {
-            Ok(state) => state.derivative(&mut self.rates),
-            Err(error) => return Err(self.explain(&error)),
-        }
-        Ok(&self.rates)
+        self.0.rates(t, y)
     }
 
     /// ∂ẏ/∂y at time t, s, row by row, by dual numbers: exact but for rounding.
@@ -114,6 +66,94 @@ impl EquationOfMotion {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn jacobian(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, Error> {
+        self.0.jacobian(t, y)
+    }
+}
+
+/// The equation of motion of a scene.
+pub(crate) trait EquationSource: fmt::Debug + Send + Sync {
+    fn copy(&self) -> Box<dyn EquationSource>;
+
+    fn initial_state(&self) -> Vec<f64>;
+
+    fn rates(&mut self, t: f64, y: &[f64]) -> Result<&[f64], Error>;
+
+    fn jacobian(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, Error>;
+}
+
+impl Clone for Box<dyn EquationSource> {
+    fn clone(&self) -> Self {
+        self.copy()
+    }
+}
+
+pub(crate) struct SceneEquation<S: StudyScene> {
+    scene: Arc<S>,
+    machine: Arc<Machine<S::Model>>,
+    start: Vec<f64>,
+    workspace: MachineWorkspace<f64, S::Model>,
+    dual_workspace: MachineWorkspace<Dual, S::Model>,
+    rates: Vec<f64>,
+}
+
+impl<S: StudyScene> fmt::Debug for SceneEquation<S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "SceneEquation({})", self.scene.name)
+    }
+}
+
+impl<S: StudyScene> SceneEquation<S> {
+    pub(crate) fn new(scene: Arc<S>, machine: Machine<S::Model>, start: Vec<f64>) -> Self {
+        let machine = Arc::new(machine);
+        Self {
+            scene,
+            workspace: machine.workspace(),
+            dual_workspace: machine.workspace(),
+            rates: vec![0.0; start.len()],
+            machine,
+            start,
+        }
+    }
+
+    fn check(&self, y: &[f64]) -> Result<(), Error> {
+        let states = self.start.len();
+        match y.len() {
+            given if given == states => Ok(()),
+            given => Err(Error::State { given, states }),
+        }
+    }
+
+    fn explain(&self, error: &DynamicsError) -> Error {
+        self.scene.explain(self.machine.model(), error).into()
+    }
+}
+
+impl<S: StudyScene> EquationSource for SceneEquation<S> {
+    fn copy(&self) -> Box<dyn EquationSource> {
+        Box::new(Self {
+            scene: Arc::clone(&self.scene),
+            machine: Arc::clone(&self.machine),
+            start: self.start.clone(),
+            workspace: self.workspace.clone(),
+            dual_workspace: self.dual_workspace.clone(),
+            rates: self.rates.clone(),
+        })
+    }
+
+    fn initial_state(&self) -> Vec<f64> {
+        self.start.clone()
+    }
+
+    fn rates(&mut self, t: f64, y: &[f64]) -> Result<&[f64], Error> {
+        self.check(y)?;
+        match self.machine.evaluate(t, y, &mut self.workspace) {
+            Ok(state) => state.derivative(&mut self.rates),
+            Err(error) => return Err(self.explain(&error)),
+        }
+        Ok(&self.rates)
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64]) -> Result<Vec<f64>, Error> {
         self.check(y)?;
         let n = y.len();
         let mut states: Vec<Dual> = y.iter().map(|&value| Dual::from_f64(value)).collect();
@@ -132,17 +172,5 @@ impl EquationOfMotion {
             }
         }
         Ok(jacobian)
-    }
-
-    fn check(&self, y: &[f64]) -> Result<(), Error> {
-        let states = self.start.len();
-        match y.len() {
-            given if given == states => Ok(()),
-            given => Err(Error::State { given, states }),
-        }
-    }
-
-    fn explain(&self, error: &DynamicsError) -> Error {
-        explain_motion(self.scene.inner(), self.machine.model().plan(), error).into()
     }
 }

@@ -33,6 +33,22 @@ pub enum Error {
         /// The nearest name, or all of them.
         help: String,
     },
+    /// Another number of components than a vector has.
+    #[error("{asked} numbers asked of a vector, where {components} can be given")]
+    Components {
+        /// How many are asked for.
+        asked: usize,
+        /// How many there can be.
+        components: &'static str,
+    },
+    /// What exists in the plane alone.
+    #[error("{what}: this mechanism is in space ({instead})")]
+    InSpace {
+        /// What was asked for.
+        what: &'static str,
+        /// What there is instead.
+        instead: &'static str,
+    },
     /// A list of coordinates, velocities or accelerations that does not have one number for each actuator.
     #[error("{given} numbers given as {what}, where {actuators} are needed: one for each actuator")]
     Count {
@@ -93,6 +109,8 @@ impl Error {
             Self::Study(StudyError::Scene(error)) => Some(error),
             Self::Study(_)
             | Self::Unknown { .. }
+            | Self::Components { .. }
+            | Self::InSpace { .. }
             | Self::Count { .. }
             | Self::State { .. }
             | Self::GivenTwice { .. }

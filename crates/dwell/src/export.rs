@@ -2,15 +2,15 @@
 
 use crate::error::Error;
 use crate::mechanism::scene::Scene;
-use crate::space;
 use dwell_export::{
     Export, FmiVersion, Identifiers, Precision, Request, c_files, c_files_of_several_freedoms,
     matlab_files, rust_files,
 };
+use dwell_findings::Finding;
 use dwell_scene::SceneFile;
 use dwell_study::{
-    ExportRequest, compute_closed_form, compute_export, compute_export_in_space,
-    compute_export_of_several_freedoms, fmu_archive,
+    ClosedForm, ExportRequest, SceneTask, StudyError, StudyScene, compute_closed_form,
+    compute_export, compute_export_of_several_freedoms, fmu_archive, with_dimension,
 };
 
 /// What [`Scene::export`] writes, in double precision.
@@ -36,6 +36,10 @@ pub enum ExportTarget {
 }
 
 impl ExportTarget {
+    fn is_c(self) -> bool {
+        matches!(self, Self::C | Self::ExactC)
+    }
+
     /// Whether it has the model's own operations instead of cells.
     fn is_exact(self) -> bool {
         matches!(self, Self::ExactC | Self::ExactFmu(_))
@@ -45,11 +49,11 @@ impl ExportTarget {
 impl Scene {
     /// The machine as code: the path and content of each file, as `dwell export` writes them. In cells every function of the coordinate is
     /// within `accuracy` of its largest value (1e-14 to 1e-2); exact code has that of rounding. A machine of several freedoms has exact code,
-    /// in C.
+    /// in C. Loops in space are closed by Newton's method: they have no exact code, and machines of several freedoms have none there.
     ///
     /// # Errors
     /// [`Error::Study`] where the machine cannot be exported, with the reason and what to change: it has several freedoms and the target
-    /// is not C, passes change points, or sticks. [`Error::Table`] for another accuracy.
+    /// is not C, or in space; it passes change points, or sticks. [`Error::Table`] for another accuracy.
     ///
     /// ```
     /// use dwell::ExportTarget;
@@ -66,12 +70,7 @@ impl Scene {
         accuracy: f64,
     ) -> Result<Vec<(String, Vec<u8>)>, Error> {
         let asked = request(target, accuracy)?;
-        let is_c = matches!(target, ExportTarget::C | ExportTarget::ExactC);
-        if is_c && self.inner().mechanism.actuators.len() > 1 {
-            let export = compute_export_of_several_freedoms(self.inner(), &asked)?;
-            return Ok(texts(c_files_of_several_freedoms(&export).into()));
-        }
-        files(self.inner(), target, &compute_export(self.inner(), &asked)?)
+        with_dimension(self.inner(), ExportScene { target, asked })
     }
 
     /// The closed forms of a mechanism made of dyads: a function `reduced` of the coordinate in a language, that gives the positions, m, ½m′, and a
@@ -79,7 +78,7 @@ impl Scene {
     /// positions.
     ///
     /// # Errors
-    /// [`Error::Study`] where the mechanism is not made of dyads, has several actuators, or has no such reaction;
+    /// [`Error::Study`] where the mechanism is in space, is not made of dyads, has several actuators, or has no such reaction;
     /// [`Error::ClosedForm`] where they do not agree.
     ///
     /// ```
@@ -93,7 +92,7 @@ impl Scene {
         language: crate::Language,
         reaction: Option<&str>,
     ) -> Result<String, Error> {
-        let (form, findings) = compute_closed_form(self.inner(), reaction)?;
+        let (form, findings) = with_dimension(self.inner(), FindClosedForm(reaction))?;
         if let Some(finding) = findings.iter().find(|finding| !finding.pass) {
             return Err(Error::ClosedForm {
                 difference: finding.relative_difference,
@@ -103,30 +102,31 @@ impl Scene {
     }
 }
 
-impl space::Scene {
-    /// The machine as code, as [`Scene::export`](crate::Scene::export) of a mechanism in the plane. Loops in space are closed by Newton's
-    /// method: they have no exact code.
-    ///
-    /// # Errors
-    /// [`Error::Study`] where the machine cannot be exported, with the reason and what to change. [`Error::Table`] for another
-    /// accuracy.
-    ///
-    /// ```
-    /// use dwell::ExportTarget;
-    /// let scene = dwell::space::Scene::read("../../validation/spatial/rssr.toml")?;
-    /// let files = scene.export(ExportTarget::C, 1e-6)?;
-    /// assert_eq!(files[1].0, "rssr.c");
-    /// assert!(scene.export(ExportTarget::ExactC, 1e-6).is_err());
-    /// # Ok::<(), dwell::Error>(())
-    /// ```
-    pub fn export(
-        &self,
-        target: ExportTarget,
-        accuracy: f64,
-    ) -> Result<Vec<(String, Vec<u8>)>, Error> {
-        let asked = request(target, accuracy)?;
-        let export = compute_export_in_space(self.inner(), &asked)?;
-        files(&self.inner().file, target, &export)
+struct ExportScene {
+    target: ExportTarget,
+    asked: ExportRequest,
+}
+
+impl SceneTask for ExportScene {
+    type Output = Result<Vec<(String, Vec<u8>)>, Error>;
+
+    fn run<S: StudyScene>(self, scene: &S) -> Self::Output {
+        let Self { target, asked } = self;
+        if target.is_c() && scene.actuator(1).is_some() {
+            let export = compute_export_of_several_freedoms(scene, &asked)?;
+            return Ok(texts(c_files_of_several_freedoms(&export).into()));
+        }
+        files(scene, target, &compute_export(scene, &asked)?)
+    }
+}
+
+struct FindClosedForm<'r>(Option<&'r str>);
+
+impl SceneTask for FindClosedForm<'_> {
+    type Output = Result<(ClosedForm, Vec<Finding>), StudyError>;
+
+    fn run<S: StudyScene>(self, scene: &S) -> Self::Output {
+        compute_closed_form(scene, self.0)
     }
 }
 

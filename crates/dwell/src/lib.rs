@@ -1,4 +1,4 @@
-//! Kinematics, forces, the reduced model and the motion of mechanisms, in the plane and in [`space`].
+//! Kinematics, forces, the reduced model and the motion of mechanisms, in the plane and in space.
 //!
 //! A mechanism is built in a program, or read from a scene file; it is assembled, and then its results are computed.
 //!
@@ -44,7 +44,6 @@
 //! | where does it rest, how does it vibrate? | [`Mechanism::equilibria`], [`Mechanism::linearise`] |
 //! | how steadily does it run, which flywheel does it need? | [`Mechanism::cycle`] |
 //! | what if its dimensions vary? | [`Sweep`] |
-//! | the same of a mechanism in space | [`space`] |
 //! | the same as code for a controller, or as formulas | [`Scene::export`], [`Scene::closed_form`] |
 //!
 //! # Loads of one's own
@@ -61,7 +60,8 @@
 //!
 //! # Conventions
 //!
-//! SI everywhere: m, rad, kg, s, N. Right-handed plane, angles counter-clockwise. A reaction is the force or moment of the
+//! SI everywhere: m, rad, kg, s, N. Right-handed plane, angles counter-clockwise. Points with three numbers make a mechanism one in space;
+//! a vector has as many components as it is [taken for](Kinematics). A reaction is the force or moment of the
 //! joint's first-named body on the second. Points are written `body.point`, reactions `joint.component`. Coordinates are those of
 //! the actuators, in their order. A [`Mechanism`] and a [`ReducedModel`] are constant and shared between threads.
 //!
@@ -73,6 +73,7 @@
 //! More programs are in the folder `examples`: reactions of a four-bar, the single-dwell study, the flywheel of a press,
 //! equilibrium and eigenfrequencies, a tolerance study, and loads of one's own.
 
+mod assembled;
 mod batch;
 mod column_table;
 mod equation;
@@ -82,7 +83,6 @@ mod machine;
 mod mechanism;
 mod motion;
 mod reduced;
-pub mod space;
 mod sweep;
 mod table;
 mod value;
@@ -142,7 +142,7 @@ pub use mechanism::parts::{
 pub use mechanism::scene::Scene;
 pub use motion::{MotionResults, Period, Solver};
 pub use reduced::{Coefficients, Evaluator, ReducedModel};
-pub use sweep::{Sweep, SweepResults, VariedScene};
+pub use sweep::{Sweep, SweepResults};
 pub use table::Table;
 pub use value::Value;
 

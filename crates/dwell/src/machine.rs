@@ -1,7 +1,6 @@
 //! Equilibria, linearised motion and the steady cycle of a machine.
 
 use crate::error::Error;
-use crate::mechanism::Mechanism;
 use crate::motion::Solver;
 use dwell_dynamics::Stability;
 use dwell_findings::Column;
@@ -10,81 +9,6 @@ use dwell_study::{
     CycleSearch, CycleStability, OperatingPoint, compute_cycle, compute_equilibria,
     compute_linearisation,
 };
-
-impl Mechanism {
-    /// The equilibria: over the range of the only coordinate all of them, else those that many starts lead to.
-    ///
-    /// # Errors
-    /// [`Error::Study`] where loads depend on time, or none is found of several coordinates.
-    ///
-    /// ```
-    /// use dwell::{Actuator, Joint, Load, Mechanism, Stability};
-    ///
-    /// let mut m = Mechanism::builder("Pendulum");
-    /// m.ground().point("O", [0.0, 0.0]);
-    /// m.body("bob").point("O", [0.0, 0.0]).mass(2.0, [0.0, -0.5], 0.0);
-    /// m.joint("O", Joint::revolute("ground.O", "bob.O"));
-    /// m.actuator("phi", Actuator::angle("ground", "bob"));
-    /// m.load("weight", Load::gravity([0.0, -9.81]));
-    /// let found = m.assemble()?.equilibria()?;
-    /// assert_eq!(found.len(), 2);
-    /// let hanging = found.iter().find(|e| e.stability == Stability::Centre).unwrap();
-    /// assert!((hanging.modes[0].angular_frequency - (9.81_f64 / 0.5).sqrt()).abs() < 1e-9);
-    /// # Ok::<(), dwell::Error>(())
-    /// ```
-    pub fn equilibria(&self) -> Result<Vec<Equilibrium>, Error> {
-        equilibria_of(self.scene.inner())
-    }
-
-    /// Small motions about the equilibrium nearest to the initial state, as ẋ = A x + B u, z = C x + D u.
-    ///
-    /// # Errors
-    /// As [`Mechanism::equilibria`].
-    ///
-    /// ```
-    /// # use dwell::{Actuator, Joint, Load, Mechanism};
-    /// # let mut m = Mechanism::builder("Pendulum");
-    /// # m.ground().point("O", [0.0, 0.0]);
-    /// # m.body("bob").point("O", [0.0, 0.0]).mass(2.0, [0.0, -0.5], 0.0);
-    /// # m.joint("O", Joint::revolute("ground.O", "bob.O"));
-    /// # m.actuator("phi", Actuator::angle("ground", "bob"));
-    /// # m.load("weight", Load::gravity([0.0, -9.81]));
-    /// # let pendulum = m.assemble()?;
-    /// let linear = pendulum.linearise()?;
-    /// assert_eq!(linear.states, ["phi [rad]", "phi.velocity [rad/s]"]);
-    /// assert!((linear.a[1][0] + 9.81 / 0.5).abs() < 1e-9);
-    /// # Ok::<(), dwell::Error>(())
-    /// ```
-    pub fn linearise(&self) -> Result<StateSpace, Error> {
-        linearisation_of(self.scene.inner())
-    }
-
-    /// The steady cycle of a rotating machine, and the flywheel that keeps its coefficient of fluctuation to
-    /// `fluctuation`, if one is given.
-    ///
-    /// # Errors
-    /// [`Error::Study`] where the machine does not rotate, has no drive or loss, or depends on time.
-    ///
-    /// ```
-    /// use dwell::{Actuator, Drive, Joint, Load, Mechanism, Solver};
-    ///
-    /// // A wheel of 0.2 kg m2 with a motor line and a load torque that varies over the revolution.
-    /// let mut m = Mechanism::builder("Wheel");
-    /// m.ground().point("O", [0.0, 0.0]);
-    /// m.body("wheel").point("O", [0.0, 0.0]).mass(5.0, "O", 0.2);
-    /// m.joint("O", Joint::revolute("ground.O", "wheel.O"));
-    /// m.actuator("phi", Actuator::angle("ground", "wheel"));
-    /// m.load("work", Load::torque("wheel", "-2 - 1.5*cos(phi)"));
-    /// m.drive("motor", Drive::motor_line("phi", 10.0, 30.0));
-    /// let cycle = m.assemble()?.cycle(&Solver::accuracy(1e-10), Some(0.005))?;
-    /// assert!(cycle.fluctuation > 0.005);
-    /// assert!(cycle.flywheel.unwrap() > 0.0); // kg m2 to be added
-    /// # Ok::<(), dwell::Error>(())
-    /// ```
-    pub fn cycle(&self, solver: &Solver, fluctuation: Option<f64>) -> Result<Cycle, Error> {
-        cycle_of(self.scene.inner(), solver, fluctuation)
-    }
-}
 
 /// The equilibria of a machine in the plane or in space.
 pub(crate) fn equilibria_of<S: MachineScene>(scene: &S) -> Result<Vec<Equilibrium>, Error> {

@@ -1,20 +1,24 @@
 //! An assembled mechanism, and what can be asked of it at one position.
 
 pub(crate) mod builder;
+mod equations;
 pub(crate) mod kinematics;
+mod machines;
+mod motions;
 pub(crate) mod parts;
 mod paths;
+mod reduction;
 pub(crate) mod scene;
 
+use crate::assembled::{Assemble, Assembled, Names};
 use crate::error::Error;
 use crate::mechanism::builder::MechanismBuilder;
 use crate::mechanism::kinematics::{InverseDynamics, Kinematics};
 use crate::mechanism::scene::Scene;
-use dwell_kinetostatics::Model;
-use dwell_study::explain::{explain_motion, explain_position};
+use dwell_study::with_dimension;
 use std::sync::Arc;
 
-/// An assembled mechanism: constant, cheap to clone, and shared between threads.
+/// An assembled mechanism, in the plane or in space: constant, cheap to clone, and shared between threads.
 ///
 /// It is [built](Mechanism::builder) or [read](Scene::read), and then asked. Coordinates are those of its
 /// [actuators](Mechanism::actuators), in their order, in rad or m; everything is in SI.
@@ -40,8 +44,8 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub struct Mechanism {
     pub(crate) scene: Scene,
-    /// With all loads and reactions.
-    pub(crate) model: Arc<Model>,
+    pub(crate) names: Arc<Names>,
+    pub(crate) assembled: Arc<dyn Assembled>,
 }
 
 impl Mechanism {
@@ -55,8 +59,12 @@ impl Mechanism {
     }
 
     pub(crate) fn new(scene: Scene) -> Result<Self, Error> {
-        let model = Arc::new(dwell_study::models::loaded_model(scene.inner())?);
-        Ok(Self { scene, model })
+        let (names, assembled) = with_dimension(scene.inner(), Assemble)?;
+        Ok(Self {
+            names: Arc::new(names),
+            assembled,
+            scene,
+        })
     }
 
     /// The scene it was assembled from.
@@ -78,11 +86,11 @@ impl Mechanism {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn actuators(&self) -> Vec<&str> {
-        let actuators = &self.scene.inner().mechanism.actuators;
-        actuators.iter().map(|a| a.name.as_str()).collect()
+        self.names.actuators.iter().map(String::as_str).collect()
     }
 
-    /// Names of the reactions: `joint.component`.
+    /// Names of the reactions: `joint.component`. In space they are those that the scene requests; without a list, all in the axes of the
+    /// ground.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -90,9 +98,21 @@ impl Mechanism {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn reactions(&self) -> Vec<String> {
-        let mechanism = &self.scene.inner().mechanism;
-        let all = mechanism.reactions().into_iter();
-        all.map(|r| mechanism.reaction_name(r)).collect()
+        let all = self.names.reactions.iter();
+        all.map(|reaction| reaction.name.clone()).collect()
+    }
+
+    /// Those of them that redundant constraints do not leave open.
+    ///
+    /// ```
+    /// # let bricard = dwell::Scene::read("../../validation/spatial/bricard-a04.toml")?.assemble()?;
+    /// assert!(bricard.determined_reactions().len() < bricard.reactions().len());
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn determined_reactions(&self) -> Vec<String> {
+        let all = self.names.reactions.iter();
+        let determined = all.filter(|reaction| reaction.place.is_some());
+        determined.map(|reaction| reaction.name.clone()).collect()
     }
 
     /// The bodies with their named points, in the order of the scene; the ground is among them.
@@ -103,13 +123,23 @@ impl Mechanism {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn points(&self) -> Vec<(&str, Vec<&str>)> {
-        let scene = self.scene.inner();
-        let bodies = scene.mechanism.bodies.iter().zip(&scene.points);
-        let named = bodies.map(|(body, points)| {
-            let points = points.iter().map(|(point, _)| point.as_str());
+        let bodies = self.names.bodies.iter();
+        let named = bodies.map(|body| {
+            let points = body.points.iter().map(|(point, _)| point.as_str());
             (body.name.as_str(), points.collect())
         });
         named.collect()
+    }
+
+    /// How many numbers a point has: 2 in the plane, 3 in space.
+    ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// assert_eq!(slider.dimension(), 2);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn dimension(&self) -> usize {
+        self.names.dimension
     }
 
     /// Where the actuators' coordinates are at assembly, rad or m.
@@ -120,7 +150,7 @@ impl Mechanism {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn start(&self) -> Vec<f64> {
-        self.scene.inner().assembly.coordinates.clone()
+        self.names.start.clone()
     }
 
     /// The limits of the only coordinate, rad or m, where it has limits: limit positions of the mechanism.
@@ -131,7 +161,7 @@ impl Mechanism {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn limits(&self) -> Option<(f64, f64)> {
-        self.model.plan().range().limits()
+        self.names.limits
     }
 
     /// The positions of all bodies at the coordinates `q`.
@@ -170,12 +200,8 @@ impl Mechanism {
         q_ddot: &[f64],
     ) -> Result<Kinematics, Error> {
         self.check_counts([q, q_dot, q_ddot])?;
-        let plan = self.model.plan();
-        let mut workspace = self.model.workspace();
-        let state = self.model.kinematic_state(q, q_dot, &mut workspace);
-        let mut state = state.map_err(|e| explain_position(self.scene.inner(), plan, &e))?;
-        let bodies = state.bodies_at(q_ddot).clone();
-        Ok(Kinematics::new(self.scene.clone(), bodies))
+        let found = self.assembled.states([q, q_dot, q_ddot])?;
+        Ok(Kinematics::new(Arc::clone(&self.names), found))
     }
 
     /// Inverse dynamics under all loads at time `t` (s): the actuators' forces and all reactions that the motion with
@@ -200,18 +226,12 @@ impl Mechanism {
         q_ddot: &[f64],
     ) -> Result<InverseDynamics, Error> {
         self.check_counts([q, q_dot, q_ddot])?;
-        let (mut workspace, mut result) = (self.model.workspace(), self.model.result_buffer());
-        let state = self
-            .model
-            .kinetostatics(t, q, q_dot, q_ddot, &mut workspace, &mut result);
-        let explain = |e| explain_motion(self.scene.inner(), self.model.plan(), &e);
-        let bodies = state.map_err(|e| explain(e.into()))?.bodies().clone();
-        let kinematics = Kinematics::new(self.scene.clone(), bodies);
-        Ok(InverseDynamics::new(self.clone(), kinematics, result))
+        let (found, forces) = self.assembled.forces(t, [q, q_dot, q_ddot])?;
+        let kinematics = Kinematics::new(Arc::clone(&self.names), found);
+        Ok(InverseDynamics::new(kinematics, forces))
     }
 
     fn check_counts(&self, lists: [&[f64]; 3]) -> Result<(), Error> {
-        let actuators = self.model.plan().actuators();
-        Error::check_counts(lists, actuators)
+        Error::check_counts(lists, self.names.actuators.len())
     }
 }

@@ -1,57 +1,17 @@
 //! The reduced model of a mechanism of one degree of freedom.
 
 use crate::error::Error;
-use crate::mechanism::Mechanism;
-use crate::mechanism::scene::Scene;
-use dwell_geometry::Reaction;
+use dwell_geometry::Range;
+use dwell_kinetostatics::table::{Labels, TableDomain, TabulatedModel};
 use dwell_kinetostatics::{
-    ExactModel, ExactWorkspace, InverseDynamics, Model, ReducedModel as _, Workspace,
+    Batch, ExactModel, InverseDynamics, KinematicState, MachineModel as _, ReducedModel as _,
+    ReducibleModel,
 };
-use dwell_study::explain::{explain_motion, explain_position};
-use dwell_study::models::{compile_model, reduced_model};
+use dwell_study::StudyScene;
+use dwell_study::assembled::UnitModels;
+use std::f64::consts::TAU;
+use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-impl Mechanism {
-    /// The reduced model with some reactions: joints (`A` for all its components) or components (`guide.normal`).
-    ///
-    /// ```text
-    /// m q̈ + ½m′ q̇² = Σ w F,    R = a q̈ + b q̇² + Σ c F
-    /// ```
-    ///
-    /// # Errors
-    /// [`Error::Unknown`] for a reaction that the mechanism does not have; [`Error::Study`] unless it has exactly one
-    /// actuator.
-    ///
-    /// ```
-    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
-    /// let reduced = slider.reduced(["A", "guide.normal"])?;
-    /// assert_eq!(reduced.reactions(), ["A.x", "A.y", "guide.normal"]);
-    /// # Ok::<(), dwell::Error>(())
-    /// ```
-    pub fn reduced<'r>(
-        &self,
-        reactions: impl IntoIterator<Item = &'r str>,
-    ) -> Result<ReducedModel, Error> {
-        let mechanism = &self.scene.inner().mechanism;
-        let all = mechanism.reactions();
-        let mut wanted: Vec<Reaction> = Vec::new();
-        for name in reactions {
-            let is_meant = |r: &Reaction| {
-                mechanism.joints[r.joint.0].name == name || mechanism.reaction_name(*r) == name
-            };
-            let meant = all.iter().copied().filter(is_meant);
-            let before = wanted.len();
-            wanted.extend(meant);
-            if wanted.len() == before {
-                let names = self.reactions();
-                let joints = mechanism.joints.iter().map(|j| &j.name);
-                let names = names.iter().chain(joints).map(String::as_str);
-                return Err(Error::unknown("reaction", "reactions", name, names));
-            }
-        }
-        ReducedModel::new(self.scene.clone(), wanted)
-    }
-}
 
 /// The exact reduced model: constant, and shared between threads.
 ///
@@ -67,21 +27,19 @@ impl Mechanism {
 /// ```
 #[derive(Debug, Clone)]
 pub struct ReducedModel {
-    pub(crate) scene: Scene,
-    pub(crate) exact: ExactModel,
-    /// With the loads, if there are any; its reactions may be followed by those that friction needs.
-    pub(crate) loaded: Option<Model>,
-    pub(crate) reactions: Vec<Reaction>,
+    pub(crate) source: Arc<dyn CoefficientSource>,
+    reactions: Vec<String>,
+    loads: Vec<String>,
     idle: IdleWorkspaces,
 }
 
-/// Working memory that no evaluator has at present: to allocate it takes longer than to evaluate a position. Copies of a model share it.
+/// Evaluators that nobody has at present: to allocate their memory takes longer than to evaluate a position. Copies of a model share them.
 #[derive(Debug, Clone, Default)]
-struct IdleWorkspaces(Arc<Mutex<Vec<EvaluatorWorkspace>>>);
+struct IdleWorkspaces(Arc<Mutex<Vec<Box<dyn CoefficientEvaluator>>>>);
 
 impl IdleWorkspaces {
     /// A thread that panicked with the lock left whole memory.
-    fn all(&self) -> MutexGuard<'_, Vec<EvaluatorWorkspace>> {
+    fn all(&self) -> MutexGuard<'_, Vec<Box<dyn CoefficientEvaluator>>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -112,24 +70,17 @@ pub struct Coefficients {
 }
 
 impl ReducedModel {
-    fn new(scene: Scene, reactions: Vec<Reaction>) -> Result<Self, Error> {
-        let inner = scene.inner();
-        let exact = reduced_model(inner, &reactions)?;
-        let loaded = match inner.loads.is_empty() {
-            true => None,
-            false => {
-                let model = compile_model(inner, &reactions)?;
-                let loaded = model.with_loads(inner.loads.clone());
-                Some(loaded.map_err(|e| inner.error(e.to_string(), None, &[]))?)
-            }
-        };
-        Ok(Self {
-            scene,
-            exact,
-            loaded,
+    pub(crate) fn new(
+        source: Arc<dyn CoefficientSource>,
+        reactions: Vec<String>,
+        loads: Vec<String>,
+    ) -> Self {
+        Self {
+            source,
             reactions,
+            loads,
             idle: IdleWorkspaces::default(),
-        })
+        }
     }
 
     /// Names of the reactions.
@@ -140,11 +91,7 @@ impl ReducedModel {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn reactions(&self) -> Vec<String> {
-        let mechanism = &self.scene.inner().mechanism;
-        self.reactions
-            .iter()
-            .map(|r| mechanism.reaction_name(*r))
-            .collect()
+        self.reactions.clone()
     }
 
     /// Names of the loads.
@@ -155,8 +102,7 @@ impl ReducedModel {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn loads(&self) -> Vec<&str> {
-        let loads = self.scene.inner().loads.iter();
-        loads.map(|load| load.name.as_str()).collect()
+        self.loads.iter().map(String::as_str).collect()
     }
 
     /// The coefficients at `q`, rad or m. For many positions an [`evaluator`](Self::evaluator) allocates nothing at all.
@@ -194,29 +140,155 @@ impl ReducedModel {
         let idle = self.idle.all().pop();
         Evaluator {
             reduced: self,
-            own: idle.unwrap_or_else(|| EvaluatorWorkspace::new(self)),
+            own: idle.unwrap_or_else(|| Arc::clone(&self.source).evaluator()),
         }
     }
 }
 
-/// What an evaluation works in.
-#[derive(Debug)]
-struct EvaluatorWorkspace {
-    workspace: ExactWorkspace,
+/// The reduced model of a scene with some reactions.
+pub(crate) trait CoefficientSource: fmt::Debug + Send + Sync {
+    /// Memory for evaluations in one thread.
+    fn evaluator(self: Arc<Self>) -> Box<dyn CoefficientEvaluator>;
+
+    /// m, ½m′, a and b at many coordinates.
+    fn inertial_batch(&self, q: &[f64]) -> Result<Batch, Error>;
+
+    /// The model as a table. Reactions that friction needs follow those that are asked for.
+    fn table(&self, accuracy: f64) -> Result<(TabulatedModel, Labels), Error>;
+}
+
+/// Evaluates coefficients.
+pub(crate) trait CoefficientEvaluator: fmt::Debug + Send {
+    fn at(&mut self, q: f64) -> Result<&Coefficients, Error>;
+}
+
+pub(crate) struct SceneCoefficients<S: StudyScene> {
+    scene: Arc<S>,
+    models: UnitModels<S::Model>,
+    /// How many were asked for; those of the loaded model may be followed by some that friction needs.
+    reactions: usize,
+}
+
+impl<S: StudyScene> fmt::Debug for SceneCoefficients<S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (name, reactions) = (&self.scene.name, self.reactions);
+        write!(f, "SceneCoefficients({name}, {reactions} reactions)")
+    }
+}
+
+impl<S: StudyScene> SceneCoefficients<S> {
+    pub(crate) fn new(scene: Arc<S>, models: UnitModels<S::Model>, reactions: usize) -> Self {
+        Self {
+            scene,
+            models,
+            reactions,
+        }
+    }
+}
+
+impl<S: StudyScene> CoefficientSource for SceneCoefficients<S> {
+    fn evaluator(self: Arc<Self>) -> Box<dyn CoefficientEvaluator> {
+        let UnitModels { exact, loaded } = &self.models;
+        let loaded = loaded.as_ref();
+        Box::new(SceneEvaluator {
+            workspace: exact.workspace(),
+            exact: exact.coefficient_buffer(),
+            loaded: loaded.map(|m| (m.pass_workspace(), m.result_buffer())),
+            found: Coefficients::default(),
+            of: self,
+        })
+    }
+
+    fn inertial_batch(&self, q: &[f64]) -> Result<Batch, Error> {
+        let (mut batch, exact) = (Batch::default(), &self.models.exact);
+        S::inertial_batch(exact, q, &mut batch);
+        let first = batch.errors.iter().min_by_key(|(index, _)| *index);
+        match first {
+            Some((_, error)) => Err(self.scene.explain(exact.model(), &(*error).into()).into()),
+            None => Ok(batch),
+        }
+    }
+
+    fn table(&self, accuracy: f64) -> Result<(TabulatedModel, Labels), Error> {
+        let UnitModels { exact, loaded } = &self.models;
+        let model = loaded.as_ref().unwrap_or(exact.model());
+        let names = self.scene.reaction_units(model).into_iter();
+        let coordinate = self.scene.actuator(0).unwrap_or_default().0;
+        let labels = Labels {
+            scene: self.scene.hash(),
+            coordinate: coordinate.to_owned(),
+            reactions: names.map(|(name, _)| name).collect(),
+            loads: model.loads().iter().map(|load| load.name.clone()).collect(),
+        };
+        let domain = domain(model.range());
+        let tabulated = match ExactModel::new(model.clone()) {
+            Some(exact) => TabulatedModel::new(&exact, accuracy, domain),
+            None => TabulatedModel::new(exact, accuracy, domain),
+        };
+        let tabulated = tabulated.map_err(|e| Error::Table(e.to_string()))?;
+        Ok((tabulated, labels))
+    }
+}
+
+/// Working memory of one kind of model.
+type Memory<S> =
+    <<S as dwell_study::machines::MachineScene>::Model as ReducibleModel>::Workspace<f64>;
+
+/// A full period; without one a revolution.
+fn domain(range: Range) -> TableDomain {
+    match range {
+        Range::Unbounded => TableDomain::Between(0.0, TAU),
+        Range::Full
+        | Range::Revolutions(_)
+        | Range::Limited(..)
+        | Range::Stroke(..)
+        | Range::Unresolved(..) => TableDomain::Full,
+    }
+}
+
+struct SceneEvaluator<S: StudyScene> {
+    of: Arc<SceneCoefficients<S>>,
+    workspace: <ExactModel<S::Model> as dwell_kinetostatics::ReducedModel>::Workspace,
     exact: dwell_kinetostatics::Coefficients,
-    loaded: Option<(Workspace<f64>, InverseDynamics<f64>)>,
+    loaded: Option<(Memory<S>, InverseDynamics<f64>)>,
     found: Coefficients,
 }
 
-impl EvaluatorWorkspace {
-    fn new(of: &ReducedModel) -> Self {
-        let loaded = of.loaded.as_ref();
-        Self {
-            workspace: of.exact.workspace(),
-            exact: of.exact.model().coefficient_buffer(),
-            loaded: loaded.map(|m| (m.workspace(), m.result_buffer())),
-            found: Coefficients::default(),
+impl<S: StudyScene> fmt::Debug for SceneEvaluator<S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("SceneEvaluator").field(&self.of).finish()
+    }
+}
+
+impl<S: StudyScene> CoefficientEvaluator for SceneEvaluator<S> {
+    fn at(&mut self, q: f64) -> Result<&Coefficients, Error> {
+        let SceneCoefficients {
+            scene,
+            models,
+            reactions,
+        } = &*self.of;
+        let (exact, found) = (&mut self.exact, &mut self.found);
+        let evaluated = models.exact.coefficients(q, &mut self.workspace, exact);
+        evaluated.map_err(|e| scene.explain(models.exact.model(), &e.into()))?;
+        (found.m, found.half_dm) = (exact.m, exact.half_dm);
+        found.a.clone_from(&exact.a);
+        found.b.clone_from(&exact.b);
+        let (Some(model), Some((workspace, response))) = (&models.loaded, &mut self.loaded) else {
+            return Ok(found);
+        };
+        // At unit speed, so that a damper has a direction.
+        let state = KinematicState::new(model, [&[q], &[1.0]], workspace);
+        let mut state = state.map_err(|e| scene.explain(model, &e.into()))?;
+        found.w.resize(model.loads().len(), 0.0);
+        found.c.resize(model.loads().len(), Vec::new());
+        for load in 0..model.loads().len() {
+            let done = state.unit_load_response(load, response);
+            done.map_err(|e| scene.explain(model, &e.into()))?;
+            found.w[load] = -response.tau[0];
+            found.c[load].clear();
+            found.c[load].extend_from_slice(&response.reactions[..*reactions]);
         }
+        Ok(found)
     }
 }
 
@@ -233,7 +305,7 @@ impl EvaluatorWorkspace {
 #[derive(Debug)]
 pub struct Evaluator<'m> {
     reduced: &'m ReducedModel,
-    own: EvaluatorWorkspace,
+    own: Box<dyn CoefficientEvaluator>,
 }
 
 impl Evaluator<'_> {
@@ -255,36 +327,6 @@ impl Evaluator<'_> {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn at(&mut self, q: f64) -> Result<&Coefficients, Error> {
-        let reduced = self.reduced;
-        let EvaluatorWorkspace {
-            workspace,
-            exact,
-            loaded,
-            found,
-        } = &mut self.own;
-        let scene = reduced.scene.inner();
-        let evaluated = reduced.exact.coefficients(q, workspace, exact);
-        evaluated.map_err(|e| explain_position(scene, reduced.exact.model().plan(), &e))?;
-        let reactions = reduced.reactions.len();
-        (found.m, found.half_dm) = (exact.m, exact.half_dm);
-        found.a.clone_from(&exact.a);
-        found.b.clone_from(&exact.b);
-        let (Some(model), Some((workspace, response))) = (&reduced.loaded, loaded) else {
-            return Ok(found);
-        };
-        let explain = |e| Error::from(explain_motion(scene, model.plan(), &e));
-        // At unit speed, so that a damper has a direction.
-        let state = model.kinematic_state(&[q], &[1.0], workspace);
-        let mut state = state.map_err(|e| explain(e.into()))?;
-        found.w.resize(model.loads().len(), 0.0);
-        found.c.resize(model.loads().len(), Vec::new());
-        for load in 0..model.loads().len() {
-            let done = state.unit_load_response(load, response);
-            done.map_err(|e| explain(e.into()))?;
-            found.w[load] = -response.tau[0];
-            found.c[load].clear();
-            found.c[load].extend_from_slice(&response.reactions[..reactions]);
-        }
-        Ok(found)
+        self.own.at(q)
     }
 }

@@ -3,9 +3,8 @@
 use crate::column_table::ColumnTable;
 use crate::error::Error;
 use crate::mechanism::scene::Scene;
-use crate::space;
-use dwell_study::Step;
 use dwell_study::sweep::compute_sweep;
+use dwell_study::{Progress, SceneTask, Step, StudyScene, with_dimension};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A parameter sweep: numbers of a scene over grids, lists or at random, and results of every combination, computed on all
@@ -23,7 +22,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Sweep {
-    scene: VariedScene,
+    scene: Scene,
     vary: Vec<String>,
     samples: Option<u64>,
     seed: u64,
@@ -38,9 +37,9 @@ impl Sweep {
     /// let sweep = dwell::Sweep::new(&scene);
     /// # Ok::<(), dwell::Error>(())
     /// ```
-    pub fn new(scene: impl Into<VariedScene>) -> Self {
+    pub fn new(scene: &Scene) -> Self {
         Self {
-            scene: scene.into(),
+            scene: scene.clone(),
             vary: Vec::new(),
             samples: None,
             seed: 0,
@@ -120,18 +119,29 @@ impl Sweep {
         &self,
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<SweepResults, Error> {
-        let (vary, results) = (&self.vary, &self.results);
-        let (samples, seed) = (self.samples, self.seed);
         let done = AtomicUsize::new(0);
         let step = |step: Step<'_>| progress(done.fetch_add(1, Ordering::Relaxed) + 1, step.total);
-        let swept = match &self.scene {
-            VariedScene::Plane(scene) => {
-                compute_sweep(scene.inner(), vary, samples, seed, results, &step)
-            }
-            VariedScene::Space(scene) => {
-                compute_sweep(scene.inner(), vary, samples, seed, results, &step)
-            }
-        }?;
+        let task = ComputeSweep {
+            sweep: self,
+            progress: &step,
+        };
+        with_dimension(self.scene.inner(), task)
+    }
+}
+
+/// The computation of a sweep.
+struct ComputeSweep<'a> {
+    sweep: &'a Sweep,
+    progress: Progress<'a>,
+}
+
+impl SceneTask for ComputeSweep<'_> {
+    type Output = Result<SweepResults, Error>;
+
+    fn run<S: StudyScene>(self, scene: &S) -> Self::Output {
+        let (sweep, progress) = (self.sweep, self.progress);
+        let (vary, results) = (&sweep.vary, &sweep.results);
+        let swept = compute_sweep(scene, vary, sweep.samples, sweep.seed, results, progress)?;
         Ok(SweepResults {
             table: ColumnTable {
                 columns: swept.table.columns,
@@ -139,35 +149,6 @@ impl Sweep {
             },
             messages: swept.messages,
         })
-    }
-}
-
-/// A scene whose numbers vary: in the plane or in space.
-///
-/// ```
-/// let scene = dwell::space::Scene::read("../../validation/spatial/rssr.toml")?;
-/// let table = dwell::Sweep::new(&scene).vary("crank.mass", "=0.8,0.9").result("m.max").run()?;
-/// let largest = table.column("m.max")?;
-/// assert!(largest[1] > largest[0]);
-/// # Ok::<(), dwell::Error>(())
-/// ```
-#[derive(Debug, Clone)]
-pub enum VariedScene {
-    /// In the plane.
-    Plane(Scene),
-    /// In space.
-    Space(space::Scene),
-}
-
-impl From<&Scene> for VariedScene {
-    fn from(scene: &Scene) -> Self {
-        Self::Plane(scene.clone())
-    }
-}
-
-impl From<&space::Scene> for VariedScene {
-    fn from(scene: &space::Scene) -> Self {
-        Self::Space(scene.clone())
     }
 }
 

@@ -2,11 +2,8 @@
 
 use crate::error::Error;
 use crate::reduced::{Coefficients, ReducedModel};
-use crate::space;
-use dwell_geometry::Range;
 use dwell_kinetostatics::table::Labels;
-use dwell_kinetostatics::{ExactModel, ReducedModel as _, TableDomain, TabulatedModel};
-use std::f64::consts::TAU;
+use dwell_kinetostatics::{ReducedModel as _, TabulatedModel};
 
 impl ReducedModel {
     /// The reduced model as a table, over the range or one revolution: every coefficient to an accuracy relative to its
@@ -24,78 +21,13 @@ impl ReducedModel {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn table(&self, accuracy: f64) -> Result<Table, Error> {
-        let scene = self.scene.inner();
-        let model = self.loaded.as_ref().unwrap_or(self.exact.model());
-        let domain = domain(model.plan().range());
-        let names = model.reactions().iter();
-        let labels = Labels {
-            scene: scene.hash(),
-            coordinate: scene
-                .mechanism
-                .actuators
-                .first()
-                .map(|a| a.name.clone())
-                .unwrap_or_default(),
-            reactions: names.map(|r| scene.mechanism.reaction_name(*r)).collect(),
-            loads: model.loads().iter().map(|load| load.name.clone()).collect(),
-        };
-        // Friction's own reactions come after those that were asked for.
-        let tabulated = match ExactModel::new(model.clone()) {
-            Some(exact) => TabulatedModel::new(&exact, accuracy, domain),
-            None => TabulatedModel::new(&self.exact, accuracy, domain),
-        };
-        let tabulated = tabulated.map_err(|e| Error::Table(e.to_string()))?;
-        let reactions = self.reactions.len();
+        let (tabulated, labels) = self.source.table(accuracy)?;
+        let reactions = self.reactions().len();
         Ok(Table {
             tabulated,
             labels,
             reactions,
         })
-    }
-}
-
-impl space::ReducedModel {
-    /// As [`ReducedModel::table`](crate::ReducedModel::table) of a mechanism in the plane.
-    ///
-    /// # Errors
-    /// [`Error::Table`] where no table reaches that accuracy.
-    ///
-    /// ```
-    /// # let rssr = dwell::space::Scene::read("../../validation/spatial/rssr.toml")?.assemble()?;
-    /// let reduced = rssr.reduced(["B.x"])?;
-    /// let table = reduced.table(1e-9)?;
-    /// let (m, exact) = (table.at(0.5)?.m, reduced.at(0.5)?.m);
-    /// assert!((m - exact).abs() < 1e-9 * exact);
-    /// # Ok::<(), dwell::Error>(())
-    /// ```
-    pub fn table(&self, accuracy: f64) -> Result<Table, Error> {
-        let domain = domain(self.exact.model().plan().range());
-        let tabulated = TabulatedModel::new(&self.exact, accuracy, domain);
-        let scene = self.scene.inner();
-        let coordinate = scene.mechanism.actuators.first().map(|a| a.name.clone());
-        let labels = Labels {
-            scene: scene.hash(),
-            coordinate: coordinate.unwrap_or_default(),
-            reactions: self.reactions(),
-            loads: self.loads().into_iter().map(str::to_owned).collect(),
-        };
-        Ok(Table {
-            tabulated: tabulated.map_err(|e| Error::Table(e.to_string()))?,
-            reactions: labels.reactions.len(),
-            labels,
-        })
-    }
-}
-
-/// A full period; without one a revolution.
-fn domain(range: Range) -> TableDomain {
-    match range {
-        Range::Unbounded => TableDomain::Between(0.0, TAU),
-        Range::Full
-        | Range::Revolutions(_)
-        | Range::Limited(..)
-        | Range::Stroke(..)
-        | Range::Unresolved(..) => TableDomain::Full,
     }
 }
 

@@ -16,7 +16,7 @@ use dwell_geometry::{
     Actuator, AssemblyConfiguration, Body as Named, Joint, Mechanism, Reaction, Vec2, vec2,
 };
 use dwell_kinetostatics::{Batch, ExactModel, Mass, Model, ReducedModel};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use rayon::ThreadPool;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::hint::black_box;
@@ -323,7 +323,7 @@ fn single_dwell() -> Comparison {
     }
 }
 
-fn body(scene: &Scene, name: &str) -> Body {
+fn body(scene: &PlaneScene, name: &str) -> Body {
     let found = scene.mechanism.bodies.iter().position(|b| b.name == name);
     let mass = found.and_then(|at| scene.masses.get(at));
     let mass = mass.unwrap_or_else(|| stop(&scene.name, name));

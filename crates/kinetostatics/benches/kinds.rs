@@ -6,7 +6,7 @@
 //! to take off and no ends to look out for.
 
 use dwell_kinetostatics::{ExactModel, Model, ReducedModel, TableDomain, TabulatedModel};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
 use std::path::Path;
@@ -375,7 +375,7 @@ fn library(exact: &ExactModel, length: f64, accuracy: f64) {
 
 fn read(case: &str) -> ExactModel {
     let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
-    let scene = Scene::read(home.join(case).join("scene.toml"));
+    let scene = PlaneScene::read(home.join(case).join("scene.toml"));
     let scene = scene.unwrap_or_else(|e| stop(&e.to_string()));
     let assembly = scene.assembly.to_configuration();
     let model = Model::new(&scene.mechanism, &scene.masses, &assembly, &[]);

@@ -15,7 +15,7 @@ use closed_form_four_bar::{FourBar, SCENE, with_a_dyad};
 use closed_form_general::General;
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::{Coefficients, ExactModel, Model, ReducedModel, space};
-use dwell_scene::{Scene, SpaceScene};
+use dwell_scene::{PlaneScene, SpaceScene};
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
@@ -130,8 +130,8 @@ fn in_space(name: &str, reaction: &str) -> ExactModel<space::Model> {
 }
 
 /// A mechanism under its loads with every reaction, and its scene.
-fn loaded_model(text: &str) -> (Model, Scene) {
-    let scene = Scene::parse("four-bar.toml", text);
+fn loaded_model(text: &str) -> (Model, PlaneScene) {
+    let scene = PlaneScene::parse("four-bar.toml", text);
     let scene = scene.unwrap_or_else(|e| stop("four-bar", &e.to_string()));
     let case = Case { scene };
     let model = case.model(&case.scene.mechanism.reactions());

@@ -6,7 +6,7 @@
 //! one of them), to some 1e-6 where the table gives 1e-12.
 
 use dwell_kinetostatics::{ExactModel, Model, ReducedModel, TableDomain, TabulatedModel};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::f64::consts::TAU;
 use std::hint::black_box;
 use std::path::Path;
@@ -220,7 +220,7 @@ fn agree(exact: &ExactModel, table: &TabulatedModel, cubic: &Cubic) -> [f64; 2] 
 
 fn read(case: &str, all_reactions: bool) -> ExactModel {
     let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
-    let scene = Scene::read(home.join(case).join("scene.toml"));
+    let scene = PlaneScene::read(home.join(case).join("scene.toml"));
     let scene = scene.unwrap_or_else(|e| stop(&e.to_string()));
     let assembly = scene.assembly.to_configuration();
     let reactions = if all_reactions {

@@ -7,7 +7,7 @@ mod bench;
 use bench::{Case, stop};
 use dwell_kinetostatics::Model;
 use dwell_kinetostatics::variants::VariantModel;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::hint::black_box;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -71,17 +71,17 @@ impl Subject {
 }
 
 /// The scene without its loads and prescribed motion.
-fn without_loads(scene: Scene) -> Scene {
+fn without_loads(scene: PlaneScene) -> PlaneScene {
     let text = scene.source.inner();
     let Some((before, _)) = text.split_once("[prescribed]") else {
         return scene;
     };
-    let reread = Scene::parse(&scene.name, before);
+    let reread = PlaneScene::parse(&scene.name, before);
     reread.unwrap_or_else(|e| stop(&scene.name, &e.to_string()))
 }
 
 /// All numbers of the bodies changed a little, each by a golden sequence of its own.
-fn variant(scene: &Scene, number: usize) -> Scene {
+fn variant(scene: &PlaneScene, number: usize) -> PlaneScene {
     let paths = scene.number_paths();
     let changed = paths.iter().enumerate().map(|(k, path)| {
         let phase =

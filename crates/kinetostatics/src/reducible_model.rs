@@ -34,7 +34,7 @@ impl<T: Scalar> Coefficients<T> {
 /// A mechanism whose two unit passes give the reduced coefficients, in the plane or in space.
 pub trait ReducibleModel: Sync + Sized {
     /// Working memory of one thread for passes in a kind of number.
-    type Workspace<T: Scalar>: Debug + Clone + Send;
+    type Workspace<T: Scalar>: Debug + Clone + Send + Sync;
 
     /// Such memory.
     fn pass_workspace<T: Scalar>(&self) -> Self::Workspace<T>;

@@ -8,19 +8,19 @@ use dwell_kinetostatics::{
     ReducibleModel as _, ShakingForce, Signal, space,
 };
 use dwell_laws::{Expression, Law, Polynomial};
-use dwell_scene::{Scene, SpaceScene};
+use dwell_scene::{PlaneScene, SpaceScene};
 use std::path::Path;
 
 /// The one scene here in which a prismatic joint carries a body.
 const YOKE: &str = include_str!("loads/yoke.toml");
 
-fn case(name: &str) -> Scene {
+fn case(name: &str) -> PlaneScene {
     let validation = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
-    Scene::read(validation.join(name).join("scene.toml")).expect("a scene")
+    PlaneScene::read(validation.join(name).join("scene.toml")).expect("a scene")
 }
 
 /// A scene's model with every reaction.
-fn model(scene: &Scene) -> ExactModel {
+fn model(scene: &PlaneScene) -> ExactModel {
     let assembly = scene.assembly.to_configuration();
     let reactions = scene.mechanism.reactions();
     let model = Model::new(&scene.mechanism, &scene.masses, &assembly, &reactions);
@@ -42,7 +42,7 @@ fn an_evaluation_allocates_nothing() {
         (case("crank-rocker"), 2),
         (case("slotted-rocker"), 1),
         (case("class-three-six-bar"), 4),
-        (Scene::parse("yoke.toml", YOKE).expect("a scene"), 1),
+        (PlaneScene::parse("yoke.toml", YOKE).expect("a scene"), 1),
     ] {
         let name = &scene.name;
         let model = model(&scene);
@@ -145,7 +145,7 @@ fn loads_and_balances_allocate_nothing() {
     for scene in [
         case("single-dwell"),
         case("class-three-six-bar"),
-        Scene::parse("yoke.toml", YOKE).expect("a scene"),
+        PlaneScene::parse("yoke.toml", YOKE).expect("a scene"),
     ] {
         let name = &scene.name;
         let model = model(&scene).model().clone();
@@ -178,7 +178,7 @@ fn loads_and_balances_allocate_nothing() {
 fn dependent_loads_allocate_nothing() {
     let friction = "\n[friction]\nA = { coefficient = 0.1, radius = 0.01 }\n";
     let text = include_str!("loads/separating.toml").to_owned() + friction;
-    let scene = Scene::parse("test.toml", &text).expect("a scene");
+    let scene = PlaneScene::parse("test.toml", &text).expect("a scene");
     let model = model(&scene).model().clone();
     let model = model.with_loads(scene.loads).expect("they fit");
     assert_eq!(model.frictions().len(), 2);

@@ -128,14 +128,9 @@ fn examples(validation: &Path) -> String {
         .filter(|path| path.is_file() && path.extension().is_some_and(|ending| ending == "toml"));
     let read = |path: PathBuf| {
         let text = fs::read_to_string(&path).unwrap();
-        let scene = dwell_scene::AnyScene::read(&path).unwrap();
-        let in_space = matches!(scene, dwell_scene::AnyScene::Space(_));
-        (
-            in_space,
-            scene.file().name.clone(),
-            scene.file().title.clone(),
-            text,
-        )
+        let scene = dwell_scene::Scene::read(&path).unwrap();
+        let in_space = matches!(scene, dwell_scene::Scene::Space(_));
+        (in_space, scene.name.clone(), scene.title.clone(), text)
     };
     let mut all: Vec<_> = files.map(read).collect();
     // A mechanism of several freedoms that says nothing of their motion has no picture to begin with.

@@ -4,7 +4,7 @@ use crate::diagnostics::{self, MessageInText};
 use crate::request::{Command, Request};
 use crate::{export, runs};
 use dwell_page::EncodedPage;
-use dwell_scene::{AnyScene, SceneError};
+use dwell_scene::{Scene, SceneError};
 use serde::Serialize;
 
 /// An answer: JSON, and the numbers that it refers to.
@@ -76,8 +76,8 @@ fn page(
     text: &str,
     messages: &mut Vec<MessageInText>,
 ) -> Result<EncodedPage, SceneError> {
-    let scene = AnyScene::parse(SOURCE_NAME, text)?.named("scene".to_owned());
-    messages.extend(diagnostics::warnings(&scene.file().warnings));
+    let scene = Scene::parse(SOURCE_NAME, text)?.named("scene".to_owned());
+    messages.extend(diagnostics::warnings(&scene.warnings));
     let (page, early_stop) = runs::run(command, &scene)?;
     let early_stop = early_stop.map(SceneError::from);
     messages.extend(early_stop.iter().flat_map(diagnostics::errors));
@@ -86,7 +86,7 @@ fn page(
 }
 
 fn exported(text: &str) -> Answer {
-    let exported = AnyScene::parse(SOURCE_NAME, text).and_then(|scene| export::c_files(&scene));
+    let exported = Scene::parse(SOURCE_NAME, text).and_then(|scene| export::c_files(&scene));
     match exported {
         Ok(files) => of_messages(Vec::new(), files),
         Err(error) => of_messages(diagnostics::errors(&error), Vec::new()),

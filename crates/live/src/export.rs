@@ -1,15 +1,15 @@
 //! A scene's machine in C.
 
 use dwell_export::{Precision, Request, c_files as c_files_of};
-use dwell_scene::{AnyScene, SceneError};
+use dwell_scene::{Scene, SceneError};
 use dwell_study::{ExportRequest, compute_export_in_cells};
 
 /// The accuracy that `dwell export` takes where none is given.
 const ACCURACY: f64 = 1e-9;
 
 /// Header and source: name and text of each.
-pub(crate) fn c_files(scene: &AnyScene) -> Result<Vec<(String, String)>, SceneError> {
-    let AnyScene::Plane(scene) = scene else {
+pub(crate) fn c_files(scene: &Scene) -> Result<Vec<(String, String)>, SceneError> {
+    let Scene::Plane(scene) = scene else {
         let message = "this page exports mechanisms in the plane only".to_owned();
         let help = "`dwell export --to c` exports those in space".to_owned();
         return Err(SceneError::without_labels(message, Some(help)));

@@ -1,14 +1,13 @@
 //! Pages of results that are no trajectories, and what the live page adds to one.
 
-use dwell_findings::{Column, Record, RecordedEvent, Table};
+use dwell_findings::{Column, Record, Table};
 use dwell_page::{Page, PageColumn};
-use dwell_scene::Scene;
 use dwell_study::cycle::compute::{COORDINATE_COLUMN, CycleResults};
 use dwell_study::equilibria::compute::EquilibriaResults;
 use dwell_study::machines::MachineScene;
 use dwell_study::page::{scene_page, table_page, unit_group};
 use dwell_study::reduce::compute::ReducedScene as _;
-use dwell_study::{PreparedScene, compute_period};
+use dwell_study::{StudyScene, compute_period};
 
 /// One steady cycle.
 pub(crate) fn cycle<S: MachineScene>(scene: &S, found: &CycleResults<'_, S>) -> Page {
@@ -84,8 +83,8 @@ fn static_forces(results: &EquilibriaResults<'_, impl MachineScene>) -> Option<T
 }
 
 /// Adds m and ½m′ at the coordinate of each row, where there is one actuator.
-pub(crate) fn add_reduced_inertia(scene: &Scene, page: &mut Page) {
-    let Ok(prepared) = PreparedScene::without_loads(scene) else {
+pub(crate) fn add_reduced_inertia<S: StudyScene>(scene: &S, page: &mut Page) {
+    let Ok(prepared) = scene.prepared_without_loads() else {
         return;
     };
     let name = prepared.coordinate_name();
@@ -115,8 +114,8 @@ pub(crate) fn add_reduced_inertia(scene: &Scene, page: &mut Page) {
 }
 
 /// Adds the period of the free motion, where it is conservative and repeats itself.
-pub(crate) fn add_period(scene: &Scene, page: &mut Page) {
-    if scene.motion.is_none() {
+pub(crate) fn add_period<S: StudyScene>(scene: &S, page: &mut Page) {
+    if !scene.has_motion() {
         return;
     }
     if let Ok(orbit) = compute_period(scene) {
@@ -125,9 +124,4 @@ pub(crate) fn add_period(scene: &Scene, page: &mut Page) {
         record.add("energy", "J", orbit.energy);
         page.numbers.extend(record.numbers);
     }
-}
-
-pub(crate) fn events(events: Vec<(f64, String)>) -> Vec<RecordedEvent> {
-    let event = |(t, name)| RecordedEvent { name, t };
-    events.into_iter().map(event).collect()
 }

@@ -103,7 +103,7 @@ fn a_free_motion_and_equilibria_are_those_of_the_front_door() {
 fn a_misspelt_name_has_its_message_and_its_place() {
     let text = text_of("single-dwell");
     let wrong = text.replacen("{ revolute", "{ revolte", 1);
-    let error = dwell_scene::Scene::parse("scene.toml", &wrong).unwrap_err();
+    let error = dwell_scene::PlaneScene::parse("scene.toml", &wrong).unwrap_err();
     let (answer, numbers) = run("kinetostatics", &wrong);
     let messages = answer["messages"].as_array().unwrap();
     assert_eq!(messages.len(), error.errors().len());

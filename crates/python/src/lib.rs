@@ -17,7 +17,6 @@ mod motion;
 mod oldest_hypot;
 mod reduced;
 mod scene;
-mod space;
 mod sweep;
 
 use pyo3::prelude::*;
@@ -34,10 +33,6 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<reduced::Table>()?;
     module.add_class::<motion::Rows>()?;
     module.add_class::<machine::Equation>()?;
-    module.add_class::<space::SpaceScene>()?;
-    module.add_class::<space::SpaceMechanism>()?;
-    module.add_class::<space::SpaceState>()?;
-    module.add_class::<space::SpaceReducedModel>()?;
     module.add_function(wrap_pyfunction!(sweep::sweep, module)?)?;
     Ok(())
 }

@@ -26,6 +26,18 @@ impl Mechanism {
         self.mechanism.reactions()
     }
 
+    /// The reactions that redundant constraints do not leave open.
+    #[getter]
+    fn determined_reactions(&self) -> Vec<String> {
+        self.mechanism.determined_reactions()
+    }
+
+    /// 2 in the plane, 3 in space.
+    #[getter]
+    fn dimension(&self) -> usize {
+        self.mechanism.dimension()
+    }
+
     #[getter]
     fn limits(&self) -> Option<(f64, f64)> {
         self.mechanism.limits()
@@ -55,10 +67,11 @@ impl Mechanism {
         let forces = self.mechanism.inverse_dynamics(t, &q, &q_dot, &q_ddot);
         Ok(State {
             forces: forces.or_raise(py)?,
+            dimension: self.mechanism.dimension(),
         })
     }
 
-    /// x and y of points at many positions, whose coordinates follow one another.
+    /// x, y and z of points at many positions, whose coordinates follow one another.
     fn paths<'py>(
         &self,
         py: Python<'py>,
@@ -67,7 +80,8 @@ impl Mechanism {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let q = q.as_slice()?;
         let names = points.iter().map(String::as_str);
-        let found = py.detach(|| self.mechanism.paths(names, q)).or_raise(py)?;
+        let found = py.detach(|| self.mechanism.paths::<3>(names, q));
+        let found = found.or_raise(py)?;
         Ok(found.into_flattened().into_pyarray(py))
     }
 
@@ -138,33 +152,56 @@ impl Mechanism {
 #[pyclass(frozen, module = "dwell._native")]
 pub(crate) struct State {
     forces: dwell::InverseDynamics,
+    /// 2 in the plane, 3 in space.
+    dimension: usize,
+}
+
+impl State {
+    fn numbers(&self, vector: [f64; 3]) -> Vec<f64> {
+        vector[..self.dimension].to_vec()
+    }
+
+    /// What turns: about z alone in the plane.
+    fn turning(&self, vector: [f64; 3]) -> Vec<f64> {
+        let first = if self.dimension == 2 { 2 } else { 0 };
+        vector[first..].to_vec()
+    }
 }
 
 #[pymethods]
 impl State {
-    fn position(&self, py: Python<'_>, point: &str) -> PyResult<[f64; 2]> {
-        self.forces.kinematics().position(point).or_raise(py)
+    fn position(&self, py: Python<'_>, point: &str) -> PyResult<Vec<f64>> {
+        let found = self.forces.kinematics().position(point);
+        Ok(self.numbers(found.or_raise(py)?))
     }
 
-    fn velocity(&self, py: Python<'_>, point: &str) -> PyResult<[f64; 2]> {
-        self.forces.kinematics().velocity(point).or_raise(py)
+    fn velocity(&self, py: Python<'_>, point: &str) -> PyResult<Vec<f64>> {
+        let found = self.forces.kinematics().velocity(point);
+        Ok(self.numbers(found.or_raise(py)?))
     }
 
-    fn acceleration(&self, py: Python<'_>, point: &str) -> PyResult<[f64; 2]> {
-        self.forces.kinematics().acceleration(point).or_raise(py)
+    fn acceleration(&self, py: Python<'_>, point: &str) -> PyResult<Vec<f64>> {
+        let found = self.forces.kinematics().acceleration(point);
+        Ok(self.numbers(found.or_raise(py)?))
+    }
+
+    /// By axis of the body its components in the axes of the ground.
+    fn axes(&self, py: Python<'_>, body: &str) -> PyResult<[[f64; 3]; 3]> {
+        self.forces.kinematics().axes(body).or_raise(py)
     }
 
     fn angle(&self, py: Python<'_>, body: &str) -> PyResult<f64> {
         self.forces.kinematics().angle(body).or_raise(py)
     }
 
-    fn angular_velocity(&self, py: Python<'_>, body: &str) -> PyResult<f64> {
-        self.forces.kinematics().angular_velocity(body).or_raise(py)
+    fn angular_velocity(&self, py: Python<'_>, body: &str) -> PyResult<Vec<f64>> {
+        let found = self.forces.kinematics().angular_velocity(body);
+        Ok(self.turning(found.or_raise(py)?))
     }
 
-    fn angular_acceleration(&self, py: Python<'_>, body: &str) -> PyResult<f64> {
+    fn angular_acceleration(&self, py: Python<'_>, body: &str) -> PyResult<Vec<f64>> {
         let found = self.forces.kinematics().angular_acceleration(body);
-        found.or_raise(py)
+        Ok(self.turning(found.or_raise(py)?))
     }
 
     fn coordinate(&self, py: Python<'_>, name: &str) -> PyResult<[f64; 3]> {

@@ -3,7 +3,6 @@
 use crate::errors::Raise as _;
 use crate::interrupt::run;
 use crate::scene::Scene;
-use crate::space::SpaceScene;
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::prelude::*;
 
@@ -17,17 +16,14 @@ type Columns<'py> = (
 #[pyfunction]
 pub(crate) fn sweep<'py>(
     py: Python<'py>,
-    scene: &Bound<'py, PyAny>,
+    scene: &Bound<'py, Scene>,
     vary: Vec<(String, String)>,
     results: Vec<String>,
     samples: Option<u64>,
     seed: u64,
     progress: &Bound<'py, PyAny>,
 ) -> PyResult<Columns<'py>> {
-    let mut sweep = match scene.cast::<SpaceScene>() {
-        Ok(scene) => dwell::Sweep::new(&scene.get().scene),
-        Err(_) => dwell::Sweep::new(&scene.cast::<Scene>()?.get().scene),
-    };
+    let mut sweep = dwell::Sweep::new(&scene.get().scene);
     for (path, variation) in &vary {
         sweep = sweep.vary(path, variation);
     }

@@ -20,7 +20,7 @@ loads.weight = { gravity = [0, -9.81, 0] }
 
 
 def test_a_pendulum_has_its_closed_form():
-    bob = dwell.space.Scene(PENDULUM).assemble()
+    bob = dwell.Scene(PENDULUM).assemble()
     q, speed, acceleration = 0.3, 2.0, -1.5
     at = bob.at(q, speed, acceleration)
     radial, across = np.array([np.cos(q), np.sin(q), 0]), np.array([-np.sin(q), np.cos(q), 0])
@@ -44,9 +44,41 @@ def test_a_pendulum_has_its_closed_form():
         model.table(1e-30)
 
 
+def test_a_mechanism_is_built_and_loaded_by_a_function():
+    m = dwell.Builder("Pendulum")
+    m.body("ground", O=(0, 0, 0))
+    m.body("bob", O=(0, 0, 0), P=(0.5, 0, 0.2), mass=2.0, center=(0.5, 0, 0.2), inertia=(0.1, 0.2, 0.3))
+    m.joint("O", revolute=("ground.O", "bob.O"), axis=(0, 0, 1)).actuator("phi", angle="O").assembly(phi=0.0)
+    m.load("push", torque="bob", axis=(0, 0, 1), magnitude=(["phi", "phi.velocity"], lambda q, v: 3.0 * q - 0.5 * v), breakpoints=False)
+    at = m.assemble().at(0.3, 2.0, -1.5)
+    # The torque of the actuator and that of the load accelerate the bob.
+    assert abs(at.actuator_force("phi") + 3.0 * 0.3 - 0.5 * 2.0 - (0.3 + 2.0 * 0.25) * -1.5) < 1e-12
+    assert at.coordinate("phi") == (0.3, 2.0, -1.5)
+    assert np.allclose(at.rotation("bob")[0], [np.cos(0.3), -np.sin(0.3), 0.0], rtol=0, atol=1e-15)
+    with pytest.raises(dwell.DwellError, match="axes"):
+        at.angle("bob")
+
+
+def test_points_move_along_their_paths():
+    rssr = dwell.read(SPATIAL / "rssr.toml")
+    q = np.linspace(0.0, 6.0, 7)
+    paths = rssr.paths(["crank.B", "rocker.C"], q)
+    assert paths.shape == (7, 2, 3)
+    for k, one in enumerate(q):
+        assert np.array_equal(paths[k, 1], rssr.at(one).position("rocker.C"))
+
+
+def test_the_equation_of_motion_is_that_of_a_pendulum():
+    f, jacobian, start = dwell.Scene(PENDULUM + "motion = { duration = 3.0, initial-velocity = 1.0 }\n").assemble().rhs()
+    assert start.tolist() == [0.0, 1.0]
+    q = 0.3
+    assert np.allclose(f(0.0, np.array([q, 2.0])), [2.0, -2.0 * G * 0.5 * np.cos(q) / 0.8], rtol=0, atol=1e-13)
+    assert np.allclose(jacobian(0.0, np.array([q, 2.0])), [[0.0, 1.0], [2.0 * G * 0.5 * np.sin(q) / 0.8, 0.0]], rtol=0, atol=1e-13)
+
+
 def test_a_motion_its_period_and_its_equilibria():
     text = PENDULUM + "motion = { duration = 3.0, initial-velocity = 1.0 }\n"
-    bob = dwell.space.Scene(text).assemble()
+    bob = dwell.Scene(text).assemble()
     motion = bob.simulate(1e-9)
     assert motion.early_stop is None and motion.estimated_error <= 1e-9
     energy = motion["energy.kinetic"] + motion["energy.potential"]
@@ -63,7 +95,7 @@ def test_a_motion_its_period_and_its_equilibria():
 def test_columns_are_those_of_the_command(case, command, tmp_path):
     """Bit for bit, by the files that the command writes."""
     path = SPATIAL / f"{case}.toml"
-    mechanism = dwell.space.read(path)
+    mechanism = dwell.read(path)
     for name in ("kinematics", "statics"):
         ran = command(name, str(path), "--out", str(tmp_path / name), "--pictures", "none")
         if ran.returncode != 0:
@@ -80,7 +112,7 @@ def test_columns_are_those_of_the_command(case, command, tmp_path):
 
 def test_it_is_checked_and_exported_as_by_the_command(command, tmp_path):
     path = SPATIAL / "rssr.toml"
-    scene = dwell.space.Scene.read(path)
+    scene = dwell.Scene.read(path)
     assert len(scene.check()) > 500 and command("check", str(path)).stdout.startswith(scene.check())
     written = scene.export("c", tmp_path / "here", accuracy=1e-7)
     assert command("export", str(path), "--to", "c", "--accuracy", "1e-7", "--out", str(tmp_path / "there")).returncode == 0
@@ -94,7 +126,7 @@ def test_it_is_checked_and_exported_as_by_the_command(command, tmp_path):
 def test_it_is_drawn(tmp_path):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
-    rssr = dwell.space.read(SPATIAL / "rssr.toml")
+    rssr = dwell.read(SPATIAL / "rssr.toml")
     axes = rssr.plot(0.5)
     assert axes.name == "3d" and [line.get_label() for line in axes.get_lines() if line.get_label()[0] != "_"] == list(rssr.points)[1:]
     # The coupler's line has the coupler's length.
@@ -107,7 +139,7 @@ def test_it_is_drawn(tmp_path):
 
 
 def test_a_sweep_varies_an_axis():
-    scene = dwell.space.Scene.read(SPATIAL / "rssr.toml")
+    scene = dwell.Scene.read(SPATIAL / "rssr.toml")
     found = dwell.sweep(scene, {"joints.A.axis[0]": [-0.01, 0.0]}, ["m"])
     assert found.messages == [None, None]
     largest = [scene.with_value("joints.A.axis[0]", tilt).reduce(np.linspace(0, 2 * np.pi, 7201), []).m.max() for tilt in (-0.01, 0.0)]
@@ -116,11 +148,11 @@ def test_a_sweep_varies_an_axis():
 
 def test_what_is_wrong_is_named():
     with pytest.raises(dwell.SceneError, match="revolte") as error:
-        dwell.space.Scene(PENDULUM.replace("revolute", "revolte"))
+        dwell.Scene(PENDULUM.replace("revolute", "revolte"))
     assert error.value.line == 4
-    bricard = dwell.space.read(SPATIAL / "bricard-a04.toml")
+    bricard = dwell.read(SPATIAL / "bricard-a04.toml")
     with pytest.raises(dwell.DwellError, match="redundant"):
         bricard.at(0.3).reaction("P0.x")
     with pytest.raises(dwell.DwellError, match="crank.C"):
-        dwell.space.read(SPATIAL / "rssr.toml").at(0.3).position("crank.C")
+        dwell.read(SPATIAL / "rssr.toml").at(0.3).position("crank.C")
     assert bricard.reduced().reactions

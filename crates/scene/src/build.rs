@@ -15,9 +15,9 @@ use crate::loads::add_separating_forces;
 use crate::magnitude::{Magnitudes, Names};
 use crate::motion::{ParsedMotion, calibration};
 use crate::number_paths::body_numbers;
+use crate::plane_scene::{Assembly, PlaneScene};
 use crate::prescribed::{coordinate_sweep, prescribed_motion};
 use crate::requests::requests;
-use crate::scene::{Assembly, Scene};
 use crate::sections::{
     needed_section, one_line, place_sections, printable, read_root, report_unjoined_bodies,
     section, text_of, title,
@@ -30,7 +30,7 @@ use dwell_geometry::{Body, Joint, JointKind, Mechanism};
 use dwell_kinetostatics::VaryingInertia;
 use toml::de::DeValue;
 
-impl Scene {
+impl PlaneScene {
     pub(crate) fn build(name: String, source: &Source) -> Result<Self, SceneError> {
         let root = crate::read::syntax(source)?;
         let log = &Diagnostics::new(source);
@@ -47,7 +47,7 @@ const BYTE_ORDER_MARK: char = '\u{feff}';
 /// The scene; none if anything was found wrong.
 //
 // Long: one section after another, in an order in which each finds the names it refers to.
-fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene> {
+fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<PlaneScene> {
     let log = fields.log();
     if fields.entries.is_empty() {
         let blank = |c: char| c.is_whitespace() || c == BYTE_ORDER_MARK;
@@ -166,7 +166,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
     if !requests.lists_reactions {
         requests.reactions = mechanism.reactions();
     }
-    Some(Scene {
+    Some(PlaneScene {
         file: SceneFile::new(
             (name, source),
             (title.map(one_line), note.map(printable)),

@@ -6,7 +6,7 @@ use crate::dimensions::Dimensions;
 use crate::joints::Joints;
 use crate::keys::table;
 use crate::names::check;
-use crate::scene::NamedCoordinate;
+use crate::plane_scene::NamedCoordinate;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::{Unit, Units};

@@ -19,7 +19,7 @@ pub struct SceneFile {
     pub title: String,
     /// A remark that is shown with all results.
     pub note: Option<String>,
-    /// Name and text of the file. After [`with_value`](crate::Scene::with_value) the changed text.
+    /// Name and text of the file. After [`with_value`](crate::PlaneScene::with_value) the changed text.
     pub source: Arc<NamedSource<String>>,
     /// What is read but may not be meant: numbers that look like slips of units. A program should show them to its user.
     pub warnings: Vec<SceneWarning>,

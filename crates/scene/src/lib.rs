@@ -1,13 +1,13 @@
 //! Scene files: TOML text to mechanism, masses, loads, assembly, motions and requests, with every message pointing into the file.
 //!
-//! [`Scene::read`] turns a file into plain data, in SI. There is no mechanics here: whether the
+//! [`PlaneScene::read`] turns a file into plain data, in SI. There is no mechanics here: whether the
 //! mechanism closes, moves or balances is for the crates above to find out, and
-//! [`Scene::error`] lets them say so at a [`SceneLocation`] of the file.
+//! [`PlaneScene::error`] lets them say so at a [`SceneLocation`] of the file.
 //!
 //! All the errors of a file come in one report, in the order of the file. No input panics.
 //!
 //! ```
-//! let scene = dwell_scene::Scene::parse(
+//! let scene = dwell_scene::PlaneScene::parse(
 //!     "pendulum.toml",
 //!     r#"
 //!     bodies.ground.points = { O = [0, 0] }
@@ -45,7 +45,7 @@
 //! - `[motion]`: none; its `initial-coordinate`: that at assembly; its `initial-velocity`: 0 where loads,
 //!   drives or motion laws can move the mechanism; its `prescribed` and `events`: none.
 //!
-//! [`Scene::warnings`] names numbers that look like slips of units.
+//! [`PlaneScene::warnings`] names numbers that look like slips of units.
 //!
 //! Names are made of letters and digits of any script, `_`, `-`, primes and inner spaces. They
 //! hold no dot, so that `body.point` and `joint.component` are unambiguous. Bodies,
@@ -84,6 +84,7 @@ mod motion;
 mod names;
 mod number_paths;
 mod numbers;
+mod plane_scene;
 mod prescribed;
 mod read;
 mod requests;
@@ -107,13 +108,14 @@ mod tests;
 pub use error::{SceneError, SceneWarning};
 pub use file::SceneFile;
 pub use key_uses::{KeyUse, PathStep, SceneKey, WrittenAs, key_uses, scene_keys};
-pub use scene::{
+pub use plane_scene::{
     Assembly, Calibration, CoordinateSweep, DwellRequest, EventTrigger, FreeMotionSpec,
-    MotionDuration, NamedCoordinate, NamedEvent, NamedStop, PathPoint, PrescribedMotion, Requests,
-    Scene, SectionRequest,
+    MotionDuration, NamedCoordinate, NamedEvent, NamedStop, PathPoint, PlaneScene,
+    PrescribedMotion, Requests, SectionRequest,
 };
+pub use scene::Scene;
 pub use schema::schema;
-pub use space::{AnyScene, SpacePathPoint, SpaceScene};
+pub use space::{SpacePathPoint, SpaceScene};
 pub use spans::SceneLocation;
 pub use value::MAX_ANGLE;
 pub use wording::choices;

@@ -1,76 +1,143 @@
 //! Loads whose magnitude is a function of the program that uses the library: a file cannot hold one.
 
+use crate::coordinates::AnyCoordinate;
 use crate::error::SceneError;
-use crate::scene::Scene;
+use crate::file::SceneFile;
+use crate::plane_scene::PlaneScene;
+use crate::space::SpaceScene;
 use crate::spans::SceneLocation;
 use crate::wording::choices;
 use dwell_kinetostatics::{Load, Magnitude, MagnitudeFunction, Signal};
 
-impl Scene {
-    /// The same scene with the magnitude of the load `name` computed by `function` from `signals`: `t`, a coordinate
-    /// such as `phi` (rad or m), or its velocity `phi.velocity`, in SI. The magnitude in the file is dropped. At the breakpoints, values of
-    /// signals by their names, the function jumps or has a kink.
+/// A function of signals by their names, and values of some of these at which it jumps or has a kink.
+struct NamedFunction<'f> {
+    load: &'f str,
+    signals: &'f [&'f str],
+    function: MagnitudeFunction,
+    breakpoints: &'f [(&'f str, &'f [f64])],
+}
+
+impl NamedFunction<'_> {
+    /// Gives it to its load; `coordinates` have names.
+    fn set<'c, K, C: AnyCoordinate>(
+        self,
+        file: &SceneFile,
+        coordinates: &(impl Iterator<Item = (&'c str, C)> + Clone),
+        loads: &mut [Load<K, C>],
+    ) -> Result<(), SceneError> {
+        let name = self.load;
+        let Some(load) = loads.iter().position(|load| load.name == name) else {
+            let names = loads.iter().map(|load| load.name.as_str());
+            let help = choices(name, "loads", names);
+            return Err(file.error(format!("there is no load `{name}`"), Some(help), &[]));
+        };
+        let error = |message: String, help: String| {
+            let label = (SceneLocation::Load(load), "its function".to_owned());
+            file.error(message, Some(help), &[label])
+        };
+        let mut function = self.function;
+        for (signal, values) in self.breakpoints {
+            let index = self.signals.iter().position(|known| known == signal);
+            let index = index.filter(|_| values.iter().all(|value| value.is_finite()));
+            let Some(index) = index else {
+                let message = format!("load `{name}` has breakpoints {values:?} of `{signal}`");
+                let help = format!(
+                    "breakpoints are finite values of the signals of its function: {}",
+                    self.signals.join(", ")
+                );
+                return Err(error(message, help));
+            };
+            function = function.with_breakpoints(index, values);
+        }
+        let find = |signal: &&str| {
+            find_signal(signal, coordinates).ok_or_else(|| {
+                let known = coordinates.clone().map(|(name, _)| name);
+                let help = choices(signal.trim_end_matches(".velocity"), "coordinates", known);
+                let message = format!(
+                    "the function of load `{name}` depends on `{signal}`, which is not `t`, a coordinate or a velocity"
+                );
+                error(message, help)
+            })
+        };
+        let signals = self.signals.iter().map(find).collect::<Result<_, _>>()?;
+        loads[load].magnitude = Magnitude::Function(function, signals);
+        Ok(())
+    }
+}
+
+/// The signal of a name.
+fn find_signal<'c, C: AnyCoordinate>(
+    name: &str,
+    coordinates: &(impl Iterator<Item = (&'c str, C)> + Clone),
+) -> Option<Signal<C>> {
+    if name == "t" {
+        return Some(Signal::Time);
+    }
+    let find = |name: &str| {
+        let mut all = coordinates.clone();
+        all.find(|(known, _)| *known == name).map(|(_, c)| c)
+    };
+    match name.strip_suffix(".velocity") {
+        Some(coordinate) => find(coordinate).map(Signal::Velocity),
+        None => find(name).map(Signal::Value),
+    }
+}
+
+/// Takes over the functions of `former` loads into those of a variant: its text does not hold them.
+pub(crate) fn keep_functions<K, C: AnyCoordinate>(loads: &mut [Load<K, C>], former: &[Load<K, C>]) {
+    for (load, former) in loads.iter_mut().zip(former) {
+        if let Magnitude::Function(..) = former.magnitude {
+            load.magnitude.clone_from(&former.magnitude);
+        }
+    }
+}
+
+impl PlaneScene {
+    /// The same scene with the magnitude of a load computed by a function: as of [`Scene::with_load_function`](crate::Scene::with_load_function).
     ///
     /// # Errors
     /// [`SceneError`] where there is no such load or no such signal, or a breakpoint is of another signal or not finite.
     pub fn with_load_function(
         mut self,
-        name: &str,
+        load: &str,
         signals: &[&str],
-        mut function: MagnitudeFunction,
+        function: MagnitudeFunction,
         breakpoints: &[(&str, &[f64])],
     ) -> Result<Self, SceneError> {
-        let Some(load) = self.loads.iter().position(|load| load.name == name) else {
-            let names = self.loads.iter().map(|load| load.name.as_str());
-            let help = choices(name, "loads", names);
-            return Err(self.error(format!("there is no load `{name}`"), Some(help), &[]));
+        let mut loads = std::mem::take(&mut self.loads);
+        let named = NamedFunction {
+            load,
+            signals,
+            function,
+            breakpoints,
         };
-        for (signal, values) in breakpoints {
-            let index = signals.iter().position(|known| known == signal);
-            let index = index.filter(|_| values.iter().all(|value| value.is_finite()));
-            let Some(index) = index else {
-                let label = (SceneLocation::Load(load), "its function".to_owned());
-                let message = format!("load `{name}` has breakpoints {values:?} of `{signal}`");
-                let help = format!(
-                    "breakpoints are finite values of the signals of its function: {}",
-                    signals.join(", ")
-                );
-                return Err(self.error(message, Some(help), &[label]));
-            };
-            function = function.with_breakpoints(index, values);
-        }
-        let find = |signal: &&str| self.find_signal(load, signal);
-        let signals = signals.iter().map(find).collect::<Result<_, _>>()?;
-        self.loads[load].magnitude = Magnitude::Function(function, signals);
+        named.set(&self.file, &self.all_coordinates(), &mut loads)?;
+        self.loads = loads;
         Ok(self)
     }
+}
 
-    fn find_signal(&self, load: usize, name: &str) -> Result<Signal, SceneError> {
-        if name == "t" {
-            return Ok(Signal::Time);
-        }
-        let found = match name.strip_suffix(".velocity") {
-            Some(coordinate) => self.coordinate(coordinate).map(Signal::Velocity),
-            None => self.coordinate(name).map(Signal::Value),
+impl SpaceScene {
+    /// The same scene with the magnitude of a load computed by a function: as of [`Scene::with_load_function`](crate::Scene::with_load_function).
+    ///
+    /// # Errors
+    /// [`SceneError`] where there is no such load or no such signal, or a breakpoint is of another signal or not finite.
+    pub fn with_load_function(
+        mut self,
+        load: &str,
+        signals: &[&str],
+        function: MagnitudeFunction,
+        breakpoints: &[(&str, &[f64])],
+    ) -> Result<Self, SceneError> {
+        let mut loads = std::mem::take(&mut self.loads);
+        let named = NamedFunction {
+            load,
+            signals,
+            function,
+            breakpoints,
         };
-        found.ok_or_else(|| {
-            let known = self.all_coordinates().map(|(name, _)| name);
-            let help = choices(name.trim_end_matches(".velocity"), "coordinates", known);
-            let message = format!(
-                "the function of load `{}` depends on `{name}`, which is not `t`, a coordinate or a velocity",
-                self.loads[load].name
-            );
-            let label = (SceneLocation::Load(load), "its function".to_owned());
-            self.error(message, Some(help), &[label])
-        })
-    }
-
-    /// Takes over the functions of `loads`, of which this scene is a variant: its text does not hold them.
-    pub(crate) fn keep_functions(&mut self, loads: &[Load]) {
-        for (load, former) in self.loads.iter_mut().zip(loads) {
-            if let Magnitude::Function(..) = former.magnitude {
-                load.magnitude.clone_from(&former.magnitude);
-            }
-        }
+        named.set(&self.file, &self.all_coordinates(), &mut loads)?;
+        self.loads = loads;
+        Ok(self)
     }
 }

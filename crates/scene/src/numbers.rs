@@ -4,8 +4,9 @@
 use crate::diagnostics::Span;
 use crate::error::{SceneError, Source};
 use crate::file::SceneFile;
+use crate::load_functions::keep_functions;
 use crate::number_paths::{SceneNumber, no_number};
-use crate::scene::Scene;
+use crate::plane_scene::PlaneScene;
 use crate::space::SpaceScene;
 use crate::spans::SceneLocation;
 use miette::NamedSource;
@@ -13,7 +14,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 impl SceneFile {
-    /// The path of every number that [`value`](Self::value) and [`with_value`](crate::Scene::with_value)
+    /// The path of every number that [`value`](Self::value) and [`with_value`](crate::PlaneScene::with_value)
     /// know, in the order of the file: `crank.mass`, `crank.inertia`, `crank.center[0]` (when it is
     /// written as [x, y]), `crank.points.B[1]`. Only what the file writes down has a path. The
     /// ground has its points alone, since its mass has no effect.
@@ -92,7 +93,7 @@ impl SceneFile {
     }
 }
 
-impl Scene {
+impl PlaneScene {
     /// The same scene with the number at `path` replaced by `value`, in the scene's own unit.
     ///
     /// The number is replaced in the text and the text read again: whatever follows from the
@@ -111,18 +112,20 @@ impl Scene {
     /// no sense with these numbers.
     pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
         let mut scene = Self::build(self.name.clone(), &self.source_with(values)?)?;
-        scene.keep_functions(&self.loads);
+        keep_functions(&mut scene.loads, &self.loads);
         Ok(scene)
     }
 }
 
 impl SpaceScene {
-    /// The same scene with some numbers replaced, in its own units: as of [`Scene::with_values`].
+    /// The same scene with some numbers replaced, in its own units: as of [`PlaneScene::with_values`].
     ///
     /// # Errors
     /// [`SceneError`] when a path leads nowhere or is named twice, a value is not finite, or the scene makes
     /// no sense with these numbers.
     pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
-        Self::build(self.name.clone(), &self.source_with(values)?)
+        let mut scene = Self::build(self.name.clone(), &self.source_with(values)?)?;
+        keep_functions(&mut scene.loads, &self.loads);
+        Ok(scene)
     }
 }

@@ -1,7 +1,7 @@
 //! From a file to the TOML tree: everything that can go wrong before the scene is looked at.
 
 use crate::error::{SceneError, Source};
-use crate::scene::Scene;
+use crate::plane_scene::PlaneScene;
 use crate::wording::shorten;
 use miette::NamedSource;
 use std::fs::File;
@@ -14,69 +14,61 @@ use toml::de::DeTable;
 /// Longest scene, bytes: ten thousand loops take five million.
 const MAX_SCENE_BYTES: u64 = 1 << 26;
 
-impl Scene {
-    /// Reads a scene file.
+impl PlaneScene {
+    /// Reads a scene in the plane from a file.
+    ///
+    /// # Errors
+    /// [`SceneError`] when the file cannot be read, or is not a scene in the plane.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        let (name, source) = Self::text_of_file(path.as_ref())?;
+        let (name, source) = text_of_file(path.as_ref())?;
         Self::build(name, &source)
     }
 
-    /// The name of a scene in a file, and its text.
-    pub(crate) fn text_of_file(path: &Path) -> Result<(String, Source), SceneError> {
-        let display_path = path.display().to_string();
-        let bytes = bytes(path, &display_path)?;
-        Ok((
-            Self::name_of_file(path),
-            text_of_bytes(&display_path, bytes)?,
-        ))
-    }
-
-    /// Reads a scene from a stream, such as standard input: `name` is the scene's, `source_name` that of the stream in
-    /// messages.
-    pub fn read_from(
-        stream: impl std::io::Read,
-        name: impl Into<String>,
-        source_name: &str,
-    ) -> Result<Self, SceneError> {
-        let source = Self::text_of_stream(stream, source_name)?;
-        Self::build(name.into(), &source)
-    }
-
-    /// The text of a stream.
-    pub(crate) fn text_of_stream(
-        stream: impl std::io::Read,
-        source_name: &str,
-    ) -> Result<Source, SceneError> {
-        let unreadable = |e: &std::io::Error| {
-            let message = format!("`{source_name}` cannot be read: {e}");
-            SceneError::without_labels(message, None)
-        };
-        text_of_bytes(
-            source_name,
-            limited_bytes(stream, source_name, &unreadable)?,
-        )
-    }
-
-    /// The name of the scene in a file: its stem, or its folder's name if it is `scene.toml`.
-    pub fn name_of_file(path: &Path) -> String {
-        // `scene.toml` given without its folder is still in one.
-        match path.parent().map(std::fs::canonicalize) {
-            Some(Ok(folder)) => scene_name(&folder.join(path.file_name().unwrap_or_default())),
-            _ => scene_name(&std::path::absolute(path).unwrap_or_else(|_| path.to_owned())),
-        }
-    }
-
-    /// Reads the text of a scene. `source_name` is the file's name in messages.
+    /// Reads the text of a scene in the plane. `source_name` is the file's name in messages.
+    ///
+    /// # Errors
+    /// [`SceneError`] when it is not a scene in the plane.
     pub fn parse(source_name: &str, text: &str) -> Result<Self, SceneError> {
-        let (name, source) = Self::named_text(source_name, text);
+        let (name, source) = named_text(source_name, text);
         Self::build(name, &source)
     }
+}
 
-    /// The name of a scene, and its text.
-    pub(crate) fn named_text(source_name: &str, text: &str) -> (String, Source) {
-        let source = NamedSource::new(source_name, text.to_owned());
-        (scene_name(Path::new(source_name)), Arc::new(source))
+/// The name of a scene in a file, and its text.
+pub(crate) fn text_of_file(path: &Path) -> Result<(String, Source), SceneError> {
+    let display_path = path.display().to_string();
+    let bytes = bytes(path, &display_path)?;
+    Ok((name_of_file(path), text_of_bytes(&display_path, bytes)?))
+}
+
+/// The text of a stream.
+pub(crate) fn text_of_stream(
+    stream: impl std::io::Read,
+    source_name: &str,
+) -> Result<Source, SceneError> {
+    let unreadable = |e: &std::io::Error| {
+        let message = format!("`{source_name}` cannot be read: {e}");
+        SceneError::without_labels(message, None)
+    };
+    text_of_bytes(
+        source_name,
+        limited_bytes(stream, source_name, &unreadable)?,
+    )
+}
+
+/// The name of the scene in a file: its stem, or its folder's name if it is `scene.toml`.
+pub(crate) fn name_of_file(path: &Path) -> String {
+    // `scene.toml` given without its folder is still in one.
+    match path.parent().map(std::fs::canonicalize) {
+        Some(Ok(folder)) => scene_name(&folder.join(path.file_name().unwrap_or_default())),
+        _ => scene_name(&std::path::absolute(path).unwrap_or_else(|_| path.to_owned())),
     }
+}
+
+/// The name of a scene, and its text.
+pub(crate) fn named_text(source_name: &str, text: &str) -> (String, Source) {
+    let source = NamedSource::new(source_name, text.to_owned());
+    (scene_name(Path::new(source_name)), Arc::new(source))
 }
 
 /// The file's stem, or its folder's name if the stem is `scene`.

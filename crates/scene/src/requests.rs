@@ -5,7 +5,7 @@ use crate::diagnostics::Span;
 use crate::dimensions::Dimensions;
 use crate::joints::Joints;
 use crate::keys::table;
-use crate::scene::{DwellRequest, PathPoint, Requests, SectionRequest};
+use crate::plane_scene::{DwellRequest, PathPoint, Requests, SectionRequest};
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::value::Value;

@@ -6,7 +6,7 @@ use toml::de::{DeTable, DeValue};
 
 /// The schema of scenes (JSON schema, draft 7), indented, with a line end. It knows the shape of a
 /// scene: keys and the kinds of their values. Whether names exist and numbers make sense is for
-/// [`Scene::read`](crate::Scene::read) to say.
+/// [`PlaneScene::read`](crate::PlaneScene::read) to say.
 pub fn schema() -> String {
     let scenes = ["scene", "scene-in-space"].map(|id| table(keys::table(id)));
     let schema = json!({

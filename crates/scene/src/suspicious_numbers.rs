@@ -3,7 +3,7 @@
 
 use crate::error::SceneWarning;
 use crate::file::SceneFile;
-use crate::scene::Scene;
+use crate::plane_scene::PlaneScene;
 use crate::space::SpaceScene;
 use crate::spans::SceneLocation;
 use crate::wording::{list, short, shorten};
@@ -60,7 +60,7 @@ struct BodyFigures<'s> {
     is_held: bool,
 }
 
-impl Scene {
+impl PlaneScene {
     /// The scene with a warning for each number that looks like a slip of units.
     pub(crate) fn with_doubts(mut self) -> Self {
         let mechanism = &self.mechanism;

@@ -4,7 +4,7 @@
 
 use dwell_export::{Precision, Request, c_files};
 use dwell_kinetostatics::{ReducedModel, TableDomain, TabulatedModel};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::{ExportRequest, PreparedScene, compute_export};
 use std::hint::black_box;
 use std::path::Path;
@@ -51,7 +51,7 @@ fn main() {
     let home =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/single-dwell/scene.toml");
     let text = std::fs::read_to_string(home).unwrap();
-    let scene = Scene::parse("single-dwell.toml", &text).unwrap();
+    let scene = PlaneScene::parse("single-dwell.toml", &text).unwrap();
     let prepared = PreparedScene::new(&scene).unwrap();
     for (name, accuracy, precision) in [
         ("double, 1e-9", 1e-9, Precision::Double),

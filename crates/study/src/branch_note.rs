@@ -2,14 +2,14 @@
 
 use crate::number_format::digits;
 use dwell_geometry::{BodyId, Plan};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::f64::consts::{PI, TAU};
 
 /// Deviation, rad, from which an approximate angle is no longer taken for the one in use: 20°.
 const FAR: f64 = 20.0 * PI / 180.0;
 
 /// A line for each body whose angle at the start is far from the approximate angle that the scene gives.
-pub(crate) fn branch_note(scene: &Scene, plan: &Plan) -> String {
+pub(crate) fn branch_note(scene: &PlaneScene, plan: &Plan) -> String {
     let mut pose = plan.pose();
     if plan
         .positions(plan.assembly_coordinates(), &mut pose)

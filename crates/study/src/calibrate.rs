@@ -15,7 +15,7 @@ use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, MovingModel, Orbit,
 use dwell_findings::Record;
 use dwell_kinetostatics::{ExactModel, Load, Magnitude, Model, space};
 use dwell_numerics::root;
-use dwell_scene::{Scene, SceneLocation, SpaceScene};
+use dwell_scene::{PlaneScene, SceneLocation, SpaceScene};
 
 /// A calibrated value.
 #[derive(Debug, Clone, PartialEq)]
@@ -249,7 +249,7 @@ impl<M: MovingModel> ConservativeMotion<M> {
     }
 }
 
-impl CalibratedScene for Scene {
+impl CalibratedScene for PlaneScene {
     fn conservative_motion(&self) -> Result<ConservativeMotion<Model>, StudyError> {
         // A separating force changes no motion.
         let is_loaded = self.loads.iter().any(Load::does_work);

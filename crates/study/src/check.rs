@@ -5,40 +5,16 @@ use crate::contents::describe_contents;
 use crate::explain::{NamedScene, StudyError, describe_ends, describe_limit, own_coordinate};
 use crate::models::{loaded_model, requested_reaction_bodies};
 use crate::number_format::{coordinate_unit, count, digits, number};
-#[cfg(feature = "output")]
-use crate::output::Outcome;
 use crate::trajectory::compute::{check_variables, requested_bodies};
 use dwell_findings::Record;
 use dwell_geometry::mobility::mobility;
 use dwell_geometry::plan::GroupModes;
 use dwell_geometry::{BodyId, BranchHint, JointId, Mechanism, Plan, Range};
 use dwell_kinetostatics::{Load, Mesh, Model};
-use dwell_scene::{Scene, SceneFile};
+use dwell_scene::{PlaneScene, SceneFile};
 
-/// Describes a scene: degrees of freedom, groups, assembly modes, range, pruning and requests. It writes
-/// no file.
-///
-/// # Errors
-/// [`StudyError::Scene`] when the mechanism cannot be assembled, or a requested column does not exist.
-#[cfg(feature = "output")]
-pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
-    let mut record = Record::default();
-    Ok(Outcome {
-        summary: description(scene, &mut record)?,
-        record,
-        ..Outcome::default()
-    })
-}
-
-/// The text of [`check`].
-///
-/// # Errors
-/// [`StudyError::Scene`] when the mechanism cannot be assembled, or a requested column does not exist.
-pub fn describe_scene(scene: &Scene) -> Result<String, StudyError> {
-    description(scene, &mut Record::default())
-}
-
-fn description(scene: &Scene, record: &mut Record) -> Result<String, StudyError> {
+/// Describes a scene in the plane; the numbers are recorded.
+pub(crate) fn description(scene: &PlaneScene, record: &mut Record) -> Result<String, StudyError> {
     let mechanism = &scene.mechanism;
     let model = loaded_model(scene)?;
     check_variables(scene, &model)?;
@@ -109,7 +85,7 @@ fn group_bodies(mechanism: &Mechanism, plan: &Plan, g: usize) -> String {
 }
 
 /// Redundant constraints, which counting does not show.
-fn describe_freedom(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
+fn describe_freedom(scene: &PlaneScene, plan: &Plan, record: &mut Record) -> String {
     let mechanism = &scene.mechanism;
     let reactions = mechanism.reactions().into_iter().enumerate();
     let indeterminate = reactions.filter(|&(k, _)| !plan.is_determinate(k));
@@ -298,7 +274,7 @@ pub(crate) fn rounded(value: f64, parts: f64) -> f64 {
 }
 
 /// The angles of all bodies at the start.
-fn describe_branch(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
+fn describe_branch(scene: &PlaneScene, plan: &Plan, record: &mut Record) -> String {
     let mechanism = &scene.mechanism;
     let mut pose = plan.pose();
     let start = plan.assembly_coordinates();
@@ -324,7 +300,7 @@ fn describe_branch(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
 }
 
 /// The groups that trajectory analyses model, and why; and those that they and the reduced model skip.
-fn describe_pruning(scene: &Scene, model: &Model) -> String {
+fn describe_pruning(scene: &PlaneScene, model: &Model) -> String {
     let (mechanism, plan) = (&scene.mechanism, model.plan());
     let group = |g: usize| format!("{}. {}", g + 1, group_bodies(mechanism, plan, g));
     let mut text = describe_needs(scene, model, &group);
@@ -356,7 +332,7 @@ fn describe_pruning(scene: &Scene, model: &Model) -> String {
 }
 
 /// Why each group is modelled along a trajectory.
-fn describe_needs(scene: &Scene, model: &Model, group: &dyn Fn(usize) -> String) -> String {
+fn describe_needs(scene: &PlaneScene, model: &Model, group: &dyn Fn(usize) -> String) -> String {
     let plan = model.plan();
     let groups = plan.group_methods().len();
     let Some(requested) = requested_bodies(scene, model).filter(|_| groups > 0) else {
@@ -391,7 +367,7 @@ fn describe_needs(scene: &Scene, model: &Model, group: &dyn Fn(usize) -> String)
 }
 
 /// The teeth that have a separating force, and those that have none.
-fn describe_teeth(scene: &Scene) -> String {
+fn describe_teeth(scene: &PlaneScene) -> String {
     let joints = scene.mechanism.joints.iter().enumerate();
     let (mut with, mut without) = (Vec::new(), Vec::new());
     for (j, joint) in joints.filter(|(_, joint)| Mesh::of(joint).is_some()) {
@@ -417,7 +393,7 @@ fn describe_teeth(scene: &Scene) -> String {
     text
 }
 
-fn describe_requests(scene: &Scene) -> String {
+fn describe_requests(scene: &PlaneScene) -> String {
     let mechanism = &scene.mechanism;
     let requested = scene.requests.reactions.iter();
     let names: Vec<_> = requested.map(|&r| mechanism.reaction_name(r)).collect();

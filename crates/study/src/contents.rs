@@ -10,11 +10,11 @@ use dwell_kinetostatics::{
     DriveKind, LoadKind, MachineModel, Magnitude, ModelLoad, Signal, VaryingInertia,
 };
 use dwell_scene::{
-    CoordinateSweep, FreeMotionSpec, MotionDuration, PrescribedMotion, Scene, SceneFile,
+    CoordinateSweep, FreeMotionSpec, MotionDuration, PlaneScene, PrescribedMotion, SceneFile,
 };
 
 /// Its size, masses, loads, drives, stops and motions as lines of text; the numbers go into the record.
-pub(crate) fn describe_contents(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
+pub(crate) fn describe_contents(scene: &PlaneScene, plan: &Plan, record: &mut Record) -> String {
     let frames = start_frames(scene, plan);
     let motions = ScheduledMotions {
         prescribed: scene.prescribed.as_ref(),
@@ -42,7 +42,7 @@ pub(crate) struct ScheduledMotions<'a, C, R> {
 }
 
 /// The frames of all bodies at the start: origin, m, and angle, rad.
-fn start_frames(scene: &Scene, plan: &Plan) -> Option<Vec<[f64; 3]>> {
+fn start_frames(scene: &PlaneScene, plan: &Plan) -> Option<Vec<[f64; 3]>> {
     let mut pose = plan.pose();
     plan.positions(plan.assembly_coordinates(), &mut pose)
         .ok()?;
@@ -111,7 +111,7 @@ pub(crate) fn describe_center<const N: usize>(
 }
 
 /// The whole mass and its centre at the start, and the mass of each body.
-fn describe_masses(scene: &Scene, frames: Option<&[[f64; 3]]>, record: &mut Record) -> String {
+fn describe_masses(scene: &PlaneScene, frames: Option<&[[f64; 3]]>, record: &mut Record) -> String {
     let ground = scene.mechanism.ground;
     let massive = scene.masses.iter().enumerate();
     let massive = massive.filter(|(b, m)| *b != ground && (m.mass != 0.0 || m.inertia != 0.0));
@@ -146,7 +146,7 @@ fn describe_masses(scene: &Scene, frames: Option<&[[f64; 3]]>, record: &mut Reco
 }
 
 /// The bodies whose moment of inertia is a function of their angle.
-fn describe_varying_inertias(scene: &Scene, record: &mut Record) -> String {
+fn describe_varying_inertias(scene: &PlaneScene, record: &mut Record) -> String {
     let one = |varying: &VaryingInertia| {
         let name = scene.mechanism.body_name(varying.body);
         let ends = varying.inertia.extent();
@@ -169,7 +169,7 @@ fn describe_varying_inertias(scene: &Scene, record: &mut Record) -> String {
 }
 
 /// What a load is, and the unit of its number.
-fn described(scene: &Scene, kind: &LoadKind) -> (String, &'static str) {
+fn described(scene: &PlaneScene, kind: &LoadKind) -> (String, &'static str) {
     let name = |body: BodyId| scene.mechanism.body_name(body);
     let between =
         |what: &str, [a, b]: [BodyId; 2]| format!("{what} between {} and {}", name(a), name(b));

@@ -4,7 +4,7 @@
 //! draw and write them, and belong to the feature `output` (on by default).
 //!
 //! ```
-//! use dwell_scene::Scene;
+//! use dwell_scene::PlaneScene;
 //!
 //! let text = r#"
 //! title = "Pendulum"
@@ -20,13 +20,16 @@
 //! [actuators]
 //! phi = { angle = ["ground", "bar"] }
 //! "#;
-//! let scene = Scene::parse("pendulum.toml", text)?;
+//! let scene = PlaneScene::parse("pendulum.toml", text)?;
 //! let reduction = dwell_study::compute_reduction(&scene, None)?;
 //! // m = I + M r² about the pin, at every position.
 //! assert!((reduction.curves.coefficients[0].m - 1.0).abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod analyses;
+pub mod assembled;
+mod assembled_in_plane;
 pub mod bodies;
 mod branch_note;
 pub mod estimate;
@@ -47,62 +50,63 @@ pub mod equilibria;
 mod export;
 pub mod exported_runs;
 pub mod free_motion;
+mod in_plane;
 pub mod linearise;
 pub mod machines;
 pub mod reduce;
+#[cfg(feature = "output")]
+mod run;
 mod space;
+mod study_scene;
 pub mod sweep;
 mod symbolic;
 mod symbols;
 pub mod trajectory;
 pub mod unit_runs;
 
+pub use analyses::{
+    compute_closed_form, compute_export, compute_export_of_several_freedoms, compute_free_motion,
+    compute_period, compute_reduction, compute_trajectory, describe_scene, free_motion_page,
+    reduction_page, trajectory_page,
+};
 pub use calibrate::{CalibratedScene, CalibrationResult, find_value};
-pub use check::describe_scene;
 pub use cycle::compute::{CycleSearch, CycleStability, compute_cycle};
-pub use dwell_symbolic::Language;
+pub use dwell_symbolic::{ClosedForm, Language};
 pub use equilibria::compute::compute_equilibria;
 pub use explain::{StudyError, SweepError};
 #[cfg(feature = "fmu")]
 pub use export::fmu_archive;
-pub use export::{
-    ExportRequest, compute_export, compute_export_in_cells, compute_export_of_several_freedoms,
-};
+pub use export::{ExportRequest, compute_export_in_cells};
 pub use exported_runs::{ColumnNames, ExportedTable, SampleInterpolation};
-pub use free_motion::compute::{MotionSolver, compute_free_motion, compute_period};
+pub use free_motion::compute::{FreeMotion, MotionSolver};
 pub use linearise::compute::{OperatingPoint, compute_linearisation};
 pub use models::{PRESETS, PreparedScene, SolverSettings};
 pub use progress::{Progress, Step, no_progress};
-pub use reduce::compute::{TableRequest, compute_reduction};
-pub use space::{
-    FreeMotionInSpace, PreparedSpaceScene, compute_export_in_space, compute_free_motion_in_space,
-    compute_period_in_space, compute_reduction_in_space, compute_trajectory_in_space,
-    describe_scene_in_space, free_motion_page_in_space, loaded_model_in_space,
-    reduction_page_in_space, trajectory_page_in_space,
-};
+pub use reduce::compute::TableRequest;
+pub use space::{PreparedSpaceScene, model_with_loads};
+pub use study_scene::{PageAndStop, SceneTask, StudyScene, with_dimension};
 pub use sweep::{Shard, compute_sweep};
-pub use symbolic::compute::{compute_closed_form, symbolic_findings};
-pub use trajectory::compute::{Analysis, compute_trajectory};
+pub use symbolic::compute::symbolic_findings;
+pub use trajectory::compute::Analysis;
 
 #[cfg(feature = "output")]
 pub use {
+    analyses::{
+        analyse_trajectory, analyse_trajectory_within, check, export, reduce, simulate,
+        simulate_to_accuracy, simulate_with, simulate_within, symbolic,
+    },
     calibrate::calibrate,
-    check::check,
     cycle::output::cycle,
     equilibria::output::equilibria,
-    export::output::{ExportTarget, export},
+    export::output::ExportTarget,
     exported_runs::reduce_runs,
-    free_motion::output::{simulate, simulate_to_accuracy, simulate_with, simulate_within},
     linearise::output::linearise,
     output::{CommandResult, Outcome, PictureFormat, Pictures, add_page, add_summary},
-    reduce::output::reduce,
-    space::{
-        analyse_in_space, check_in_space, export_in_space, mechanism_figure_in_space,
-        reduce_in_space, simulate_in_space,
-    },
+    run::{Request, run},
+    space::figure_of_positions,
     sweep::output::{ParameterSweep, RowStore, sweep},
-    symbolic::output::{FormulaFormat, symbolic},
+    symbolic::output::FormulaFormat,
     trajectory::figures::PictureSpan,
-    trajectory::output::{TrajectoryOutcome, analyse_trajectory, analyse_trajectory_within},
+    trajectory::output::TrajectoryOutcome,
     unit_runs::output::unit_runs,
 };

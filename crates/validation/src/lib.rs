@@ -4,12 +4,12 @@
 //!
 //! ```
 //! use dwell_findings::all_pass;
-//! use dwell_scene::Scene;
+//! use dwell_scene::PlaneScene;
 //! use dwell_validation::check_case;
 //! use std::path::Path;
 //!
 //! let folder = Path::new("../../validation/pendulum-a01");
-//! let scene = Scene::read(folder.join("scene.toml"))?;
+//! let scene = PlaneScene::read(folder.join("scene.toml"))?;
 //! let checked = check_case(&scene, folder)?;
 //! assert!(all_pass(&checked.findings));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

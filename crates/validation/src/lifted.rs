@@ -6,7 +6,7 @@ use dwell_geometry::space::{
 use dwell_geometry::{self as plane, ActuatorKind, BodyId, Vec2};
 use dwell_kinetostatics::Model;
 use dwell_kinetostatics::space::Mass;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// The plane's frame in space.
 pub fn tilt() -> Placement {
@@ -164,7 +164,7 @@ impl Plane<'_> {
 }
 
 /// A planar scene obliquely in space, with its model; none where a joint or the actuator has no counterpart, or an inertia varies.
-pub fn lifted_scene(scene: &Scene) -> Option<(Model, Lifted)> {
+pub fn lifted_scene(scene: &PlaneScene) -> Option<(Model, Lifted)> {
     if !scene.varying_inertias.is_empty() {
         return None;
     }

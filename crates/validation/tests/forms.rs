@@ -4,7 +4,7 @@
 
 use dwell_export::{Precision, Request};
 use dwell_findings::Finding;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::{ExportRequest, compute_export};
 use dwell_validation::extremes::forms::{Evaluated, Form, check, series};
 use dwell_validation::extremes::{ResultCell, SeriesResult, evaluate};
@@ -123,7 +123,7 @@ fn a_refusal_without_need_and_what_is_no_number_are_seen_in_every_form() {
 }
 
 /// A follower that rises by 20 mm within some angle of the cam.
-fn cam(angle: f64) -> Scene {
+fn cam(angle: f64) -> PlaneScene {
     let text = format!(
         "[bodies]\nground = {{ points = {{ O = [0, 0] }} }}\n\
          cam = {{ points = {{ O = [0, 0] }}, mass = 1.5, center = \"O\", inertia = 0.001 }}\n\
@@ -134,7 +134,7 @@ fn cam(angle: f64) -> Scene {
          [coordinates]\nrise = {{ travel = \"guide\" }}\n\
          [actuators]\nphi = {{ angle = [\"ground\", \"cam\"] }}\n[assembly]\nphi = 0\nfollower = 0\n"
     );
-    Scene::parse("cam.toml", &text).expect("a scene")
+    PlaneScene::parse("cam.toml", &text).expect("a scene")
 }
 
 /// Before, a single cell without any rise was written, 1.9 times the largest value off, or 1.3e8 times.

@@ -7,11 +7,10 @@ use dwell_dynamics::{DynamicsError, Method, OdeState, Options, solve};
 use dwell_geometry::PositionError;
 use dwell_geometry::space::{Rotation, vec3};
 use dwell_kinetostatics::{ExactModel, ReducedModel};
-use dwell_scene::{Scene, SpaceScene};
+use dwell_scene::{PlaneScene, SpaceScene};
 use dwell_study::machines::MachineScene;
 use dwell_study::{
-    MotionSolver, SolverSettings, StudyError, compute_free_motion, compute_free_motion_in_space,
-    loaded_model_in_space, no_progress,
+    MotionSolver, SolverSettings, StudyError, compute_free_motion, model_with_loads, no_progress,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -22,7 +21,7 @@ const CROSSED: [f64; 2] = [-1.045_889_4, -2.045_889_4];
 const MOTION: &str = "[motion]\ninitial-velocity = 12\nduration = 2\n";
 
 /// In the plane.
-fn planar([coupler, rocker]: [f64; 2]) -> Scene {
+fn planar([coupler, rocker]: [f64; 2]) -> PlaneScene {
     let text = format!(
         "[bodies.ground]\npoints = {{ A = [0, 0], D = [0.4, 0] }}\n\
          [bodies.crank]\npoints = {{ A = [0, 0], B = [0.2, 0] }}\nmass = 1.0\ncenter = \"B\"\n\
@@ -34,7 +33,7 @@ fn planar([coupler, rocker]: [f64; 2]) -> Scene {
          [assembly]\nphi = 1.0\ncoupler = {coupler}\nrocker = {rocker}\n\
          [loads]\nweight = {{ gravity = [0, -{G}] }}\n{MOTION}"
     );
-    Scene::parse("plane.toml", &text).unwrap_or_else(|e| panic!("{e:?}"))
+    PlaneScene::parse("plane.toml", &text).unwrap_or_else(|e| panic!("{e:?}"))
 }
 
 /// In an oblique plane, with these kinds of the joints B and C; other sections follow.
@@ -92,7 +91,7 @@ fn change_points_are_found_where_the_parallelogram_is_flat() {
     for kinds in KINDS {
         for angles in [PARALLEL, CROSSED] {
             let scene = oblique(angles, kinds, "");
-            let model = loaded_model_in_space(&scene, &[]).unwrap_or_else(|e| panic!("{e}"));
+            let model = model_with_loads(&scene, &[]).unwrap_or_else(|e| panic!("{e}"));
             let found = model.plan().change_points();
             assert_eq!(found.len(), 2, "{kinds:?} {angles:?}: {found:?}");
             for (point, wanted) in found.iter().zip([PI, TAU]) {
@@ -191,7 +190,7 @@ fn parallelograms_move_in_an_oblique_plane_as_in_the_plane() {
         assert!(wanted.early_stop.is_none());
         for kinds in KINDS {
             let space = oblique(angles, kinds, MOTION);
-            let found = compute_free_motion_in_space(&space, &solver, &no_progress);
+            let found = compute_free_motion(&space, &solver, &no_progress);
             let found = found.unwrap_or_else(|e| panic!("{e}")).computed;
             assert!(found.early_stop.is_none());
             let column = |table: &dwell_findings::Table, name: &str| {
@@ -243,7 +242,7 @@ fn a_motion_with_friction_ends_at_a_change_point() {
     let end = &solution.steps.last().expect("steps").y;
     assert!(PI - end[0] > 0.0 && PI - end[0] < 0.05, "{}", end[0]);
     let solver = MotionSolver::Settings(SolverSettings::default());
-    let done = compute_free_motion_in_space(&scene, &solver, &no_progress);
+    let done = compute_free_motion(&scene, &solver, &no_progress);
     let done = done.unwrap_or_else(|e| panic!("{e}"));
     let Some(StudyError::Scene(error)) = done.computed.early_stop else {
         panic!("it goes on")

@@ -7,11 +7,11 @@ use dwell_geometry::space::{Joint, JointKind, Placement, Vec3, Wrench, vec3};
 use dwell_kinetostatics::space::{Axes, Component, LoadKind, Model, Reaction};
 use dwell_kinetostatics::{Friction, FrictionContact, MachineModel as _, Magnitude};
 use dwell_scene::SpaceScene;
-use dwell_study::loaded_model_in_space;
+use dwell_study::model_with_loads;
 use dwell_verify::space::DenseSpace;
 
 fn model(scene: &SpaceScene) -> Model {
-    loaded_model_in_space(scene, &scene.reactions).unwrap_or_else(|e| panic!("{e}"))
+    model_with_loads(scene, &scene.reactions).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Part of a vector across a unit vector.
@@ -385,7 +385,7 @@ fn a_planar_mechanism_with_friction_is_the_same_in_an_oblique_plane() {
 }
 
 fn refusal(scene: &SpaceScene) -> String {
-    let error = loaded_model_in_space(scene, &scene.reactions).expect_err("a refusal");
+    let error = model_with_loads(scene, &scene.reactions).expect_err("a refusal");
     let dwell_study::StudyError::Scene(error) = error else {
         panic!("{error}")
     };
@@ -424,7 +424,7 @@ fn friction_adds_its_reactions_behind_the_requested_ones() {
         wanted(Component::Force(Axes::Joint, 1)),
         wanted(Component::Force(Axes::Ground, 2)),
     ];
-    let model = loaded_model_in_space(&scene, &requested).expect("a model");
+    let model = model_with_loads(&scene, &requested).expect("a model");
     let all: Vec<Reaction> = model.reactions().collect();
     // Of A four, of which one is requested; of D two.
     assert_eq!((&all[..2], all.len()), (&requested[..], 7));

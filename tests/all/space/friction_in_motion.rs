@@ -10,11 +10,10 @@ use dwell_dynamics::{
 use dwell_geometry::space::{Vec3, vec3};
 use dwell_kinetostatics::MachineModel;
 use dwell_kinetostatics::space::Model;
-use dwell_scene::{Scene, SpaceScene};
+use dwell_scene::{PlaneScene, SpaceScene};
 use dwell_study::machines::MachineScene;
 use dwell_study::{
-    MotionSolver, SolverSettings, StudyError, compute_free_motion_in_space, loaded_model_in_space,
-    no_progress,
+    MotionSolver, SolverSettings, StudyError, compute_free_motion, model_with_loads, no_progress,
 };
 
 /// A tight tolerance of a method, and the error of a motion in it.
@@ -142,7 +141,7 @@ fn a_block_breaks_away_at_the_static_limit() {
         atol: 1e-14,
         ..SolverSettings::default()
     });
-    let found = compute_free_motion_in_space(&scene, &solver, &no_progress);
+    let found = compute_free_motion(&scene, &solver, &no_progress);
     let found = found.unwrap_or_else(|e| panic!("{e}"));
     assert!(found.computed.early_stop.is_none());
     let [(t, name)] = &found.events[..] else {
@@ -199,7 +198,7 @@ fn a_pendulum_on_a_tilted_axis_is_a_planar_one() {
         axes(0),
         written(pull.scaled(G)),
     );
-    let plane = Scene::parse("plane.toml", &planar).unwrap_or_else(|e| panic!("{e:?}"));
+    let plane = PlaneScene::parse("plane.toml", &planar).unwrap_or_else(|e| panic!("{e:?}"));
     let space = scene(&oblique);
     let one = MachineScene::machine(&plane, &[]).unwrap_or_else(|e| panic!("{e}"));
     let other = machine(&space);
@@ -280,7 +279,7 @@ fn a_machine_with_friction_moves_in_an_oblique_plane_as_in_the_plane() {
             "guide-length = 60, regularization-speed = 5",
             "guide-length = 60",
         );
-    let plane = Scene::parse("sticking.toml", &sticking).unwrap_or_else(|e| panic!("{e:?}"));
+    let plane = PlaneScene::parse("sticking.toml", &sticking).unwrap_or_else(|e| panic!("{e:?}"));
     let friction = SMOOTH
         .replace("radius = 12, regularization-speed = 0.5", "radius = 12")
         .replace(
@@ -394,13 +393,13 @@ fn smooth_analyses_refuse_friction_that_holds() {
         "{said}"
     );
     assert!(said.contains("regularization-speed"), "{said}");
-    let error = dwell_study::compute_period_in_space(&scene).err();
+    let error = dwell_study::compute_period(&scene).err();
     let said = text(error.expect("a refusal"));
     assert!(said.contains("a load without a potential"), "{said}");
     // A cylindrical joint slides in two directions: friction does not hold there.
     let keys = "friction.B = { coefficient = 0.2, radius = 0.1, regularization-speed = 0.1 }\n";
     let scene = rubbing("planar-oblique-rcsr", keys, "");
-    let model = loaded_model_in_space(&scene, &[]).expect("a model");
+    let model = model_with_loads(&scene, &[]).expect("a model");
     assert!((0..2).all(|k| model.sticking_friction(k).is_none()));
     let modes = vec![CoordinateMode::Free];
     let machine = Machine::new(model, &scene.loads, modes, &[]).expect("a machine");

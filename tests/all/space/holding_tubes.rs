@@ -5,10 +5,9 @@ use super::oblique::{G, oblique_slider_crank, scene};
 use dwell_dynamics::Method;
 use dwell_geometry::space::vec3;
 use dwell_kinetostatics::space::LoadKind;
-use dwell_scene::{Scene, SpaceScene};
+use dwell_scene::{PlaneScene, SpaceScene};
 use dwell_study::{
-    MotionSolver, SolverSettings, StudyError, compute_free_motion_in_space, loaded_model_in_space,
-    no_progress,
+    MotionSolver, SolverSettings, StudyError, compute_free_motion, model_with_loads, no_progress,
 };
 use dwell_verify::space::DenseSpace;
 
@@ -39,7 +38,7 @@ fn block_on_a_plate(start: f64, friction: &str, rest: &str) -> SpaceScene {
 /// The part of its limit with which the tube holds the block at rest against a torque, by the dense equations: its force along the way of
 /// the surface is what leaves nothing for the actuator to do.
 fn share(scene: &SpaceScene, torque: f64, limit: f64) -> f64 {
-    let model = loaded_model_in_space(scene, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let model = model_with_loads(scene, &[]).unwrap_or_else(|e| panic!("{e}"));
     let mut pose = model.plan().pose::<f64>();
     let q = scene.assembly.q[0];
     model.plan().positions(&[q], &mut pose).expect("a pose");
@@ -100,7 +99,7 @@ fn a_block_in_a_tube_breaks_away_at_the_static_limit() {
         atol: 1e-14,
         ..SolverSettings::default()
     });
-    let found = compute_free_motion_in_space(&scene, &solver, &no_progress);
+    let found = compute_free_motion(&scene, &solver, &no_progress);
     let found = found.unwrap_or_else(|e| panic!("{e}"));
     let [(t, name)] = &found.events[..] else {
         panic!("{:?}", found.events)
@@ -158,7 +157,7 @@ fn a_tube_that_only_turns_holds_as_a_pin() {
     let guide = "guide = { coefficient = 0.1, guide-length = 60, viscous = 2 }\n";
     let friction = format!("{of_a}{of_b}{guide}");
     let plane = format!("{head}[friction]\n{friction}");
-    let plane = Scene::parse("holding.toml", &plane).unwrap_or_else(|e| panic!("{e:?}"));
+    let plane = PlaneScene::parse("holding.toml", &plane).unwrap_or_else(|e| panic!("{e:?}"));
     let space = oblique_slider_crank(&friction, "");
     let [one, other] = [
         compare(&plane, 2.0, [0.5, 12.0]),
@@ -188,7 +187,7 @@ fn a_tube_with_two_coordinates_does_not_hold() {
          loads.weight = {{ gravity = [0.5, 0, -{G}] }}\n\
          friction.tube = {{ coefficient = 0.1, radius = 0.03 }}\n"
     ));
-    let Err(StudyError::Scene(error)) = loaded_model_in_space(&scene, &[]) else {
+    let Err(StudyError::Scene(error)) = model_with_loads(&scene, &[]) else {
         panic!("it is taken")
     };
     let said = format!("{error:?}");

@@ -1,7 +1,7 @@
 //! The planar slider-crank with friction, and the same in an oblique plane.
 
 use dwell_geometry::space::{Placement, Rotation, Vec3, vec3};
-use dwell_scene::{Scene, SpaceScene};
+use dwell_scene::{PlaneScene, SpaceScene};
 
 /// Gravity, m/s².
 pub(super) const G: f64 = 9.81;
@@ -24,7 +24,7 @@ pub(super) fn scene(text: &str) -> SpaceScene {
 }
 
 /// The slider-crank of the planar case with friction, without that of one pin, which is a ball in space.
-pub(super) fn planar_slider_crank() -> Scene {
+pub(super) fn planar_slider_crank() -> PlaneScene {
     let path = format!(
         "{}/../validation/slider-crank-friction/scene.toml",
         env!("CARGO_MANIFEST_DIR")
@@ -33,7 +33,7 @@ pub(super) fn planar_slider_crank() -> Scene {
     let ball = "C = { coefficient = 0.08, radius = 8, regularization-speed = 0.5 }\n";
     assert!(text.contains(ball));
     let text = text.replace(ball, "");
-    Scene::parse("slider-crank.toml", &text).unwrap_or_else(|e| panic!("{e:?}"))
+    PlaneScene::parse("slider-crank.toml", &text).unwrap_or_else(|e| panic!("{e:?}"))
 }
 
 /// The same in an oblique plane, without redundant constraints: B cylindrical, C a ball; the motion as given.

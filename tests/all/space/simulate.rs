@@ -6,7 +6,7 @@ use dwell_dynamics::Method;
 use dwell_findings::Table;
 use dwell_scene::SpaceScene;
 use dwell_study::{
-    MotionSolver, PictureSpan, SolverSettings, TrajectoryOutcome, no_progress, simulate_in_space,
+    MotionSolver, PictureSpan, SolverSettings, TrajectoryOutcome, no_progress, simulate_within,
 };
 
 /// A scene of `validation/spatial` with a motion.
@@ -35,7 +35,7 @@ fn simulated(
     times: Option<&[f64]>,
 ) -> TrajectoryOutcome {
     let span = PictureSpan::default();
-    let done = simulate_in_space(scene, solver, times, span, &no_progress);
+    let done = simulate_within(scene, solver, times, span, &no_progress);
     let done = done.unwrap_or_else(|e| panic!("{}: {e:?}", scene.name));
     assert!(done.early_stop.is_none(), "{:?}", done.early_stop);
     done
@@ -211,7 +211,7 @@ fn motions_in_space_that_cannot_be_are_refused() {
         let scene = scene("bricard-a04", motion);
         let solver = by_dop853(1e-10, 0.1);
         let span = PictureSpan::default();
-        let done = simulate_in_space(&scene, &solver, None, span, &no_progress);
+        let done = simulate_within(&scene, &solver, None, span, &no_progress);
         format!("{:?}", done.expect_err("an error"))
     };
     assert!(refused("").contains("no [motion]"));

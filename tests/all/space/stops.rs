@@ -5,11 +5,11 @@ use dwell_dynamics::{
     ContactEvent, Machine, Method, MovingModel, OdeState, Options, Solution, StopChange, solve,
 };
 use dwell_geometry::space::vec3;
-use dwell_scene::{Scene, SpaceScene};
+use dwell_scene::{PlaneScene, SpaceScene};
 use dwell_study::machines::MachineScene;
 use dwell_study::{
-    MotionSolver, PictureSpan, SolverSettings, StudyError, compute_free_motion_in_space,
-    no_progress, simulate_in_space,
+    MotionSolver, PictureSpan, SolverSettings, StudyError, compute_free_motion, no_progress,
+    simulate_within,
 };
 use std::f64::consts::PI;
 
@@ -178,7 +178,7 @@ fn a_block_bounces_between_two_stops() {
     // Rows at wanted times, in the middle of steps, are on the same broken line.
     let at: Vec<f64> = (1..20).map(|k| 0.1 * f64::from(k)).collect();
     let solver = MotionSolver::Settings(SolverSettings::default());
-    let done = simulate_in_space(
+    let done = simulate_within(
         &scene,
         &solver,
         Some(&at),
@@ -320,7 +320,7 @@ fn a_pendulum_strikes_a_stop_at_its_lowest_point() {
         ..SolverSettings::default()
     };
     let solver = MotionSolver::Settings(settings);
-    let done = simulate_in_space(&scene, &solver, None, PictureSpan::default(), &no_progress);
+    let done = simulate_within(&scene, &solver, None, PictureSpan::default(), &no_progress);
     let done = done.unwrap_or_else(|e| panic!("{e}"));
     let mut files = done.outcome.files.iter();
     let (_, bytes) = files
@@ -371,7 +371,7 @@ fn a_machine_with_end_stops_moves_in_an_oblique_plane_as_in_the_plane() {
     let text = text.expect("the file");
     let (head, _) = text.split_once("[friction]").expect("friction");
     let planar = format!("{head}{rest}");
-    let plane = Scene::parse("stops.toml", &planar).unwrap_or_else(|e| panic!("{e:?}"));
+    let plane = PlaneScene::parse("stops.toml", &planar).unwrap_or_else(|e| panic!("{e:?}"));
     let by = (Method::Dop853, 1e-13);
     let (one, wanted) = motion(&plane, 1.2, by);
     let (other, found) = motion(&space, 1.2, by);
@@ -405,12 +405,12 @@ fn analyses_of_motions_without_stops_refuse_them() {
     };
     let scene = block(0.3, "min = -0.7", "periods = 1");
     let solver = MotionSolver::Settings(SolverSettings::default());
-    let error = compute_free_motion_in_space(&scene, &solver, &no_progress).err();
+    let error = compute_free_motion(&scene, &solver, &no_progress).err();
     assert!(text(error.expect("a refusal")).contains("give a `duration` in s"));
     let point = dwell_study::OperatingPoint::InitialState;
     let error = dwell_study::compute_linearisation(&scene, point).err();
     assert!(text(error.expect("a refusal")).contains("end stop `ends`"));
     let beyond = block(0.3, "min = 0.1", "duration = 1");
-    let error = compute_free_motion_in_space(&beyond, &solver, &no_progress).err();
+    let error = compute_free_motion(&beyond, &solver, &no_progress).err();
     assert!(text(error.expect("a refusal")).contains("beyond end stop `ends`"));
 }

@@ -1,6 +1,6 @@
 //! Sweeps and calibrations of scenes in space: against the same mechanism in the plane, and against each variant by itself.
 
-use dwell_scene::{Scene, SpaceScene};
+use dwell_scene::{PlaneScene, SpaceScene};
 use dwell_study::reduce::compute::ReducedScene as _;
 use dwell_study::sweep::compute::ComputedSweep;
 use dwell_study::{PreparedSpaceScene, compute_sweep, find_value, no_progress};
@@ -42,7 +42,7 @@ fn column(swept: &ComputedSweep, name: &str) -> Vec<f64> {
 
 #[test]
 fn a_pendulum_has_the_sweep_that_it_has_in_the_plane() {
-    let plane = Scene::parse("pendulum.toml", IN_PLANE).expect("a scene");
+    let plane = PlaneScene::parse("pendulum.toml", IN_PLANE).expect("a scene");
     let space = SpaceScene::parse("pendulum.toml", IN_SPACE).expect("a scene");
     let vary = texts(&["bob.mass=1:3:5", "bob.center[0]=0.4,0.6"]);
     let results = texts(&[
@@ -136,7 +136,7 @@ fn columns_of_a_sweep_are_their_own_reactions_in_every_variant() {
 
 #[test]
 fn a_calibration_in_space_finds_the_value_that_it_finds_in_the_plane() {
-    let plane = Scene::parse("pendulum.toml", IN_PLANE).expect("a scene");
+    let plane = PlaneScene::parse("pendulum.toml", IN_PLANE).expect("a scene");
     let space = SpaceScene::parse("pendulum.toml", IN_SPACE).expect("a scene");
     let plane = find_value(&plane, "bob.inertia", 1.6).expect("a value");
     let space = find_value(&space, "bob.inertia[2]", 1.6).expect("a value");

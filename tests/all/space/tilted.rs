@@ -6,7 +6,7 @@ use dwell_geometry::{Component as PlanarComponent, JointId, Vec2, vec2};
 use dwell_kinetostatics::space::{Axes, LoadKind, Model};
 use dwell_kinetostatics::{Coefficients, ExactModel, ReducedModel, ReducibleModel};
 use dwell_numerics::{DoubleDouble, Scalar};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_tests::changes::Rng;
 use dwell_tests::lifted::{Lifted, lifted_scene, tilt, wrenches};
 use std::path::Path;
@@ -218,7 +218,7 @@ fn compare(subject: &Subject<'_>, positions: &[f64]) -> ([Differences; 4], f64) 
 const CHANGE: f64 = 1e-12;
 
 /// By how much a planar mechanism magnifies a change of its dimensions, in sizes of the mechanism: the largest of some random ones.
-fn magnification(scene: &Scene, in_plane: &InPlane, positions: &[f64]) -> [f64; 5] {
+fn magnification(scene: &PlaneScene, in_plane: &InPlane, positions: &[f64]) -> [f64; 5] {
     let size = scene.mechanism.size();
     let mut random = Rng(18);
     let mut largest = [0.0_f64; 5];
@@ -265,7 +265,7 @@ fn planar_cases_have_the_same_reduced_parameters_in_space() {
     let (mut compared, mut planar_counts) = (Vec::new(), [0; 2]);
     for entry in std::fs::read_dir(home).expect("the cases").flatten() {
         let path = entry.path().join("scene.toml");
-        let Ok(scene) = Scene::read(&path) else {
+        let Ok(scene) = PlaneScene::read(&path) else {
             continue;
         };
         let Some((planar, lifted)) = lifted_scene(&scene) else {

@@ -6,7 +6,7 @@ use super::{compile, difference, expected, random};
 use dwell_geometry::{Range, vec2};
 use dwell_kinetostatics::Mass;
 use dwell_kinetostatics::variants::{Turn, TurningVariant, VariantModel};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -55,7 +55,7 @@ impl Linkage {
         }
     }
 
-    fn scene(&self) -> Scene {
+    fn scene(&self) -> PlaneScene {
         let [crank, coupler, rocker, ground] = self.bars;
         let [reach, angle, arm, tip] = self.dyad;
         let crank_point = self.crank_point;
@@ -110,7 +110,7 @@ arm = {ARM_GUESS:?}
             bodies.concat(),
             self.coupler_guess
         );
-        Scene::parse("linkage", &text).expect("a scene")
+        PlaneScene::parse("linkage", &text).expect("a scene")
     }
 }
 
@@ -141,13 +141,13 @@ struct Outcome {
 }
 
 /// Compares the variants of a structure with models compiled for each.
-fn compare(structure: &VariantModel, variants: &[Scene], reaction: &str) -> Outcome {
+fn compare(structure: &VariantModel, variants: &[PlaneScene], reaction: &str) -> Outcome {
     let mechanism = &variants[0].mechanism;
     let mut reactions = mechanism.reactions().into_iter();
     let reaction = reactions.find(|&r| mechanism.reaction_name(r) == reaction);
     let reaction = reaction.expect("a reaction");
     let starts: Vec<f64> = (0..variants.len()).map(|k| PI * random(k as u64)).collect();
-    let numbers = |scene: &Scene| structure.numbers(&scene.mechanism, &scene.masses, &[]);
+    let numbers = |scene: &PlaneScene| structure.numbers(&scene.mechanism, &scene.masses, &[]);
     let numbers: Vec<_> = variants.iter().map(numbers).collect();
     let fitting: Vec<usize> = (0..variants.len())
         .filter(|&k| numbers[k].is_some())
@@ -188,7 +188,7 @@ fn compare(structure: &VariantModel, variants: &[Scene], reaction: &str) -> Outc
 }
 
 /// The structure of a scene's model with one reaction.
-fn structure(scene: &Scene, reaction: &str) -> VariantModel {
+fn structure(scene: &PlaneScene, reaction: &str) -> VariantModel {
     let mechanism = &scene.mechanism;
     let mut reactions = mechanism.reactions().into_iter();
     let reaction = reactions.find(|&r| mechanism.reaction_name(r) == reaction);
@@ -199,7 +199,7 @@ fn structure(scene: &Scene, reaction: &str) -> VariantModel {
 /// Compares a family, and asserts that none is accepted wrongly and that there are variants on both sides of the border.
 fn check_family(name: &str, tolerance: f64, typical: &Linkage, vary: impl Fn(u64) -> Linkage) {
     let structure = structure(&typical.scene(), "A.x");
-    let variants: Vec<Scene> = (0..VARIANTS as u64).map(|k| vary(k).scene()).collect();
+    let variants: Vec<PlaneScene> = (0..VARIANTS as u64).map(|k| vary(k).scene()).collect();
     let outcome = compare(&structure, &variants, "A.x");
     println!("{name}: {outcome:?}");
     assert_eq!(outcome.wrong, 0, "{name}");
@@ -273,7 +273,7 @@ fn val_variants_that_assemble_on_the_other_branch_are_left() {
 }
 
 /// The mass properties of a body of a scene, by its name.
-fn mass_of<'a>(scene: &'a mut Scene, body: &str) -> &'a mut Mass {
+fn mass_of<'a>(scene: &'a mut PlaneScene, body: &str) -> &'a mut Mass {
     let mut bodies = scene.mechanism.bodies.iter();
     let index = bodies.position(|b| b.name == body).expect("a body");
     &mut scene.masses[index]

@@ -7,7 +7,7 @@ use super::{
 use dwell_geometry::{Range, Reaction};
 use dwell_kinetostatics::Model;
 use dwell_kinetostatics::variants::{TurningVariant, VariantModel};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_tests::fixtures;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -17,7 +17,7 @@ const ELSEWHERE: f64 = 2.345;
 
 /// A mechanism under loads, with the paths of all numbers that vary.
 struct Subject {
-    scene: Scene,
+    scene: PlaneScene,
     reaction: Reaction,
     paths: Vec<String>,
     /// Constant velocity, rad/s.
@@ -38,7 +38,7 @@ impl Subject {
             Some((before, after)) => format!("{before}[loads]\n{loads}{after}"),
             None => format!("{text}\n[loads]\n{loads}\n"),
         };
-        let scene = Scene::parse(case, &text).expect("a scene");
+        let scene = PlaneScene::parse(case, &text).expect("a scene");
         let all = scene.mechanism.reactions();
         let named = |r: &&Reaction| scene.mechanism.reaction_name(**r) == reaction;
         let reaction = *all.iter().find(named).expect("a reaction");
@@ -52,7 +52,7 @@ impl Subject {
         }
     }
 
-    fn variant(&self, deviation: f64, number: u64) -> Scene {
+    fn variant(&self, deviation: f64, number: u64) -> PlaneScene {
         variant_in(&self.scene, &self.paths, deviation, number)
     }
 }
@@ -100,7 +100,7 @@ fn compare(subject: &Subject, deviation: f64) -> (usize, usize, f64) {
     let structure = structure.with_loads(typical.loads, &[reaction], Some(velocity));
     let structure = structure.expect("a structure with loads");
     let seed = (1e4 * deviation) as u64 * VARIANTS as u64;
-    let variants: Vec<Scene> = (0..VARIANTS as u64)
+    let variants: Vec<PlaneScene> = (0..VARIANTS as u64)
         .into_par_iter()
         .map(|k| subject.variant(deviation, seed + k))
         .collect();

@@ -5,7 +5,7 @@ use super::motion::{EXACT, FROM_TEXT, Motion, QUADRATURE, QUADRATURE_ACCURACIES,
 use super::{PERIODS, Run};
 use dwell_dynamics::{DynamicsError, Method, Options, Orbit, ReducedState, solve_reduced};
 use dwell_kinetostatics::{ExactModel, Model, ReducedModel, TableDomain, TabulatedModel};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::error::Error;
 use std::f64::consts::PI;
 use std::path::Path;
@@ -42,7 +42,7 @@ pub(crate) fn measure(case: &str, folder: &Path) -> Result<(Vec<Run>, Stages), B
     let file = folder.join("scene.toml");
     let name = file.display().to_string();
     let text = std::fs::read_to_string(&file)?;
-    let read = || Scene::parse(&name, &text);
+    let read = || PlaneScene::parse(&name, &text);
     let scene = read()?;
     let motion = scene.motion.as_ref().ok_or("no motion")?;
     let start = ReducedState {
@@ -100,7 +100,7 @@ fn integrator_runs(motion: &Motion, exact: &ExactModel) -> Vec<Run> {
 }
 
 /// The reduced model without reactions: the motion needs none.
-fn compile(scene: &Scene) -> Result<ExactModel, Box<dyn Error>> {
+fn compile(scene: &PlaneScene) -> Result<ExactModel, Box<dyn Error>> {
     let start = scene.assembly.to_configuration();
     let model = Model::new(&scene.mechanism, &scene.masses, &start, &[])?;
     ExactModel::new(model).ok_or_else(|| "not one actuator".into())

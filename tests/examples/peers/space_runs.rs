@@ -9,7 +9,7 @@ use dwell_dynamics::{
     Orbit, OrbitSequence, ReducedState, StepControl, integrate,
 };
 use dwell_kinetostatics::space::{Load, Model};
-use dwell_scene::{AnyScene, SpaceScene};
+use dwell_scene::{Scene, SpaceScene};
 use serde_json::Value;
 use std::error::Error;
 use std::f64::consts::PI;
@@ -107,9 +107,9 @@ pub(crate) fn measure(
     let text = std::fs::read_to_string(&file)?;
     let name = file.display().to_string();
     let read = || -> Result<_, Box<dyn Error>> {
-        match AnyScene::parse(&name, &text)? {
-            AnyScene::Space(scene) => Ok(scene),
-            AnyScene::Plane(_) => Err("a scene in the plane".into()),
+        match Scene::parse(&name, &text)? {
+            Scene::Space(scene) => Ok(scene),
+            Scene::Plane(_) => Err("a scene in the plane".into()),
         }
     };
     let scene = read()?;

@@ -137,6 +137,17 @@ impl MechanismBuilder {
         self.add("assembly", name, value)
     }
 
+    /// Roughly where a body of a mechanism in space is assembled: its origin, m, and its rotation vector, rad, both in the axes of the
+    /// ground. Rough values select the assembly mode.
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("");
+    /// m.placement("rod", [0.1, 0.0, 0.0], [0.0, -0.7, 0.0]);
+    /// ```
+    pub fn placement(&mut self, body: &str, at: [f64; 3], turn: [f64; 3]) -> &mut Self {
+        self.add("assembly", body, Keys::new("at", at).with("turn", turn))
+    }
+
     /// Adds a load.
     ///
     /// ```
@@ -323,7 +334,7 @@ fn write_keys(text: &mut String, keys: &Keys) {
 pub struct BodyBuilder<'m>(&'m mut BodyKeys);
 
 impl BodyBuilder<'_> {
-    /// Adds a point in the body's frame, m.
+    /// Adds a point in the body's frame, m: `[x, y]`, or `[x, y, z]` of a mechanism in space.
     ///
     /// ```
     /// # let mut m = dwell::Mechanism::builder("");
@@ -333,7 +344,7 @@ impl BodyBuilder<'_> {
         clippy::return_self_not_must_use,
         reason = "the point is added to the mechanism in any case"
     )]
-    pub fn point(self, name: &str, position: [f64; 2]) -> Self {
+    pub fn point<const N: usize>(self, name: &str, position: [f64; N]) -> Self {
         self.0.points = std::mem::take(&mut self.0.points).with(name, position);
         self
     }
@@ -353,7 +364,8 @@ impl BodyBuilder<'_> {
     }
 
     /// Gives it a mass, kg, a centre of mass (m in the body's frame, or the name of a point), and a moment of inertia about
-    /// that, kg·m². A body without them is a massless link.
+    /// that, kg·m²; in space `[xx, yy, zz]`, or all six elements of the tensor, as `docs/scene-format.md` has them. A body without them is
+    /// a massless link.
     ///
     /// ```
     /// # let mut m = dwell::Mechanism::builder("");
@@ -363,7 +375,7 @@ impl BodyBuilder<'_> {
         clippy::return_self_not_must_use,
         reason = "the mass is given to the mechanism in any case"
     )]
-    pub fn mass(self, mass: f64, center: impl Into<Value>, inertia: f64) -> Self {
+    pub fn mass(self, mass: f64, center: impl Into<Value>, inertia: impl Into<Value>) -> Self {
         let keys = std::mem::take(&mut self.0.keys).with("mass", mass);
         self.0.keys = keys.with("center", center).with("inertia", inertia);
         self

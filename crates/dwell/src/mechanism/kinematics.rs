@@ -1,36 +1,87 @@
 //! The state of all bodies at one position, and the forces there.
 
+use crate::assembled::{NamedReaction, Names};
 use crate::error::Error;
-use crate::mechanism::Mechanism;
-use crate::mechanism::scene::Scene;
-use dwell_geometry::body_states::{BodyStates, CoordinateFunction, PointState};
-use dwell_geometry::{BodyId, Vec2};
+use dwell_study::assembled::{BodyStates, FoundStates};
+use std::sync::Arc;
 
 /// Positions, velocities and accelerations of all bodies, in the ground's frame.
+///
+/// A vector has as many components as it is taken for. In the plane positions are `[x, y]`, or `[x, y, z]` with z = 0; what turns is `[z]`,
+/// or `[x, y, z]` with x = y = 0. In space all have three.
 ///
 /// ```
 /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
 /// let at = slider.kinematics(&[0.5], &[150.0], &[0.0])?;
 /// let [x, y] = at.position("rod.C")?; // m
-/// let omega = at.angular_velocity("rod")?; // rad/s
+/// let [omega] = at.angular_velocity("rod")?; // rad/s
 /// # assert!(x > 0.0 && y > 0.0 && omega.is_finite());
+///
+/// # let rssr = dwell::Scene::read("../../validation/spatial/rssr.toml")?.assemble()?;
+/// let at = rssr.kinematics(&[0.3], &[10.0], &[0.0])?;
+/// let [x, y, z] = at.position("crank.B")?;
+/// assert!((x.hypot(y) - 0.1).abs() < 1e-12 && z.abs() < 1e-12);
 /// # Ok::<(), dwell::Error>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Kinematics {
-    scene: Scene,
-    states: BodyStates,
+    names: Arc<Names>,
+    states: Arc<dyn BodyStates>,
+    /// In the order of the names.
+    coordinates: Vec<[f64; 3]>,
+}
+
+/// The components of a position, velocity or acceleration that are asked for.
+pub(super) fn components<const N: usize>(
+    vector: [f64; 3],
+    dimension: usize,
+) -> Result<[f64; N], Error> {
+    let given = match (N, dimension) {
+        (3, _) | (2, 2) => vector.get(..N),
+        _ => None,
+    };
+    let components = match dimension {
+        2 => "2, or 3 with z = 0,",
+        _ => "3",
+    };
+    let taken = given.and_then(|given| given.try_into().ok());
+    taken.ok_or(Error::Components {
+        asked: N,
+        components,
+    })
+}
+
+/// The same of what turns.
+fn turning<const N: usize>(vector: [f64; 3], dimension: usize) -> Result<[f64; N], Error> {
+    let given = match (N, dimension) {
+        (3, _) => vector.get(..),
+        (1, 2) => vector.get(2..),
+        _ => None,
+    };
+    let components = match dimension {
+        2 => "1, about z, or 3",
+        _ => "3",
+    };
+    let taken = given.and_then(|given| given.try_into().ok());
+    taken.ok_or(Error::Components {
+        asked: N,
+        components,
+    })
 }
 
 impl Kinematics {
-    pub(crate) fn new(scene: Scene, states: BodyStates) -> Self {
-        Self { scene, states }
+    pub(crate) fn new(names: Arc<Names>, (states, coordinates): FoundStates) -> Self {
+        Self {
+            names,
+            states: states.into(),
+            coordinates,
+        }
     }
 
     /// Position of a point `body.point`, m.
     ///
     /// # Errors
-    /// [`Error::Unknown`].
+    /// [`Error::Unknown`]; [`Error::Components`].
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -38,8 +89,8 @@ impl Kinematics {
     /// assert!((x - 0.08).abs() < 1e-12 && y.abs() < 1e-12);
     /// # Ok::<(), dwell::Error>(())
     /// ```
-    pub fn position(&self, point: &str) -> Result<[f64; 2], Error> {
-        Ok(pair(self.point(point)?.position))
+    pub fn position<const N: usize>(&self, point: &str) -> Result<[f64; N], Error> {
+        self.of_point(point, 0)
     }
 
     /// Velocity of a point `body.point`, m/s.
@@ -49,12 +100,12 @@ impl Kinematics {
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
-    /// let velocity = slider.kinematics(&[0.0], &[10.0], &[0.0])?.velocity("crank.B")?;
-    /// assert!((velocity[1] - 0.8).abs() < 1e-12);
+    /// let [_, upwards] = slider.kinematics(&[0.0], &[10.0], &[0.0])?.velocity("crank.B")?;
+    /// assert!((upwards - 0.8).abs() < 1e-12);
     /// # Ok::<(), dwell::Error>(())
     /// ```
-    pub fn velocity(&self, point: &str) -> Result<[f64; 2], Error> {
-        Ok(pair(self.point(point)?.velocity))
+    pub fn velocity<const N: usize>(&self, point: &str) -> Result<[f64; N], Error> {
+        self.of_point(point, 1)
     }
 
     /// Acceleration of a point `body.point`, m/s².
@@ -64,18 +115,18 @@ impl Kinematics {
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
-    /// let acceleration = slider.kinematics(&[0.0], &[10.0], &[0.0])?.acceleration("crank.B")?;
-    /// assert!((acceleration[0] + 8.0).abs() < 1e-12); // towards A
+    /// let [towards_a, _] = slider.kinematics(&[0.0], &[10.0], &[0.0])?.acceleration("crank.B")?;
+    /// assert!((towards_a + 8.0).abs() < 1e-12);
     /// # Ok::<(), dwell::Error>(())
     /// ```
-    pub fn acceleration(&self, point: &str) -> Result<[f64; 2], Error> {
-        Ok(pair(self.point(point)?.acceleration))
+    pub fn acceleration<const N: usize>(&self, point: &str) -> Result<[f64; N], Error> {
+        self.of_point(point, 2)
     }
 
-    /// Angle of a body from the ground, rad: within half a revolution, or with whole revolutions where actuators turn it.
+    /// Angle of a body in the plane from the ground, rad: within half a revolution, or with whole revolutions where actuators turn it.
     ///
     /// # Errors
-    /// [`Error::Unknown`].
+    /// [`Error::Unknown`]; [`Error::InSpace`], where a body has [axes](Self::axes).
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -83,41 +134,59 @@ impl Kinematics {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn angle(&self, body: &str) -> Result<f64, Error> {
-        let state = self.states.body(self.body(body)?);
-        let direction = state.rotation;
-        Ok(state
-            .angle
-            .unwrap_or_else(|| direction.y.atan2(direction.x)))
+        let angle = self.states.angle(self.names.body(body)?);
+        angle.ok_or(Error::InSpace {
+            what: "one angle of a body",
+            instead: "`axes` has its orientation",
+        })
+    }
+
+    /// Orientation of a body: the axes x, y and z of its frame in the axes of the ground.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`].
+    ///
+    /// ```
+    /// # let rssr = dwell::Scene::read("../../validation/spatial/rssr.toml")?.assemble()?;
+    /// let [x, _, z] = rssr.positions(&[0.3])?.axes("crank")?;
+    /// assert!((x[0] - 0.3_f64.cos()).abs() < 1e-12 && z == [0.0, 0.0, 1.0]);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn axes(&self, body: &str) -> Result<[[f64; 3]; 3], Error> {
+        Ok(self.states.axes(self.names.body(body)?))
     }
 
     /// Angular velocity of a body, rad/s.
     ///
     /// # Errors
-    /// [`Error::Unknown`].
+    /// [`Error::Unknown`]; [`Error::Components`].
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
     /// let at = slider.kinematics(&[0.5], &[150.0], &[0.0])?;
-    /// assert_eq!(at.angular_velocity("crank")?, 150.0);
+    /// assert_eq!(at.angular_velocity("crank")?, [150.0]);
+    /// assert_eq!(at.angular_velocity("crank")?, [0.0, 0.0, 150.0]);
     /// # Ok::<(), dwell::Error>(())
     /// ```
-    pub fn angular_velocity(&self, body: &str) -> Result<f64, Error> {
-        Ok(self.states.body(self.body(body)?).angular_velocity)
+    pub fn angular_velocity<const N: usize>(&self, body: &str) -> Result<[f64; N], Error> {
+        let [velocity, _] = self.states.turning(self.names.body(body)?);
+        turning(velocity, self.names.dimension)
     }
 
     /// Angular acceleration of a body, rad/s².
     ///
     /// # Errors
-    /// [`Error::Unknown`].
+    /// [`Error::Unknown`]; [`Error::Components`].
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
     /// let at = slider.kinematics(&[0.5], &[150.0], &[20.0])?;
-    /// assert_eq!(at.angular_acceleration("crank")?, 20.0);
+    /// assert_eq!(at.angular_acceleration("crank")?, [20.0]);
     /// # Ok::<(), dwell::Error>(())
     /// ```
-    pub fn angular_acceleration(&self, body: &str) -> Result<f64, Error> {
-        Ok(self.states.body(self.body(body)?).angular_acceleration)
+    pub fn angular_acceleration<const N: usize>(&self, body: &str) -> Result<[f64; N], Error> {
+        let [_, acceleration] = self.states.turning(self.names.body(body)?);
+        turning(acceleration, self.names.dimension)
     }
 
     /// An actuator's or named coordinate with its first two derivatives: rad or m, per s, per s².
@@ -132,28 +201,19 @@ impl Kinematics {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn coordinate(&self, name: &str) -> Result<[f64; 3], Error> {
-        let scene = self.scene.inner();
-        let function = scene.coordinate(name);
-        let function = function.and_then(|c| CoordinateFunction::find(&scene.mechanism, c));
-        let names = scene.mechanism.actuators.iter().map(|a| a.name.as_str());
-        let names = names.chain(scene.coordinates.iter().map(|c| c.name.as_str()));
-        let function =
-            function.ok_or_else(|| Error::unknown("coordinate", "coordinates", name, names))?;
-        Ok(self.states.coordinate(function))
+        let names = self.names.coordinates.iter().map(String::as_str);
+        let found = names.clone().position(|known| known == name);
+        let found =
+            found.ok_or_else(|| Error::unknown("coordinate", "coordinates", name, names))?;
+        Ok(self.coordinates[found])
     }
 
-    fn body(&self, name: &str) -> Result<BodyId, Error> {
-        self.scene.body(name)
+    /// The components of the position, velocity or acceleration of a point.
+    fn of_point<const N: usize>(&self, point: &str, derivative: usize) -> Result<[f64; N], Error> {
+        let (body, at) = self.names.point(point)?;
+        let found = self.states.point(body, at)[derivative];
+        components(found, self.names.dimension)
     }
-
-    fn point(&self, name: &str) -> Result<PointState, Error> {
-        let (body, at) = self.scene.point(name)?;
-        Ok(self.states.point(body, at))
-    }
-}
-
-pub(super) fn pair(vector: Vec2) -> [f64; 2] {
-    [vector.x, vector.y]
 }
 
 /// The forces of a motion at one instant.
@@ -167,22 +227,16 @@ pub(super) fn pair(vector: Vec2) -> [f64; 2] {
 /// ```
 #[derive(Debug, Clone)]
 pub struct InverseDynamics {
-    mechanism: Mechanism,
     kinematics: Kinematics,
     result: dwell_kinetostatics::InverseDynamics<f64>,
 }
 
 impl InverseDynamics {
     pub(crate) fn new(
-        mechanism: Mechanism,
         kinematics: Kinematics,
         result: dwell_kinetostatics::InverseDynamics<f64>,
     ) -> Self {
-        Self {
-            mechanism,
-            kinematics,
-            result,
-        }
+        Self { kinematics, result }
     }
 
     /// The state of the bodies.
@@ -199,7 +253,7 @@ impl InverseDynamics {
     }
 
     /// A reaction `joint.component`, N or N·m: the force or moment of the joint's first-named body on the second. The
-    /// `magnitude` of a pin or a weld is the length of (x, y).
+    /// `magnitude` of a joint with a force in any direction is the length of that.
     ///
     /// # Errors
     /// [`Error::Unknown`], also where redundant constraints share the load, so that the reaction is statically
@@ -213,29 +267,31 @@ impl InverseDynamics {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn reaction(&self, name: &str) -> Result<f64, Error> {
-        let names = self.mechanism.reactions();
-        let find = |name: &str| names.iter().position(|known| known == name);
-        if let Some((joint, "magnitude")) = name.rsplit_once('.')
-            && let [Some(x), Some(y)] = ["x", "y"].map(|axis| find(&format!("{joint}.{axis}")))
-        {
-            return Ok(self.determinate(x, name)?.hypot(self.determinate(y, name)?));
+        let all = &self.kinematics.names.reactions;
+        let find = |name: &str| all.iter().find(|known| known.name == name);
+        if let Some((joint, "magnitude")) = name.rsplit_once('.') {
+            let axes = &["x", "y", "z"][..self.kinematics.names.dimension];
+            let parts = axes.iter().map(|axis| find(&format!("{joint}.{axis}")));
+            if let Some(parts) = parts.collect::<Option<Vec<_>>>() {
+                let mut parts = parts.into_iter();
+                let length = |sum: f64, part| Ok(sum.hypot(self.determinate(part, name)?));
+                return parts.try_fold(0.0, length);
+            }
         }
         let found = find(name).ok_or_else(|| {
-            let names = names.iter().map(String::as_str);
+            let names = all.iter().map(|known| known.name.as_str());
             Error::unknown("reaction", "reactions", name, names)
         });
         self.determinate(found?, name)
     }
 
-    fn determinate(&self, k: usize, name: &str) -> Result<f64, Error> {
-        if self.mechanism.model.plan().is_determinate(k) {
-            return Ok(self.result.reactions[k]);
-        }
-        Err(Error::Unknown {
+    fn determinate(&self, reaction: &NamedReaction, name: &str) -> Result<f64, Error> {
+        let place = reaction.place.ok_or_else(|| Error::Unknown {
             what: "statically determinate reaction",
             name: name.to_owned(),
             help: "redundant constraints share the load".to_owned(),
-        })
+        });
+        Ok(self.result.reactions[place?])
     }
 
     /// The force, N, or torque, N·m, that an actuator must exert.
@@ -250,10 +306,9 @@ impl InverseDynamics {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn actuator_force(&self, name: &str) -> Result<f64, Error> {
-        let names = self.mechanism.actuators();
-        let found = names.iter().position(|known| *known == name);
-        let found = found
-            .ok_or_else(|| Error::unknown("actuator", "actuators", name, names.iter().copied()));
+        let names = self.kinematics.names.actuators.iter().map(String::as_str);
+        let found = names.clone().position(|known| known == name);
+        let found = found.ok_or_else(|| Error::unknown("actuator", "actuators", name, names));
         Ok(self.result.tau[found?])
     }
 }

@@ -3,16 +3,18 @@
 use crate::error::Error;
 use crate::mechanism::Mechanism;
 use crate::mechanism::parts::{LoadFunction, Magnitude};
-use dwell_geometry::{BodyId, Vec2};
+use dwell_study::{SceneTask, StudyError, StudyScene, describe_scene, with_dimension};
 use std::path::Path;
 use std::sync::Arc;
 
 /// A scene: the description of a mechanism with its masses, loads, drives and motions, read and checked, in the form that
-/// `docs/scene-format.md` documents.
+/// `docs/scene-format.md` documents. Its points have two numbers in the plane, and three in space.
 ///
 /// ```
 /// let scene = dwell::Scene::read("../../docs/slider.toml")?;
 /// assert_eq!(scene.title(), "Offset slider-crank");
+/// let in_space = dwell::Scene::read("../../validation/spatial/rssr.toml")?;
+/// assert_eq!(in_space.title(), "Spatial crank-rocker with two balls");
 /// # Ok::<(), dwell::Error>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -116,7 +118,7 @@ impl Scene {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn with_value(&self, path: &str, value: f64) -> Result<Self, Error> {
-        Ok(Self(Arc::new(self.0.with_value(path, value)?)))
+        Ok(Self(Arc::new(self.0.with_values(&[(path, value)])?)))
     }
 
     /// What `dwell check` prints: degrees of freedom, range, groups, assembly modes, loads and requests.
@@ -130,7 +132,7 @@ impl Scene {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn describe(&self) -> Result<String, Error> {
-        Ok(dwell_study::describe_scene(&self.0)?)
+        Ok(with_dimension(&self.0, Describe)?)
     }
 
     /// The same scene with the magnitude of a load computed by a function of signals: `t` (s), coordinates (rad or m) and
@@ -191,26 +193,6 @@ impl Scene {
         &self.0
     }
 
-    /// A body by its name.
-    pub(super) fn body(&self, name: &str) -> Result<BodyId, Error> {
-        let bodies = &self.0.mechanism.bodies;
-        let found = bodies.iter().position(|b| b.name == name).map(BodyId);
-        let names = bodies.iter().map(|b| b.name.as_str());
-        found.ok_or_else(|| Error::unknown("body", "bodies", name, names))
-    }
-
-    /// A point `body.point`: its body, and where it is in that body's frame, m.
-    pub(super) fn point(&self, name: &str) -> Result<(BodyId, Vec2), Error> {
-        let (body, point) = name.split_once('.').unwrap_or((name, ""));
-        let id = self.body(body)?;
-        let points = &self.0.points[id.0];
-        let found = points.iter().find(|(known, _)| known == point);
-        let all: Vec<String> = points.iter().map(|(p, _)| format!("{body}.{p}")).collect();
-        let names = all.iter().map(String::as_str);
-        let (_, at) = found.ok_or_else(|| Error::unknown("point", "points", name, names))?;
-        Ok((id, *at))
-    }
-
     /// The same scene with the magnitude of a load computed by a function.
     pub(crate) fn with_load_function(&self, load: &str, of: &LoadFunction) -> Result<Self, Error> {
         let signals: Vec<&str> = of.signals.iter().map(String::as_str).collect();
@@ -219,5 +201,15 @@ impl Scene {
         let scene = (*self.0).clone();
         let scene = scene.with_load_function(load, &signals, of.function.clone(), &breakpoints)?;
         Ok(Self(Arc::new(scene)))
+    }
+}
+
+struct Describe;
+
+impl SceneTask for Describe {
+    type Output = Result<String, StudyError>;
+
+    fn run<S: StudyScene>(self, scene: &S) -> Self::Output {
+        describe_scene(scene)
     }
 }

@@ -3,7 +3,7 @@
 
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::{ExactModel, Model};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::f64::consts::TAU;
 use std::hint::black_box;
 use std::path::Path;
@@ -63,21 +63,21 @@ pub(crate) const FULL_REVOLUTION: (f64, f64) = (0.0, TAU);
 
 /// A validation case.
 pub(crate) struct Case {
-    pub(crate) scene: Scene,
+    pub(crate) scene: PlaneScene,
 }
 
 impl Case {
     pub(crate) fn read(name: &str) -> Self {
         let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
         let path = home.join(name).join("scene.toml");
-        match Scene::read(path) {
+        match PlaneScene::read(path) {
             Ok(scene) => Self { scene },
             Err(error) => stop(name, &error.to_string()),
         }
     }
 
     pub(crate) fn model(&self, reactions: &[Reaction]) -> ExactModel {
-        let Scene {
+        let PlaneScene {
             mechanism, masses, ..
         } = &self.scene;
         let assembly = self.scene.assembly.to_configuration();
@@ -96,7 +96,7 @@ pub(crate) fn stop(case: &str, why: &str) -> ! {
     std::process::exit(1)
 }
 
-pub(crate) fn reactions(scene: &Scene, name: &str) -> Vec<Reaction> {
+pub(crate) fn reactions(scene: &PlaneScene, name: &str) -> Vec<Reaction> {
     let mechanism = &scene.mechanism;
     let all = mechanism.reactions().into_iter();
     let found: Vec<_> = all

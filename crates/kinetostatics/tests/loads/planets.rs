@@ -2,7 +2,7 @@
 
 use crate::scenes::Case;
 use dwell_geometry::{BodyId, Vec2};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::f64::consts::TAU;
 
 /// Sun 30 mm, planets 20 mm, ring 70 mm; a second pin in the sun's centre if asked for.
@@ -43,7 +43,7 @@ fn planets(count: usize, extra_joints: &str) -> Case {
         load = {{ torque = "arm", magnitude = -12.0 }}
         "#
     );
-    let scene = Scene::parse("planets.toml", &text).expect("a scene");
+    let scene = PlaneScene::parse("planets.toml", &text).expect("a scene");
     Case::of(&scene, |_| scene.loads.clone())
 }
 

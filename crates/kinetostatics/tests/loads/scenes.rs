@@ -6,7 +6,7 @@ use dwell_kinetostatics::{
     EvaluatedState, InverseDynamics, Load, LoadKind, Magnitude, Mass, Model, Signal, Workspace,
 };
 use dwell_laws::{Expression, Law, Polynomial};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::path::Path;
 
 const YOKE: &str = include_str!("yoke.toml");
@@ -64,7 +64,7 @@ pub(crate) struct Case {
 }
 
 impl Case {
-    pub(crate) fn of(scene: &Scene, loads: impl FnOnce(&Mechanism) -> Vec<Load>) -> Self {
+    pub(crate) fn of(scene: &PlaneScene, loads: impl FnOnce(&Mechanism) -> Vec<Load>) -> Self {
         let assembly = scene.assembly.to_configuration();
         let machine = Machine {
             name: "",
@@ -101,7 +101,10 @@ impl Case {
     }
 
     pub(crate) fn parse(text: &str, loads: impl FnOnce(&Mechanism) -> Vec<Load>) -> Self {
-        Self::of(&Scene::parse("test.toml", text).expect("a scene"), loads)
+        Self::of(
+            &PlaneScene::parse("test.toml", text).expect("a scene"),
+            loads,
+        )
     }
 
     pub(crate) fn body(&self, name: &str) -> BodyId {
@@ -199,9 +202,9 @@ pub(crate) fn varied(name: &str, kind: LoadKind, signal: Signal, coefficients: &
     }
 }
 
-pub(crate) fn case(name: &str) -> Scene {
+pub(crate) fn case(name: &str) -> PlaneScene {
     let validation = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
-    Scene::read(validation.join(name).join("scene.toml")).expect("a scene")
+    PlaneScene::read(validation.join(name).join("scene.toml")).expect("a scene")
 }
 
 /// A load whose magnitude is an expression of time and of an angle with its speed.
@@ -222,9 +225,9 @@ pub(crate) fn all() -> Vec<Case> {
         case("crank-rocker"),
         case("slotted-rocker"),
         case("class-three-six-bar"),
-        Scene::parse("yoke.toml", YOKE).expect("a scene"),
-        Scene::parse("oldham.toml", OLDHAM).expect("a scene"),
-        Scene::parse("five-bar.toml", FIVE_BAR).expect("a scene"),
+        PlaneScene::parse("yoke.toml", YOKE).expect("a scene"),
+        PlaneScene::parse("oldham.toml", OLDHAM).expect("a scene"),
+        PlaneScene::parse("five-bar.toml", FIVE_BAR).expect("a scene"),
     ];
     let scenes = cases.iter().map(|scene| Case::of(scene, every_kind));
     let machines = machines::all().into_iter();

@@ -6,7 +6,7 @@ use dwell_geometry::{JointId, Vec2, vec2};
 use dwell_kinetostatics::{
     FreeBodyForces, InverseDynamics, Load, LoadKind, MachineModel as _, Magnitude, Model,
 };
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// rad, about 20°.
 const ALPHA: f64 = 0.35;
@@ -27,7 +27,7 @@ fn close(found: Vec2, expected: Vec2) {
 
 /// A scene's mechanism under its own loads.
 fn case(text: &str) -> Case {
-    let scene = Scene::parse("test.toml", text).expect("a scene");
+    let scene = PlaneScene::parse("test.toml", text).expect("a scene");
     Case::of(&scene, |_| scene.loads.clone())
 }
 
@@ -375,7 +375,7 @@ fn an_indeterminate_tooth_force_has_no_separating_force() {
         .replace("[joints]", "second.points = { D = [0, 0] }\n[joints]")
         .replace("planet = 0.0", "planet = 0.0\n    second = 0.0")
         .replace("[actuators]", second_planet);
-    let scene = Scene::parse("test.toml", &two).expect("a scene");
+    let scene = PlaneScene::parse("test.toml", &two).expect("a scene");
     let assembly = scene.assembly.to_configuration();
     let model = Model::new(
         &scene.mechanism,

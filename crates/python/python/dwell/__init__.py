@@ -1,4 +1,4 @@
-"""Kinematics, forces, the reduced model and motions of mechanisms, in the plane and in ``dwell.space``.
+"""Kinematics, forces, the reduced model and motions of mechanisms, in the plane and in space.
 
 A mechanism is read from a scene file, or built; it is assembled, and then asked:
 
@@ -12,6 +12,20 @@ Builder('Pendulum')
 >>> round(bob.at(np.pi / 2).actuator_force("phi"), 6)  # held horizontally, N m
 9.81
 
+Points with three numbers make a mechanism one in space:
+
+>>> scene = dwell.Scene('''
+... bodies.ground.points = { O = [0, 0, 0] }
+... bodies.bob = { points = { O = [0, 0, 0], P = [0.5, 0, 0] }, mass = 2.0, center = [0.5, 0, 0] }
+... joints.O = { revolute = ["ground.O", "bob.O"], axis = [0, 1, 0] }
+... actuators.phi = { angle = "O" }
+... assembly.phi = 0.0
+... loads.weight = { gravity = [0, 0, -9.81] }
+... ''')
+>>> state = scene.assemble().at(0.0)
+>>> round(state.actuator_force("phi"), 6), state.position("bob.P").tolist()
+(-9.81, [0.5, 0.0, 0.0])
+
 Everything is in SI: m, rad, kg, s, N. Reactions are named ``joint.component``: the force or moment of the joint's first-named body
 on the second. Points are named ``body.point``. Results know their units, and convert to pandas, polars and xarray where these are
 installed.
@@ -19,10 +33,11 @@ installed.
 
 from __future__ import annotations
 
+import os
+
 from ._builder import Builder
 from ._closed_form import ClosedForm
 from ._cluster import StoredSweep
-from . import space
 from ._mechanism import Mechanism, State
 from ._moving import Cycle, Equilibrium, Period, StateSpace
 from ._native import DwellError, SceneError, __version__
@@ -52,13 +67,12 @@ __all__ = [
     "Table",
     "__version__",
     "read",
-    "space",
     "sweep",
     "validate",
 ]
 
 
-def read(path: str) -> Mechanism:
+def read(path: str | os.PathLike[str]) -> Mechanism:
     """Reads a scene file and assembles its mechanism: ``Scene.read(path).assemble()``.
 
     Raises SceneError with everything that is wrong in the file, each with its place.

@@ -18,7 +18,8 @@ _NO_VALUE = "0/(t - t)"
 class Builder:
     """Collects the parts of a mechanism; ``assemble()`` puts them together. All numbers are in SI.
 
-    Keyword arguments are the keys of a scene file, with ``_`` for ``-``. Calls may be chained.
+    Keyword arguments are the keys of a scene file, with ``_`` for ``-``. Calls may be chained. Points with three numbers make it a
+    mechanism in space.
 
     >>> m = Builder("Slider-crank")
     >>> m.body("ground", A=(0, 0), G=(0, 0.025))
@@ -44,15 +45,15 @@ class Builder:
     def body(
         self,
         name: str,
-        points: Mapping[str, tuple[float, float]] | None = None,
+        points: Mapping[str, Sequence[float]] | None = None,
         *,
         mass: float | None = None,
-        center: tuple[float, float] | str | None = None,
-        inertia: float | None = None,
-        **named_points: tuple[float, float],
+        center: Sequence[float] | str | None = None,
+        inertia: float | Sequence[float] | None = None,
+        **named_points: Sequence[float],
     ) -> None:
         """Adds a body: its points in its own frame (m) as keywords or a mapping, mass (kg), centre of mass (m, or the name of a
-        point), moment of inertia about that (kg m²). Without mass it is a massless link; ``ground`` is the fixed body."""
+        point), moment of inertia about that (kg m²; in space ``(xx, yy, zz)``, or all six elements of the tensor). Without mass it is a massless link; ``ground`` is the fixed body."""
         if name in self._bodies:
             raise ValueError(f"body `{name}` is given twice")
         keys = {"mass": mass, "center": center, "inertia": inertia}
@@ -71,8 +72,9 @@ class Builder:
         """Adds an independent coordinate: ``actuator("phi", angle=("ground", "crank"))``, or ``length="guide"``."""
         return self._add("actuators", name, keys)
 
-    def assembly(self, **values: float) -> Builder:
-        """Where it is assembled: coordinates of actuators (exact), angles of bodies in rad (approximate: they select the mode)."""
+    def assembly(self, **values: Any) -> Builder:
+        """Where it is assembled: coordinates of actuators (exact), angles of bodies in rad (approximate: they select the mode); of bodies
+        in space their place and turn, ``rod={"at": (0.1, 0, 0), "turn": (0, 0.7, 0)}``."""
         self._sections.setdefault("assembly", {}).update(values)
         return self
 

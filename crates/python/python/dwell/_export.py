@@ -12,7 +12,7 @@ EXPORT_TARGETS = ("c", "exact-c", "rust", "matlab", "fmu", "exact-fmu", "fmu2", 
 
 
 def write_export(
-    scene: _native.Scene | _native.SpaceScene, target: str, folder: str | os.PathLike[str], accuracy: float
+    scene: _native.Scene, target: str, folder: str | os.PathLike[str], accuracy: float
 ) -> list[pathlib.Path]:
     """Writes the files of a target, and returns them."""
     if target not in EXPORT_TARGETS:

@@ -1,14 +1,17 @@
-"""Assembled mechanisms in the plane, and what can be asked of them."""
+"""Assembled mechanisms, and what can be asked of them."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Callable, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from ._moving import AssembledMechanism
+from ._moving import Cycle, Equilibrium, Period, StateSpace, complex_numbers
+from ._progress import Progress
+from ._reduced import Coefficients, ReducedModel
+from ._results import Motion, Results
 
 if TYPE_CHECKING:
     from ._scene import Scene
@@ -17,7 +20,11 @@ Array = npt.NDArray[np.float64]
 
 
 class State:
-    """Positions, velocities, accelerations and forces at one position. Points are ``body.point``, reactions ``joint.component``."""
+    """Positions, velocities, accelerations and forces at one position. Points are ``body.point``, reactions ``joint.component``.
+
+    Vectors are in the axes of the ground: positions and what follows from them have two numbers in the plane and three in space; what
+    turns is a number in the plane, about z, and three in space.
+    """
 
     def __init__(self, native: _native.State) -> None:
         self._native = native
@@ -35,16 +42,20 @@ class State:
         return np.array(self._native.acceleration(point))
 
     def angle(self, body: str) -> float:
-        """Angle of a body from the ground, rad."""
+        """Angle of a body in the plane from the ground, rad. Raises DwellError in space, where a body has a ``rotation``."""
         return self._native.angle(body)
 
-    def angular_velocity(self, body: str) -> float:
-        """Angular velocity of a body, rad/s."""
-        return self._native.angular_velocity(body)
+    def rotation(self, body: str) -> Array:
+        """The rotation of a body as a matrix of 3 × 3: its columns are the axes of the body's frame in the axes of the ground."""
+        return np.array(self._native.axes(body)).T
 
-    def angular_acceleration(self, body: str) -> float:
+    def angular_velocity(self, body: str) -> Any:
+        """Angular velocity of a body, rad/s."""
+        return _turning(self._native.angular_velocity(body))
+
+    def angular_acceleration(self, body: str) -> Any:
         """Angular acceleration of a body, rad/s²."""
-        return self._native.angular_acceleration(body)
+        return _turning(self._native.angular_acceleration(body))
 
     def coordinate(self, name: str) -> tuple[float, float, float]:
         """A coordinate with its first two derivatives: rad or m, per s, per s²."""
@@ -52,7 +63,8 @@ class State:
         return value, velocity, acceleration
 
     def reaction(self, name: str) -> float:
-        """A reaction, N or N m: of the joint's first-named body on the second. ``magnitude`` of a pin is the length of (x, y)."""
+        """A reaction, N or N m: of the joint's first-named body on the second. ``magnitude`` of a joint with a force in any direction is
+        the length of that. Raises DwellError where redundant constraints leave it open."""
         return self._native.reaction(name)
 
     def actuator_force(self, name: str) -> float:
@@ -60,8 +72,13 @@ class State:
         return self._native.actuator_force(name)
 
 
-class Mechanism(AssembledMechanism[_native.Mechanism]):
-    """An assembled mechanism: constant, and safe to use in several threads. Coordinates are those of the actuators, in their order.
+def _turning(numbers: list[float]) -> float | Array:
+    """A number in the plane, an array in space."""
+    return numbers[0] if len(numbers) == 1 else np.array(numbers)
+
+
+class Mechanism:
+    """An assembled mechanism, in the plane or in space: constant, and safe to use in several threads. Coordinates are those of the actuators, in their order.
 
     In a notebook it shows itself as a picture; ``plot()`` draws it with matplotlib.
     """
@@ -69,6 +86,151 @@ class Mechanism(AssembledMechanism[_native.Mechanism]):
     def __init__(self, native: _native.Mechanism, scene: Scene) -> None:
         self._native = native
         self.scene = scene
+
+    @property
+    def actuators(self) -> list[str]:
+        """Names of the coordinates."""
+        return self._native.actuators
+
+    @property
+    def reactions(self) -> list[str]:
+        """Names of all reactions: ``joint.component``."""
+        return self._native.reactions
+
+    @property
+    def limits(self) -> tuple[float, float] | None:
+        """The limits of the only coordinate, rad or m, if it has any."""
+        return self._native.limits
+
+    @property
+    def points(self) -> dict[str, list[str]]:
+        """The bodies with their named points."""
+        return dict(self._native.points)
+
+    @property
+    def start(self) -> Array:
+        """The coordinates at assembly, rad or m."""
+        return np.array(self._native.start)
+
+    def reduced(self, reactions: Sequence[str] | None = None) -> ReducedModel:
+        """The reduced model with these reactions: joints (``A``) or components (``guide.normal``); without a list, all that
+        redundant constraints do not leave open.
+
+        Raises DwellError unless there is exactly one actuator.
+        """
+        return ReducedModel(self._native.reduced(list(self._native.determined_reactions if reactions is None else reactions)))
+
+    def reduce(self, q: npt.ArrayLike, reactions: Sequence[str] | None = None, *, threads: int = 0) -> Coefficients:
+        """``reduced(reactions)(q)``: m, ½m′, a, b, w and c at coordinates of any shape."""
+        return self.reduced(reactions)(q, threads=threads)
+
+    def kinematics(self) -> Results:
+        """Positions, velocities and accelerations along the scene's prescribed motion or coordinate sweep: the columns of
+        ``dwell kinematics``."""
+        with Progress("kinematics") as progress:
+            return Motion(self._native.kinematics(progress)).check()
+
+    def statics(self) -> Results:
+        """Actuator forces and reactions at rest in every position of the prescribed motion or coordinate sweep."""
+        with Progress("statics") as progress:
+            return Motion(self._native.statics(progress)).check()
+
+    def kinetostatics(self) -> Results:
+        """Everything of ``kinematics`` and the forces that the motion needs."""
+        with Progress("kinetostatics") as progress:
+            return Motion(self._native.kinetostatics(progress)).check()
+
+    def simulate(
+        self,
+        accuracy: float | None = None,
+        *,
+        method: str | None = None,
+        tolerance: float = 1e-10,
+        sample_interval: float | None = None,
+    ) -> Motion:
+        """The free motion of the scene under its loads, drives and friction.
+
+        accuracy: the cheapest method that reaches it, with an error estimate. Otherwise ``method`` ("bdf", "esdirk34", "tr-bdf2",
+        "tsit45", "dop853") with a relative and absolute tolerance; without either, BDF at 1e-10, as the command. sample_interval: s; absent, a thousandth of the duration.
+        """
+        with Progress("simulate") as progress:
+            return Motion(self._native.simulate(accuracy, method, tolerance, sample_interval, progress))
+
+    def period(self) -> Period:
+        """Period and energy of the free motion, by quadrature: one free coordinate, conservative loads."""
+        with Progress("period") as progress:
+            return Period(*self._native.period(progress))
+
+    def equilibria(self) -> list[Equilibrium]:
+        """The equilibria, with stability and modes."""
+        with Progress("equilibria") as progress:
+            found = self._native.equilibria(progress)
+        return [
+            Equilibrium(np.array(e["coordinates"]), e["stability"], e["modes"], complex_numbers(e["eigenvalues"])) for e in found
+        ]
+
+    def linearise(self) -> StateSpace:
+        """Small motions about the equilibrium nearest to the initial state."""
+        with Progress("linearise") as progress:
+            found = self._native.linearise(progress)
+        states, inputs, outputs = found["states"], found["inputs"], found["outputs"]
+
+        def matrix(rows: list[list[float]], height: int, width: int) -> Array:
+            return np.array(rows, dtype=np.float64).reshape(height, width)
+
+        return StateSpace(
+            states,
+            inputs,
+            outputs,
+            np.array(found["operating_point"]),
+            matrix(found["a"], len(states), len(states)),
+            matrix(found["b"], len(states), len(inputs)),
+            matrix(found["c"], len(outputs), len(states)),
+            matrix(found["d"], len(outputs), len(inputs)),
+            complex_numbers(found["eigenvalues"]),
+        )
+
+    def cycle(
+        self,
+        accuracy: float | None = None,
+        *,
+        method: str | None = None,
+        tolerance: float = 1e-10,
+        fluctuation: float | None = None,
+    ) -> Cycle:
+        """The steady cycle of a rotating machine, and the flywheel that keeps its coefficient of fluctuation to ``fluctuation``."""
+        with Progress("cycle") as progress:
+            found = self._native.cycle(accuracy, method, tolerance, fluctuation, progress)
+        return Cycle(
+            period=found["period"],
+            mean_speed=found["mean_speed"],
+            fluctuation=found["fluctuation"],
+            is_stable=found["is_stable"],
+            works=dict(found["works"]),
+            flywheel=found["flywheel"],
+        )
+
+    def plot(self, q: float | Sequence[float] | None = None, **options: Any) -> Any:
+        """Draws the mechanism with matplotlib at coordinates q (absent: at assembly). Returns the axes."""
+        from ._drawing import plot_mechanism
+
+        return plot_mechanism(self, q, **options)
+
+    def animate(self, motion: Results | None = None, *, frames: int = 120, interval: float = 40.0) -> Any:
+        """A matplotlib animation over a motion, or over the range of the only coordinate. interval: ms between frames."""
+        from ._drawing import animate_mechanism
+
+        return animate_mechanism(self, motion, frames, interval)
+
+    def _repr_svg_(self) -> str:
+        from ._drawing import svg
+
+        return svg(self)
+
+    def _coordinates(self, values: float | Sequence[float]) -> list[float]:
+        """A number for each actuator: one stands for all of them."""
+        array = np.asarray(values, dtype=np.float64)
+        return [float(array)] * len(self.actuators) if array.ndim == 0 else [float(value) for value in array]
 
     def at(
         self,
@@ -89,7 +251,7 @@ class Mechanism(AssembledMechanism[_native.Mechanism]):
         """Where points ``body.point`` are at many positions, m. Only positions are computed.
 
         q: coordinates of any shape, rad or m; with several actuators its last axis has one coordinate for each. The result has the shape
-        of the positions, then an axis for the points (absent for one name), then x and y::
+        of the positions, then an axis for the points (absent for one name), then x and y, and z in space::
 
             x, y = mechanism.paths("coupler.P", np.linspace(0, 2 * np.pi, 361)).T
 
@@ -101,7 +263,8 @@ class Mechanism(AssembledMechanism[_native.Mechanism]):
         shape = wanted.shape if count == 1 else wanted.shape[:-1]
         if count != 1 and wanted.shape[-1:] != (count,):
             raise ValueError(f"the last axis of q must have the coordinates of {count} actuators: {', '.join(self.actuators)}")
-        found = self._native.paths(names, wanted.reshape(-1)).reshape(*shape, len(names), 2)
+        found = self._native.paths(names, wanted.reshape(-1)).reshape(*shape, len(names), 3)
+        found = found[..., : self._native.dimension]
         return found[..., 0, :] if isinstance(points, str) else found
 
     def rhs(self) -> tuple[Callable[[float, Array], Array], Callable[[float, Array], Array], Array]:

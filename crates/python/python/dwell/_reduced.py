@@ -42,7 +42,7 @@ class ReducedModel:
     (array([0.32, 0.32]), array([-0.2,  0. ]))
     """
 
-    def __init__(self, native: _native.ReducedModel | _native.SpaceReducedModel) -> None:
+    def __init__(self, native: _native.ReducedModel) -> None:
         self._native = native
         self._reactions, self._loads = native.reactions, native.loads
 

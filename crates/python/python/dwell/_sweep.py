@@ -11,7 +11,6 @@ from ._progress import Progress
 from ._results import Results
 
 if TYPE_CHECKING:
-    from . import space
     from ._scene import Scene
 
 
@@ -23,7 +22,7 @@ class SweepResults(Results):
 
 @overload
 def sweep(
-    scene: Scene | space.Scene,
+    scene: Scene,
     vary: Mapping[str, str | Sequence[float]],
     results: Sequence[str] = (),
     *,
@@ -36,7 +35,7 @@ def sweep(
 
 @overload
 def sweep(
-    scene: Scene | space.Scene,
+    scene: Scene,
     vary: Mapping[str, str | Sequence[float]],
     results: Sequence[str] = (),
     *,
@@ -50,7 +49,7 @@ def sweep(
 
 
 def sweep(
-    scene: Scene | space.Scene,
+    scene: Scene,
     vary: Mapping[str, str | Sequence[float]],
     results: Sequence[str] = (),
     *,

@@ -1,7 +1,6 @@
 //! Scenes of mechanisms in space: those whose points have three numbers.
 
 mod actuators;
-mod any_scene;
 mod assembly;
 mod bodies;
 mod build;
@@ -14,6 +13,5 @@ mod requests;
 mod scene;
 mod values;
 
-pub use any_scene::AnyScene;
-pub(crate) use points::{planar_only, three_numbers};
+pub(crate) use points::{is_in_space, planar_only, three_numbers};
 pub use scene::{SpacePathPoint, SpaceScene};

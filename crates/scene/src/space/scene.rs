@@ -1,13 +1,16 @@
 //! A scene in space as plain data.
 
+use crate::error::SceneError;
 use crate::file::SceneFile;
-use crate::scene::{
+use crate::plane_scene::{
     CoordinateSweep, FreeMotionSpec, NamedCoordinate, NamedStop, PathPoint, PrescribedMotion,
 };
+use crate::read::{named_text, text_of_file};
 use dwell_geometry::space::{Assembly, Coordinate, Mechanism, Vec3};
 use dwell_kinetostatics::Drive;
 use dwell_kinetostatics::space::{Load, Mass, Reaction};
 use std::ops::Deref;
+use std::path::Path;
 
 /// A scene of a mechanism in space. SI throughout; the bodies, joints and actuators are in the order of the file.
 #[derive(Debug, Clone)]
@@ -58,6 +61,31 @@ impl Deref for SpaceScene {
 }
 
 impl SpaceScene {
+    /// Reads a scene in space from a file.
+    ///
+    /// # Errors
+    /// [`SceneError`] when the file cannot be read, or is not a scene in space.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let (name, source) = text_of_file(path.as_ref())?;
+        Self::build(name, &source)
+    }
+
+    /// Reads the text of a scene in space. `source_name` is the file's name in messages.
+    ///
+    /// # Errors
+    /// [`SceneError`] when it is not a scene in space.
+    pub fn parse(source_name: &str, text: &str) -> Result<Self, SceneError> {
+        let (name, source) = named_text(source_name, text);
+        Self::build(name, &source)
+    }
+
+    /// The error of what takes only scenes in the plane.
+    pub fn planar_only(&self) -> SceneError {
+        let at = crate::read::syntax(&self.source).ok();
+        let at = at.and_then(|root| super::points::three_numbers(root.get_ref()));
+        super::points::planar_only(&self.source, at.unwrap_or_default())
+    }
+
     /// The name of a coordinate: an actuator's, or one of `[coordinates]`; empty if it has none.
     pub fn name_of(&self, coordinate: Coordinate) -> String {
         let mut named = self.all_coordinates();

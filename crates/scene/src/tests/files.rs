@@ -20,7 +20,7 @@ fn folder() -> PathBuf {
 fn a_file_that_cannot_be_read_says_why() {
     let folder = folder();
     let read = |name: &str| {
-        let error = Scene::read(folder.join(name)).unwrap_err();
+        let error = PlaneScene::read(folder.join(name)).unwrap_err();
         render(&error);
         let display_path = folder.display().to_string();
         let help = error.help.unwrap_or_default();
@@ -43,7 +43,7 @@ fn a_file_that_cannot_be_read_says_why() {
         read("latin.toml"),
         "`DIR/latin.toml` is not UTF-8 text ⇒ save it as UTF-8"
     );
-    let error = Scene::read(folder.join("latin.toml")).unwrap_err();
+    let error = PlaneScene::read(folder.join("latin.toml")).unwrap_err();
     assert_eq!(error.labelled(), [("\u{fffd}", "not a character")]);
     for bytes in [&b"\x7fELF\0\xff"[..], b"title\0"] {
         std::fs::write(folder.join("program"), bytes).unwrap();
@@ -62,19 +62,25 @@ fn a_scene_is_named_after_its_file_or_folder() {
     for file in ["press/scene.toml", "press/variant 2.toml"] {
         std::fs::write(folder.join(file), WHOLE).unwrap();
     }
-    let name = |file: &str| Scene::read(folder.join(file)).unwrap().file.name;
+    let name = |file: &str| PlaneScene::read(folder.join(file)).unwrap().file.name;
     assert_eq!(name("press/scene.toml"), "press");
     assert_eq!(name("press/../press/scene.toml"), "press");
     assert_eq!(name("press/variant 2.toml"), "variant 2");
     std::fs::remove_dir_all(folder).unwrap();
-    assert_eq!(Scene::parse("a/b/scene.toml", WHOLE).unwrap().name, "b");
-    assert_eq!(Scene::parse("scene.toml", WHOLE).unwrap().name, "scene");
-    assert_eq!(Scene::parse("", WHOLE).unwrap().name, "scene");
+    assert_eq!(
+        PlaneScene::parse("a/b/scene.toml", WHOLE).unwrap().name,
+        "b"
+    );
+    assert_eq!(
+        PlaneScene::parse("scene.toml", WHOLE).unwrap().name,
+        "scene"
+    );
+    assert_eq!(PlaneScene::parse("", WHOLE).unwrap().name, "scene");
 }
 
-fn case(name: &str) -> Scene {
+fn case(name: &str) -> PlaneScene {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
-    Scene::read(root.join(name).join("scene.toml"))
+    PlaneScene::read(root.join(name).join("scene.toml"))
         .map_err(|e| render(&e))
         .unwrap()
 }

@@ -22,7 +22,7 @@ const PHI: Coordinate = Coordinate::Angle([GROUND, CRANK]);
 const OMEGA: Coordinate = Coordinate::Angle([GROUND, WHEEL]);
 const RISE: Coordinate = Coordinate::Travel(JointId(4));
 
-fn free_motion() -> Scene {
+fn free_motion() -> PlaneScene {
     parse(FREE_MOTION).unwrap()
 }
 

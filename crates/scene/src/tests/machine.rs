@@ -27,7 +27,7 @@ const FOLLOWER: BodyId = BodyId(10);
 const PHI: Coordinate = Coordinate::Angle([GROUND, CRANK]);
 const LIFT: Coordinate = Coordinate::Travel(JointId(11));
 
-fn machine() -> Scene {
+fn machine() -> PlaneScene {
     parse(MACHINE).unwrap()
 }
 

@@ -12,7 +12,7 @@ mod space;
 mod suspicious_numbers;
 mod values;
 
-use crate::{AnyScene, Scene, SceneError};
+use crate::{PlaneScene, Scene, SceneError};
 use miette::{GraphicalReportHandler, GraphicalTheme};
 
 /// A scene that uses the whole language.
@@ -97,8 +97,8 @@ fn same_as_written(path: &str, should: &str) {
     );
 }
 
-fn parse(text: &str) -> Result<Scene, SceneError> {
-    Scene::parse("test.toml", text)
+fn parse(text: &str) -> Result<PlaneScene, SceneError> {
+    PlaneScene::parse("test.toml", text)
 }
 
 /// Draws the error as the command does, and holds every label to the text.
@@ -123,7 +123,7 @@ fn render(error: &SceneError) -> String {
 
 /// Message, labelled text, its label and help of each error, one line each.
 fn messages(text: &str) -> Vec<String> {
-    let Err(error) = AnyScene::parse("test.toml", text) else {
+    let Err(error) = Scene::parse("test.toml", text) else {
         return vec!["nothing is wrong".to_owned()];
     };
     assert!(!render(&error).is_empty());

@@ -4,7 +4,7 @@ use super::format::{merged, tables, tables_of_examples};
 use super::mutations::pieces;
 use super::{IN_SPACE, WHOLE, render};
 use crate::keys::kinds;
-use crate::{AnyScene, Scene, SpaceScene};
+use crate::{PlaneScene, Scene, SpaceScene};
 use dwell_geometry::space::{ActuatorKind, JointKind, Rotation, Vec3, vec3};
 use dwell_geometry::{BodyId, JointId};
 use dwell_kinetostatics::space::{Direction, Load, LoadKind};
@@ -17,10 +17,10 @@ fn close(a: Vec3, b: Vec3) -> bool {
 
 #[test]
 fn points_with_three_numbers_make_a_scene_one_in_space() {
-    let read = |text: &str| AnyScene::parse("test.toml", text).expect("a scene");
-    assert!(matches!(read(IN_SPACE), AnyScene::Space(_)));
-    assert!(matches!(read(WHOLE), AnyScene::Plane(_)));
-    let error = Scene::parse("test.toml", IN_SPACE).expect_err("not in the plane");
+    let read = |text: &str| Scene::parse("test.toml", text).expect("a scene");
+    assert!(matches!(read(IN_SPACE), Scene::Space(_)));
+    assert!(matches!(read(WHOLE), Scene::Plane(_)));
+    let error = PlaneScene::parse("test.toml", IN_SPACE).expect_err("not in the plane");
     assert!(error.message.contains("is in space"), "{error}");
     assert!(!error.labels.is_empty());
 }
@@ -170,7 +170,7 @@ fn end_stops_are_read_in_si() {
 /// A scene cut short anywhere, or with a piece of it replaced, is read or told what is wrong with it.
 #[test]
 fn no_text_breaks_the_reader() {
-    let survive = |text: &str| match AnyScene::parse("test.toml", text) {
+    let survive = |text: &str| match Scene::parse("test.toml", text) {
         Ok(_) => true,
         Err(error) => {
             assert!(!render(&error).is_empty());

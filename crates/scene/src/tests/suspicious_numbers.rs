@@ -1,7 +1,7 @@
 //! Slips of units: each is warned of, in the plane and in space, and no case is.
 
 use crate::spans::SceneLocation;
-use crate::{AnyScene, SceneFile};
+use crate::{Scene, SceneFile};
 use std::path::{Path, PathBuf};
 
 fn doubts(file: &SceneFile) -> Vec<&str> {
@@ -11,8 +11,8 @@ fn doubts(file: &SceneFile) -> Vec<&str> {
 }
 
 fn doubts_of(text: &str) -> String {
-    let scene = AnyScene::parse("scene.toml", text).expect("a scene");
-    doubts(scene.file()).join("\n")
+    let scene = Scene::parse("scene.toml", text).expect("a scene");
+    doubts(&scene).join("\n")
 }
 
 /// A double pendulum.
@@ -86,7 +86,7 @@ rod = 0.0
 }
 
 /// All cases, in the plane and in space, and their small scenes.
-fn cases() -> Vec<AnyScene> {
+fn cases() -> Vec<Scene> {
     let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
     let entries = |folder: &Path| -> Vec<PathBuf> {
         let entries = std::fs::read_dir(folder).expect("a folder").flatten();
@@ -99,7 +99,7 @@ fn cases() -> Vec<AnyScene> {
             false => Vec::new(),
         });
     let is_scene = |path: &PathBuf| path.extension().is_some_and(|e| e == "toml");
-    let read = |path: PathBuf| AnyScene::read(path).ok();
+    let read = |path: PathBuf| Scene::read(path).ok();
     files.filter(is_scene).filter_map(read).collect()
 }
 
@@ -143,15 +143,15 @@ fn inertias_a_million_times_off_are_warned_of_with_both_units() {
 fn no_case_is_doubted_and_every_case_with_inertias_a_million_times_off_is() {
     let (mut silent, mut scaled_cases, mut missed) = (0, 0, Vec::new());
     for scene in cases() {
-        let file = scene.file();
+        let file: &SceneFile = &scene;
         assert_eq!(doubts(file), Vec::<&str>::new(), "{}", file.name);
         silent += 1;
         let (size, has_both) = match &scene {
-            AnyScene::Plane(s) => (
+            Scene::Plane(s) => (
                 s.mechanism.size(),
                 s.masses.iter().any(|m| m.mass > 0.0 && m.inertia > 0.0),
             ),
-            AnyScene::Space(s) => (
+            Scene::Space(s) => (
                 s.mechanism.size(),
                 s.masses.iter().any(|m| m.mass > 0.0 && m.inertia[0] > 0.0),
             ),
@@ -165,11 +165,7 @@ fn no_case_is_doubted_and_every_case_with_inertias_a_million_times_off_is() {
         for factor in [1e-6, 1e6] {
             let scaled = inertias.iter().map(|(path, i)| (*path, factor * i));
             let scaled: Vec<_> = scaled.collect();
-            let scaled = match &scene {
-                AnyScene::Plane(s) => s.with_values(&scaled).map(|s| s.file),
-                AnyScene::Space(s) => s.with_values(&scaled).map(|s| s.file),
-            };
-            let scaled = scaled.expect("a scene");
+            let scaled = scene.with_values(&scaled).expect("a scene");
             scaled_cases += 1;
             let is_doubt = |message: &&str| message.contains("radius of gyration");
             if !doubts(&scaled).iter().any(is_doubt) {

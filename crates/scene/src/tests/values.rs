@@ -26,7 +26,7 @@ fn every_number_by_its_path() {
 fn the_hash_is_that_of_the_text_whatever_its_line_ends() {
     let text = "[bodies.ground]\npoints = { A = [0, 0] }\n[bodies.crank]\npoints = { A = [0, 0] }\n[joints]\n\
                 A = { revolute = [\"ground.A\", \"crank.A\"] }\n[actuators]\nphi = { angle = [\"ground\", \"crank\"] }\n";
-    let hash = |text: &str| Scene::parse("crank.toml", text).unwrap().hash();
+    let hash = |text: &str| PlaneScene::parse("crank.toml", text).unwrap().hash();
     // Of `sha256sum` on a file of this text.
     assert_eq!(
         hash(text),

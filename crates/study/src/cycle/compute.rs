@@ -13,7 +13,7 @@ use dwell_dynamics::{
 use dwell_findings::{Column, Table};
 use dwell_geometry::ActuatorId;
 use dwell_kinetostatics::ReducibleModel as _;
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{PlaneScene, SceneLocation};
 
 /// Revolutions from the initial state to the first guess.
 const RUN_UP_REVOLUTIONS: u32 = 3;
@@ -169,7 +169,7 @@ pub struct SizedFlywheel {
 }
 
 /// Whether a machine has a steady cycle.
-pub enum CycleSearch<'a, S: MachineScene = Scene> {
+pub enum CycleSearch<'a, S: MachineScene = PlaneScene> {
     /// It was found.
     Steady(Box<CycleResults<'a, S>>),
     /// None was found, or its error is too large to say: why.
@@ -182,7 +182,7 @@ pub enum CycleSearch<'a, S: MachineScene = Scene> {
 }
 
 /// A steady cycle with its tables, and with the flywheel if a fluctuation was required.
-pub struct CycleResults<'a, S: MachineScene = Scene> {
+pub struct CycleResults<'a, S: MachineScene = PlaneScene> {
     /// The scene with its machine.
     pub prepared: SceneMachine<'a, S>,
     /// The cycle.

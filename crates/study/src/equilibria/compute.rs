@@ -9,7 +9,7 @@ use dwell_dynamics::{
 };
 use dwell_findings::{Column, Table};
 use dwell_kinetostatics::{MachineModel as _, ReducibleModel as _};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::f64::consts::TAU;
 
 /// Static force (N·m or N) and potential (J) over the coordinate.
@@ -217,7 +217,7 @@ fn zero_within(value: f64, error: f64) -> f64 {
 }
 
 /// The equilibria of a scene with their table, and the static force around them.
-pub struct EquilibriaResults<'a, S: MachineScene = Scene> {
+pub struct EquilibriaResults<'a, S: MachineScene = PlaneScene> {
     /// The scene with its machine.
     pub prepared: SceneMachine<'a, S>,
     /// The equilibria.

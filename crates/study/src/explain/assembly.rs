@@ -11,7 +11,7 @@ use dwell_geometry::{
     ActuatorId, AssemblyError, BodyId, BranchHint, JointId, Mechanism, StructureError,
 };
 use dwell_kinetostatics::ModelError;
-use dwell_scene::{Scene, SceneFile, SceneLocation};
+use dwell_scene::{PlaneScene, SceneFile, SceneLocation};
 
 /// A gap below this fraction of the mechanism's size may be rounding of the lengths.
 const MARGINAL_GAP: f64 = 1e-6;
@@ -28,7 +28,7 @@ pub(crate) fn describe_gap(file: &SceneFile, gap: f64, size: f64) -> String {
 const MAX_LISTED: usize = 6;
 
 /// Explains why a scene could not be compiled.
-pub fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
+pub fn explain_model(scene: &PlaneScene, error: &ModelError) -> StudyError {
     let assembly = match error {
         ModelError::Assembly(assembly) => assembly,
         ModelError::VaryingInertia { body, what } => {
@@ -50,7 +50,7 @@ pub fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
 
 /// Explains a mechanism whose structure is sound but which cannot be assembled. One arm for each error, so longer than
 /// a screen.
-fn explain_assembly(scene: &Scene, error: &AssemblyError) -> StudyError {
+fn explain_assembly(scene: &PlaneScene, error: &AssemblyError) -> StudyError {
     let mechanism = &scene.mechanism;
     let with_start = |joints: &[JointId], text: &str| {
         let mut labels = joint_labels(joints, text);
@@ -127,7 +127,7 @@ fn explain_assembly(scene: &Scene, error: &AssemblyError) -> StudyError {
     }
 }
 
-fn explain_structure(scene: &Scene, error: &StructureError) -> StudyError {
+fn explain_structure(scene: &PlaneScene, error: &StructureError) -> StudyError {
     match error {
         StructureError::NotConnected { bodies } => {
             not_connected(scene, &body_names(&scene.mechanism, bodies), bodies)
@@ -200,7 +200,7 @@ pub(crate) fn driven_labels(actuators: usize) -> Labels {
 }
 
 fn explain_over_constrained(
-    scene: &Scene,
+    scene: &PlaneScene,
     redundant_count: usize,
     joints: &[JointId],
     actuators: &[ActuatorId],
@@ -248,7 +248,7 @@ fn explain_over_constrained(
 }
 
 /// The error where exactly one actuator is needed and the scene has another number.
-pub(crate) fn not_one_actuator(scene: &Scene) -> StudyError {
+pub(crate) fn not_one_actuator(scene: &PlaneScene) -> StudyError {
     let actuators = scene.mechanism.actuators.len();
     wrong_actuators(scene, actuators, actuator_labels(scene, "drives it"))
 }
@@ -262,7 +262,7 @@ pub(crate) fn wrong_actuators(scene: &SceneFile, actuators: usize, labels: Label
 }
 
 /// Explains a machine that cannot be built.
-pub fn explain_machine(scene: &Scene, error: MachineError) -> StudyError {
+pub fn explain_machine(scene: &PlaneScene, error: MachineError) -> StudyError {
     match error {
         MachineError::Load(load) => {
             let place = (SceneLocation::Load(load.load), "this load");
@@ -280,7 +280,7 @@ pub fn explain_machine(scene: &Scene, error: MachineError) -> StudyError {
 /// Explains that no initial guess selects one of the assembly modes. Each mode lists the angle of each body
 /// (rad), then the travel or direction of each joint (m or rad).
 fn explain_ambiguous(
-    scene: &Scene,
+    scene: &PlaneScene,
     bodies: &[BodyId],
     joints: &[JointId],
     modes: &[Vec<f64>],
@@ -327,7 +327,7 @@ fn describe_by_angles(mechanism: &Mechanism, bodies: &[BodyId], modes: &[Vec<f64
 }
 
 /// Entries for [assembly]: of one joint if it differs in every mode, else of all.
-fn suggested_hints(scene: &Scene, joints: &[JointId], modes: &[Vec<f64>]) -> String {
+fn suggested_hints(scene: &PlaneScene, joints: &[JointId], modes: &[Vec<f64>]) -> String {
     let mechanism = &scene.mechanism;
     let joint = |k: usize| &mechanism.joints[joints[k].0];
     let hint_text = |k: usize, mode: &[f64]| {

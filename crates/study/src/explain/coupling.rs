@@ -4,7 +4,7 @@ use crate::explain::{StudyError, scene_error};
 use crate::number_format::number;
 use dwell_geometry::{Coordinate, JointId, JointKind, Mechanism};
 use dwell_laws::Law;
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{PlaneScene, SceneLocation};
 
 /// The couplings of a mechanism: joint, function, and the independent coordinate.
 pub(crate) fn couplings(
@@ -36,7 +36,7 @@ pub(crate) fn non_finite_coupling(
 
 /// The error of a coupling function whose `what` (value, slope, curvature) is not finite at `x`.
 pub(crate) fn non_finite_coupling_error(
-    scene: &Scene,
+    scene: &PlaneScene,
     (joint, x, what): (JointId, f64, &str),
     position: &str,
 ) -> StudyError {

@@ -2,7 +2,7 @@
 
 use crate::explain::{NamedScene, StudyError};
 use dwell_geometry::{ActuatorId, BodyId, JointId, Mechanism};
-use dwell_scene::{Scene, SceneFile, SceneLocation};
+use dwell_scene::{PlaneScene, SceneFile, SceneLocation};
 
 /// Places in the scene file, each with its remark.
 pub(crate) type Labels = Vec<(SceneLocation, String)>;
@@ -56,7 +56,7 @@ pub(crate) fn missing_section_label(section: &str) -> Labels {
 }
 
 /// Labels of the assembly coordinates.
-pub(crate) fn start_labels(scene: &Scene) -> Labels {
+pub(crate) fn start_labels(scene: &PlaneScene) -> Labels {
     let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
     // A coordinate that is not written has the location of the initial state.
     let is_written = |&a: &ActuatorId| {

@@ -13,11 +13,11 @@ use crate::number_format::{digits, force_unit, number};
 use dwell_dynamics::DynamicsError;
 use dwell_geometry::{ActuatorId, Plan};
 use dwell_kinetostatics::KinetostaticsError;
-use dwell_scene::{Scene, SceneFile, SceneLocation};
+use dwell_scene::{PlaneScene, SceneFile, SceneLocation};
 use std::f64::consts::TAU;
 
 /// Explains a motion that failed.
-pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> StudyError {
+pub fn explain_motion(scene: &PlaneScene, plan: &Plan, error: &DynamicsError) -> StudyError {
     match error {
         DynamicsError::Position(position) => explain_position(scene, plan, position),
         DynamicsError::LimitPosition { t, q } => explain_limit_position(scene, plan, *t, *q),
@@ -273,7 +273,7 @@ fn describe(
 }
 
 /// The motion leaves its assembly mode at a limit position.
-fn explain_limit_position(scene: &Scene, plan: &Plan, t: f64, q: f64) -> StudyError {
+fn explain_limit_position(scene: &PlaneScene, plan: &Plan, t: f64, q: f64) -> StudyError {
     let phi = scene.quoted_coordinate();
     let limit = plan.range().limits().map(|(from, to)| {
         // In the revolution in which the motion is.
@@ -301,7 +301,7 @@ fn explain_limit_position(scene: &Scene, plan: &Plan, t: f64, q: f64) -> StudyEr
 
 /// The motion reaches a place where two assembly modes are too close to each other.
 fn explain_near_branches(
-    scene: &Scene,
+    scene: &PlaneScene,
     plan: &Plan,
     t: f64,
     [q, half_width]: [f64; 2],
@@ -427,7 +427,7 @@ mod tests {
     #[test]
     fn too_many_steps_are_blamed_on_what_makes_them_many() {
         let text = include_str!("../../tests/run/pendulum.toml");
-        let scene = Scene::parse("bar.toml", text).unwrap();
+        let scene = PlaneScene::parse("bar.toml", text).unwrap();
         let explain = |max_step, tolerance, t| {
             let limits = StepLimits {
                 max_step,

@@ -1,17 +1,17 @@
 //! What messages about a motion need to know of a scene, in the plane or in space.
 
 use dwell_geometry::{ActuatorId, BodyId};
-use dwell_scene::{NamedStop, Scene, SceneFile, SceneLocation, SpaceScene};
+use dwell_scene::{NamedStop, PlaneScene, SceneFile, SceneLocation, SpaceScene};
 use std::ops::Deref;
 
 /// A scene with the names of its parts.
 ///
 /// ```
-/// use dwell_scene::Scene;
+/// use dwell_scene::PlaneScene;
 /// use dwell_study::explain::NamedScene as _;
 ///
 /// let text = include_str!("../../tests/run/pendulum.toml");
-/// let scene = Scene::parse("pendulum.toml", text)?;
+/// let scene = PlaneScene::parse("pendulum.toml", text)?;
 /// assert!(scene.actuator(0).is_some_and(|(_, is_angle)| is_angle));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -64,7 +64,7 @@ fn all_but(ground: usize, count: usize) -> Vec<BodyId> {
     (0..count).filter(|b| *b != ground).map(BodyId).collect()
 }
 
-impl NamedScene for Scene {
+impl NamedScene for PlaneScene {
     fn actuator(&self, actuator: usize) -> Option<(&str, bool)> {
         let actuator = self.mechanism.actuators.get(actuator)?;
         Some((&actuator.name, actuator.coordinate().is_angle()))

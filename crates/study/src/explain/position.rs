@@ -6,7 +6,7 @@ use crate::explain::{
 };
 use crate::number_format::{digits, number};
 use dwell_geometry::{ActuatorId, Mechanism, Plan, PositionError, RangeLimit};
-use dwell_scene::{Scene, SceneFile, SceneLocation};
+use dwell_scene::{PlaneScene, SceneFile, SceneLocation};
 use std::f64::consts::TAU;
 
 /// A length, m, to so many digits in the scene's own unit: `12.5 mm`.
@@ -82,7 +82,7 @@ pub(crate) fn describe_ends(file: &SceneFile, from: f64, to: f64, is_angle: bool
 }
 
 /// Explains a position that cannot be computed.
-pub fn explain_position(scene: &Scene, plan: &Plan, error: &PositionError) -> StudyError {
+pub fn explain_position(scene: &PlaneScene, plan: &Plan, error: &PositionError) -> StudyError {
     explain_position_in(&scene.quoted_coordinate(), scene, plan, error)
 }
 
@@ -90,7 +90,7 @@ pub fn explain_position(scene: &Scene, plan: &Plan, error: &PositionError) -> St
 /// screen.
 pub(crate) fn explain_position_in(
     phi: &str,
-    scene: &Scene,
+    scene: &PlaneScene,
     plan: &Plan,
     error: &PositionError,
 ) -> StudyError {

@@ -12,7 +12,7 @@ use dwell_geometry::{ActuatorId, Range};
 use dwell_kinetostatics::{
     Coefficients, DriveKind, Load, LoadKind, Magnitude, Model, Signal, TableDomain,
 };
-use dwell_scene::{FreeMotionSpec, Scene, SceneFile, SceneLocation};
+use dwell_scene::{FreeMotionSpec, PlaneScene, SceneFile, SceneLocation};
 use std::f64::consts::TAU;
 
 /// Part of a limited range that is left out at each end, where everything grows.
@@ -20,9 +20,9 @@ const END_MARGIN: f64 = 0.02;
 
 /// A scene whose machine can be exported.
 pub(crate) struct ExportedScene<'a> {
-    pub(crate) scene: &'a Scene,
+    pub(crate) scene: &'a PlaneScene,
     /// The scene with the loads of its drives.
-    pub(crate) loaded: Scene,
+    pub(crate) loaded: PlaneScene,
     /// Its model with the requested reactions; every constant magnitude is one.
     pub(crate) model: Model,
     pub(crate) description: MachineDescription,
@@ -33,7 +33,10 @@ impl<'a> ExportedScene<'a> {
     ///
     /// # Errors
     /// [`StudyError::Scene`] where the scene has several freedoms, dry friction, end stops or change points.
-    pub(crate) fn new(scene: &'a Scene, interval: Option<(f64, f64)>) -> Result<Self, StudyError> {
+    pub(crate) fn new(
+        scene: &'a PlaneScene,
+        interval: Option<(f64, f64)>,
+    ) -> Result<Self, StudyError> {
         if scene.mechanism.actuators.len() != 1 {
             return Err(not_one_actuator(scene));
         }
@@ -55,7 +58,7 @@ impl<'a> ExportedScene<'a> {
 ///
 /// # Errors
 /// [`StudyError::Scene`] where the scene has dry friction, separating forces or end stops.
-pub(super) fn with_unit_loads(scene: &Scene) -> Result<(Scene, Model), StudyError> {
+pub(super) fn with_unit_loads(scene: &PlaneScene) -> Result<(PlaneScene, Model), StudyError> {
     reject_contacts(scene)?;
     let loaded = with_drive_loads(scene)?;
     let mut unit_loads = loaded.loads.clone();
@@ -88,7 +91,7 @@ pub(crate) fn reject_friction(
 }
 
 /// Rejects what has no function of the coordinate alone.
-fn reject_contacts(scene: &Scene) -> Result<(), StudyError> {
+fn reject_contacts(scene: &PlaneScene) -> Result<(), StudyError> {
     let friction = scene.loads.iter().position(|l| l.friction().is_some());
     reject_friction(scene, friction)?;
     if let Some(load) = scene
@@ -120,7 +123,7 @@ pub(crate) fn reject_stops(scene: &impl NamedScene) -> Result<(), StudyError> {
 }
 
 /// Rejects a machine that crosses change points, beyond which another branch follows.
-fn reject_change_points(scene: &Scene, domain: Domain) -> Result<(), StudyError> {
+fn reject_change_points(scene: &PlaneScene, domain: Domain) -> Result<(), StudyError> {
     let Some(spec) = scene.motion.as_ref() else {
         return Ok(());
     };
@@ -199,7 +202,12 @@ pub(crate) fn domain(
     }
 }
 
-fn describe(scene: &Scene, loaded: &Scene, model: &Model, domain: Domain) -> MachineDescription {
+fn describe(
+    scene: &PlaneScene,
+    loaded: &PlaneScene,
+    model: &Model,
+    domain: Domain,
+) -> MachineDescription {
     let mut left_out = left_out(scene, model);
     let units = load_units(loaded);
     let loads = describe_loads(
@@ -258,14 +266,14 @@ pub(crate) fn machine_of(
 }
 
 /// Names and units of the reactions of a model.
-pub(super) fn named_reactions(scene: &Scene, model: &Model) -> Vec<(String, &'static str)> {
+pub(super) fn named_reactions(scene: &PlaneScene, model: &Model) -> Vec<(String, &'static str)> {
     let reactions = model.reactions().iter();
     let named = reactions.map(|&r| (scene.mechanism.reaction_name(r), r.component.unit()));
     named.collect()
 }
 
 /// The names of the points whose positions are exported.
-pub(super) fn point_names(scene: &Scene) -> Vec<String> {
+pub(super) fn point_names(scene: &PlaneScene) -> Vec<String> {
     let points = scene.requests.paths.iter();
     let named = points.map(|p| format!("{}.{}", scene.mechanism.body_name(p.body), p.name));
     named.collect()
@@ -296,7 +304,7 @@ pub(crate) fn describe_loads<S: MachineScene, K>(
 }
 
 /// Sentences about what is not exported.
-pub(super) fn left_out(scene: &Scene, model: &Model) -> Vec<String> {
+pub(super) fn left_out(scene: &PlaneScene, model: &Model) -> Vec<String> {
     let known = model.reactions();
     let requested = scene.requests.reactions.iter();
     let missing = requested.filter(|r| !known.contains(r));
@@ -355,7 +363,7 @@ pub(crate) fn reference_sizes(
 pub(crate) type LoadUnit = (&'static str, bool);
 
 /// Those of the loads of a scene, drives among them.
-pub(super) fn load_units(loaded: &Scene) -> Vec<LoadUnit> {
+pub(super) fn load_units(loaded: &PlaneScene) -> Vec<LoadUnit> {
     let unit = |load: &Load| match load.kind {
         LoadKind::Gravity { .. } => ("m/s2", false),
         LoadKind::Force { .. }

@@ -4,7 +4,7 @@ use super::OVER_COORDINATE;
 use super::description::ExportedScene;
 use crate::explain::{StudyError, explain_position, own_coordinate, scene_error};
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::f64::consts::TAU;
 
 /// Intervals of the domain, as many as the fit searches for narrow peaks.
@@ -18,7 +18,7 @@ const STEEPEST: f64 = 0.02;
 /// Refuses a coupling whose coordinate changes between two points by what its rates at both do not account for, nor their difference: the
 /// trapezoidal rule errs by less where the points resolve the law.
 pub(super) fn reject_hidden_motion(
-    scene: &Scene,
+    scene: &PlaneScene,
     exported: &ExportedScene<'_>,
 ) -> Result<(), StudyError> {
     let (mechanism, model) = (&exported.loaded.mechanism, &exported.model);

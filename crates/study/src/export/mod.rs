@@ -11,7 +11,7 @@ mod several_freedoms;
 
 #[cfg(feature = "fmu")]
 pub use fmu_archive::fmu_archive;
-pub use several_freedoms::compute_export_of_several_freedoms;
+pub(crate) use several_freedoms::{only_as_c, several_freedoms_in_plane};
 
 use crate::explain::{StudyError, explain_motion, scene_error};
 use crate::number_format::number;
@@ -19,7 +19,7 @@ use description::ExportedScene;
 use dwell_dynamics::DynamicsError;
 use dwell_export::{Export, FitError, Function, MachineDescription, RecordingError, Request};
 use dwell_geometry::ActuatorId;
-use dwell_scene::{Scene, SceneFile, SceneLocation};
+use dwell_scene::{PlaneScene, SceneFile, SceneLocation};
 use hidden_motion::reject_hidden_motion;
 use sampler::{SceneSampler, recorded};
 use std::fmt::Display;
@@ -41,11 +41,11 @@ pub struct ExportRequest {
     pub interval: Option<(f64, f64)>,
 }
 
-/// Fits the functions of a scene's machine for export.
-///
-/// # Errors
-/// [`StudyError::Scene`] where the scene cannot be exported: it says why and what to change.
-pub fn compute_export(scene: &Scene, asked: &ExportRequest) -> Result<Export, StudyError> {
+/// Fits the functions of the machine of a scene in the plane for export.
+pub(crate) fn fit_in_plane(
+    scene: &PlaneScene,
+    asked: &ExportRequest,
+) -> Result<Export, StudyError> {
     if !asked.exact {
         return compute_export_in_cells(scene, asked);
     }
@@ -67,8 +67,11 @@ pub fn compute_export(scene: &Scene, asked: &ExportRequest) -> Result<Export, St
 /// nothing else is without what records operations.
 ///
 /// # Errors
-/// As [`compute_export`].
-pub fn compute_export_in_cells(scene: &Scene, asked: &ExportRequest) -> Result<Export, StudyError> {
+/// As [`compute_export`](crate::compute_export).
+pub fn compute_export_in_cells(
+    scene: &PlaneScene,
+    asked: &ExportRequest,
+) -> Result<Export, StudyError> {
     let exported = ExportedScene::new(scene, asked.interval)?;
     reject_hidden_motion(scene, &exported)?;
     let machine = exported.description.clone();

@@ -1,19 +1,16 @@
 //! Writes an export.
 
-use crate::explain::{StudyError, actuator_labels, scene_error};
-use crate::export::{
-    ExportRequest, compute_export, compute_export_of_several_freedoms, fmu_archive,
-};
+use crate::explain::{StudyError, scene_error};
+use crate::export::{ExportRequest, fmu_archive};
 use crate::number_format::{coordinate_unit, count};
 use crate::output::Outcome;
-use crate::reduce::compute::compute_reduction;
 use dwell_export::{
-    Export, FmiVersion, Identifiers, PartKind, Precision, c_files, c_files_of_several_freedoms,
-    matlab_files, rust_files,
+    Export, FmiVersion, Identifiers, PartKind, Precision, SeveralFreedomsExport, c_files,
+    c_files_of_several_freedoms, matlab_files, rust_files,
 };
 use dwell_findings::{Column, Record, Table};
 use dwell_report::{Number, TableFormat, json};
-use dwell_scene::{Scene, SceneFile, SceneLocation};
+use dwell_scene::{SceneFile, SceneLocation};
 
 /// The target of an export.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,38 +29,8 @@ pub enum ExportTarget {
     Json,
 }
 
-/// Exports the reduced model of a scene's machine.
-///
-/// # Errors
-/// [`StudyError::Scene`] where the scene cannot be exported: it says why and what to change.
-pub fn export(
-    scene: &Scene,
-    target: ExportTarget,
-    asked: &ExportRequest,
-) -> Result<Outcome, StudyError> {
-    if scene.mechanism.actuators.len() > 1 {
-        return export_several_freedoms(scene, target, asked);
-    }
-    let table = || Ok(compute_reduction(scene, None)?.table());
-    export_machine(scene, target, asked, table, || compute_export(scene, asked))
-}
-
-/// Writes the equations of motion of a scene with several actuators.
-fn export_several_freedoms(
-    scene: &Scene,
-    target: ExportTarget,
-    asked: &ExportRequest,
-) -> Result<Outcome, StudyError> {
-    if target != ExportTarget::C {
-        let given = count(scene.mechanism.actuators.len(), "actuator");
-        return Err(scene_error(
-            scene,
-            format!("the scene has {given}: several degrees of freedom are exported as C alone"),
-            "export to `c`; or give exactly one actuator in [actuators]",
-            actuator_labels(scene, "drives it"),
-        ));
-    }
-    let export = compute_export_of_several_freedoms(scene, asked)?;
+/// The code of the equations of motion of several coordinates.
+pub(crate) fn several_freedoms_outcome(export: &SeveralFreedomsExport) -> Outcome {
     let (machine, errors) = (&export.machine, export.errors);
     let names: Vec<&str> = machine
         .coordinates
@@ -100,9 +67,9 @@ fn export_several_freedoms(
     {
         record.add_count(format!("operations.{name}"), count);
     }
-    let files = of_texts(c_files_of_several_freedoms(&export));
+    let files = of_texts(c_files_of_several_freedoms(export));
     add_files(&mut outcome, files);
-    Ok(outcome)
+    outcome
 }
 
 /// Writes what a target needs of a machine: its rows, or its fitted functions.

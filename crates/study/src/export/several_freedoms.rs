@@ -6,6 +6,7 @@ use super::description::{
 use super::{ExportRequest, SEARCHED};
 use crate::explain::{StudyError, actuator_labels, explain_motion, scene_error};
 use crate::machines::MachineScene as _;
+use crate::number_format::count;
 use dwell_dynamics::DynamicsError;
 use dwell_export::{
     FreeCoordinate, Precision, RecordedNumber, RecordingError, SeveralFreedomsDescription,
@@ -14,7 +15,7 @@ use dwell_export::{
 use dwell_geometry::ActuatorId;
 use dwell_kinetostatics::{InverseDynamics, Load, MachineModel as _, Model};
 use dwell_numerics::Scalar;
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{PlaneScene, SceneLocation};
 
 /// Positions at which the operations are compared with the model, and how many of them record the operations.
 const MEASURED: usize = 64;
@@ -24,13 +25,9 @@ const AROUND: [f64; 2] = [0.5, 0.15];
 /// The largest difference that is rounding. Operations of another assembly mode are off by much more.
 const ROUNDING: f64 = 1e-7;
 
-/// The operations of the equations of motion and of all reactions of a scene with several actuators, each of which is a free
-/// coordinate.
-///
-/// # Errors
-/// [`StudyError::Scene`] where the scene cannot be exported: it says why and what to change.
-pub fn compute_export_of_several_freedoms(
-    scene: &Scene,
+/// The operations of the equations of motion of a scene in the plane.
+pub(crate) fn several_freedoms_in_plane(
+    scene: &PlaneScene,
     asked: &ExportRequest,
 ) -> Result<SeveralFreedomsExport, StudyError> {
     if asked.interval.is_some() {
@@ -87,8 +84,19 @@ pub fn compute_export_of_several_freedoms(
     }
 }
 
+/// Refuses another target than C.
+pub(crate) fn only_as_c(scene: &PlaneScene) -> StudyError {
+    let given = count(scene.mechanism.actuators.len(), "actuator");
+    scene_error(
+        scene,
+        format!("the scene has {given}: several degrees of freedom are exported as C alone"),
+        "export to `c`; or give exactly one actuator in [actuators]",
+        actuator_labels(scene, "drives it"),
+    )
+}
+
 /// Refuses a machine whose functions have no operations that hold everywhere, with the reason.
-fn without_operations(scene: &Scene, reason: &str) -> StudyError {
+fn without_operations(scene: &PlaneScene, reason: &str) -> StudyError {
     scene_error(
         scene,
         format!("no export: {reason}"),
@@ -97,7 +105,7 @@ fn without_operations(scene: &Scene, reason: &str) -> StudyError {
     )
 }
 
-fn describe(scene: &Scene, loaded: &Scene, model: &Model) -> SeveralFreedomsDescription {
+fn describe(scene: &PlaneScene, loaded: &PlaneScene, model: &Model) -> SeveralFreedomsDescription {
     let mut left_out = left_out(scene, model);
     let units = (scene, &load_units(loaded)[..]);
     let loads = describe_loads(units, &scene.loads, Load::is_conservative, &mut left_out);
@@ -161,7 +169,7 @@ fn positions(machine: &SeveralFreedomsDescription, model: &Model, size: f64) -> 
 
 /// The functions of motion, reactions and positions, in the order of [`SeveralFreedomsExport::code`].
 fn functions<T: Scalar>(
-    scene: &Scene,
+    scene: &PlaneScene,
     model: &Model,
     q: &[T],
 ) -> Result<[Vec<T>; 3], DynamicsError> {
@@ -207,7 +215,7 @@ fn functions<T: Scalar>(
 
 /// The operations of all functions, by part.
 fn recorded(
-    scene: &Scene,
+    scene: &PlaneScene,
     model: &Model,
     positions: &[Vec<f64>],
 ) -> Result<[StraightLine; 3], RecordingError<DynamicsError>> {

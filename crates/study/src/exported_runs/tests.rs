@@ -9,15 +9,15 @@ use crate::unit_runs::compute::compute_unit_runs;
 use dwell_dynamics::{Orbit, ReducedState};
 use dwell_findings::Table;
 use dwell_kinetostatics::{Coefficients, ReducedModel};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::path::Path;
 
 /// Period of the single-dwell mechanism from 1 rad/s, s, of its reference values.
 const PERIOD: f64 = 5.419_662_677_064_272;
 
-fn scene(case: &str) -> Scene {
+fn scene(case: &str) -> PlaneScene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
-    Scene::read(folder.join(case).join("scene.toml")).expect("a scene")
+    PlaneScene::read(folder.join(case).join("scene.toml")).expect("a scene")
 }
 
 /// How a program prints a table.

@@ -1,5 +1,3 @@
 //! `dwell simulate`: the free motion of a machine in time, under its loads and drives.
 
 pub mod compute;
-#[cfg(feature = "output")]
-pub(crate) mod output;

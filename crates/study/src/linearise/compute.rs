@@ -10,7 +10,7 @@ use dwell_dynamics::{
 };
 use dwell_findings::Column;
 use dwell_kinetostatics::{Drive, DriveKind};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// The operating point of a linearisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,7 +88,7 @@ impl StateSpaceNames {
 }
 
 /// The linearised motion of a scene.
-pub struct LinearisedMotion<'a, S: MachineScene = Scene> {
+pub struct LinearisedMotion<'a, S: MachineScene = PlaneScene> {
     /// The scene with its machine.
     pub prepared: SceneMachine<'a, S>,
     /// The state about which it is linearised.

@@ -10,9 +10,9 @@ use dwell_dynamics::{DynamicsError, Machine};
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::{Drive, Model};
 use dwell_page::Drawing;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
-impl MachineScene for Scene {
+impl MachineScene for PlaneScene {
     type Model = Model;
     type Reaction = Reaction;
 

@@ -45,7 +45,7 @@ pub trait MachineScene: NamedScene {
     /// The model that moves.
     type Model: MovingModel;
     /// A component of a reaction.
-    type Reaction: std::fmt::Debug + Copy + PartialEq;
+    type Reaction: std::fmt::Debug + Copy + PartialEq + Send + Sync + 'static;
 
     /// Where its motion starts.
     fn motion_start(&self) -> MotionStart;

@@ -8,10 +8,10 @@ use dwell_dynamics::{DynamicsError, Machine};
 use dwell_findings::Column;
 use dwell_geometry::ActuatorId;
 use dwell_kinetostatics::{MachineModel as _, Signal};
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{PlaneScene, SceneLocation};
 
 /// A scene, in the plane or in space, with its machine and its initial state.
-pub struct SceneMachine<'a, S: MachineScene = Scene> {
+pub struct SceneMachine<'a, S: MachineScene = PlaneScene> {
     /// The scene.
     pub scene: &'a S,
     start: MotionStart,

@@ -5,11 +5,11 @@ use dwell_dynamics::{CoordinateMode, EndStop, Machine, YieldingStop, loads_with_
 use dwell_geometry::{BodyId, Plan, Reaction};
 use dwell_kinetostatics::{ExactModel, Model};
 use dwell_laws::Law;
-use dwell_scene::{FreeMotionSpec, NamedStop, Scene};
+use dwell_scene::{FreeMotionSpec, NamedStop, PlaneScene};
 use std::collections::HashSet;
 
 /// A model of a scene for some reactions.
-pub fn compile_model(scene: &Scene, reactions: &[Reaction]) -> Result<Model, StudyError> {
+pub fn compile_model(scene: &PlaneScene, reactions: &[Reaction]) -> Result<Model, StudyError> {
     let start = scene.assembly.to_configuration();
     Model::new(&scene.mechanism, &scene.masses, &start, reactions)
         .and_then(|model| model.with_varying_inertias(&scene.varying_inertias))
@@ -17,17 +17,17 @@ pub fn compile_model(scene: &Scene, reactions: &[Reaction]) -> Result<Model, Stu
 }
 
 /// A reduced model of a scene for some reactions.
-pub fn reduced_model(scene: &Scene, reactions: &[Reaction]) -> Result<ExactModel, StudyError> {
+pub fn reduced_model(scene: &PlaneScene, reactions: &[Reaction]) -> Result<ExactModel, StudyError> {
     exact_model(scene, compile_model(scene, reactions)?)
 }
 
 /// The reduced model of a compiled one.
-pub(crate) fn exact_model(scene: &Scene, model: Model) -> Result<ExactModel, StudyError> {
+pub(crate) fn exact_model(scene: &PlaneScene, model: Model) -> Result<ExactModel, StudyError> {
     ExactModel::new(model).ok_or_else(|| not_one_actuator(scene))
 }
 
 /// The requested reactions that are statically indeterminate: no analysis returns them.
-pub fn indeterminate_reactions(scene: &Scene, plan: &Plan) -> HashSet<Reaction> {
+pub fn indeterminate_reactions(scene: &PlaneScene, plan: &Plan) -> HashSet<Reaction> {
     let all = scene.mechanism.reactions().into_iter().enumerate();
     let indeterminate = all.filter(|&(k, _)| !plan.is_determinate(k));
     indeterminate
@@ -37,7 +37,7 @@ pub fn indeterminate_reactions(scene: &Scene, plan: &Plan) -> HashSet<Reaction> 
 }
 
 /// The requested reactions: those that are statically determinate, and the others.
-pub(crate) fn requested_reactions(scene: &Scene, plan: &Plan) -> [Vec<Reaction>; 2] {
+pub(crate) fn requested_reactions(scene: &PlaneScene, plan: &Plan) -> [Vec<Reaction>; 2] {
     let indeterminate = indeterminate_reactions(scene, plan);
     let requested = scene.requests.reactions.iter();
     let (determinate, others) = requested.partition(|r| !indeterminate.contains(r));
@@ -45,7 +45,7 @@ pub(crate) fn requested_reactions(scene: &Scene, plan: &Plan) -> [Vec<Reaction>;
 }
 
 /// The model of a scene with the requested reactions that are statically determinate.
-pub(crate) fn determinate_model(scene: &Scene) -> Result<Model, StudyError> {
+pub(crate) fn determinate_model(scene: &PlaneScene) -> Result<Model, StudyError> {
     let model = compile_model(scene, &scene.requests.reactions)?;
     let [determinate, indeterminate] = requested_reactions(scene, model.plan());
     if indeterminate.is_empty() {
@@ -57,12 +57,12 @@ pub(crate) fn determinate_model(scene: &Scene) -> Result<Model, StudyError> {
 }
 
 /// Whether a scene lists some of its reactions; otherwise it requests all of them.
-pub(crate) fn lists_reactions(scene: &Scene) -> bool {
+pub(crate) fn lists_reactions(scene: &PlaneScene) -> bool {
     scene.requests.reactions.len() < scene.mechanism.reactions().len()
 }
 
 /// The bodies of the joints whose reactions are requested.
-pub(crate) fn requested_reaction_bodies(scene: &Scene) -> Vec<BodyId> {
+pub(crate) fn requested_reaction_bodies(scene: &PlaneScene) -> Vec<BodyId> {
     let joints = scene.requests.reactions.iter();
     let joints = joints.map(|r| &scene.mechanism.joints[r.joint.0]);
     joints.flat_map(|joint| joint.bodies).collect()
@@ -72,7 +72,7 @@ pub(crate) fn requested_reaction_bodies(scene: &Scene) -> Vec<BodyId> {
 ///
 /// # Errors
 /// [`StudyError::Scene`] when the mechanism cannot be assembled or a load does not fit it.
-pub fn loaded_model(scene: &Scene) -> Result<Model, StudyError> {
+pub fn loaded_model(scene: &PlaneScene) -> Result<Model, StudyError> {
     with_loads(scene, compile_model(scene, &scene.mechanism.reactions())?)
 }
 
@@ -80,19 +80,19 @@ pub fn loaded_model(scene: &Scene) -> Result<Model, StudyError> {
 ///
 /// # Errors
 /// [`StudyError::Scene`] where a load does not fit it.
-pub(crate) fn with_loads(scene: &Scene, model: Model) -> Result<Model, StudyError> {
+pub(crate) fn with_loads(scene: &PlaneScene, model: Model) -> Result<Model, StudyError> {
     model
         .with_loads(scene.loads.clone())
         .map_err(|e| explain_machine(scene, e.into()))
 }
 
 /// The model of what a scene requests, with its loads: they may need groups that the inertia does not.
-pub(crate) fn loaded_determinate_model(scene: &Scene) -> Result<Model, StudyError> {
+pub(crate) fn loaded_determinate_model(scene: &PlaneScene) -> Result<Model, StudyError> {
     with_loads(scene, determinate_model(scene)?)
 }
 
 /// A scene whose loads include those through which its drives act.
-pub fn with_drive_loads(scene: &Scene) -> Result<Scene, StudyError> {
+pub fn with_drive_loads(scene: &PlaneScene) -> Result<PlaneScene, StudyError> {
     let loads = loads_with_drives(&scene.mechanism, &scene.loads, &scene.drives);
     let mut loaded = scene.clone();
     loaded.loads = loads.map_err(|e| explain_machine(scene, e.into()))?;
@@ -124,7 +124,7 @@ pub(crate) fn coordinate_modes(laws: &[Option<Law>]) -> Vec<CoordinateMode> {
 
 /// The machine of a scene, with some reactions and those that friction needs.
 pub fn build_machine(
-    scene: &Scene,
+    scene: &PlaneScene,
     spec: &FreeMotionSpec,
     reactions: &[Reaction],
 ) -> Result<Machine, StudyError> {
@@ -133,7 +133,7 @@ pub fn build_machine(
 
 /// The same with a law for each actuator that is prescribed.
 pub fn machine_with_laws(
-    scene: &Scene,
+    scene: &PlaneScene,
     laws: &[Option<Law>],
     reactions: &[Reaction],
 ) -> Result<Machine, StudyError> {
@@ -144,7 +144,10 @@ pub fn machine_with_laws(
 ///
 /// # Errors
 /// [`StudyError::Scene`] when the mechanism cannot be assembled, or a load or a drive does not fit it.
-pub fn pruned_machine(scene: &Scene, laws: &[Option<Law>]) -> Result<(Machine, usize), StudyError> {
+pub fn pruned_machine(
+    scene: &PlaneScene,
+    laws: &[Option<Law>],
+) -> Result<(Machine, usize), StudyError> {
     let loads = with_drive_loads(scene)?.loads;
     let loaded = loads.iter().flat_map(|load| load.bodies(&scene.mechanism));
     let loaded: Vec<BodyId> = loaded.collect();
@@ -154,7 +157,11 @@ pub fn pruned_machine(scene: &Scene, laws: &[Option<Law>]) -> Result<(Machine, u
     Ok((machine_of(scene, laws, model)?, idle))
 }
 
-fn machine_of(scene: &Scene, laws: &[Option<Law>], model: Model) -> Result<Machine, StudyError> {
+fn machine_of(
+    scene: &PlaneScene,
+    laws: &[Option<Law>],
+    model: Model,
+) -> Result<Machine, StudyError> {
     let modes = coordinate_modes(laws);
     let machine = Machine::new(model, &scene.loads, modes, &scene.drives);
     let machine = machine.and_then(|machine| machine.with_stops(&end_stops(&scene.stops)));

@@ -6,14 +6,14 @@ use crate::models::{determinate_model, exact_model, requested_reaction_bodies};
 use crate::ranges::equally_spaced;
 use dwell_dynamics::ReducedState;
 use dwell_kinetostatics::{ExactModel, ReducedModel};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::f64::consts::TAU;
 
 /// A scene and the reduced model of what it requests.
 #[derive(Debug)]
 pub struct PreparedScene<'a> {
     /// The scene.
-    pub scene: &'a Scene,
+    pub scene: &'a PlaneScene,
     /// The model, with the requested statically determinate reactions in the order of the scene.
     pub model: ExactModel,
 }
@@ -24,7 +24,7 @@ impl<'a> PreparedScene<'a> {
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be put together or does not have one
     /// degree of freedom.
-    pub fn new(scene: &'a Scene) -> Result<Self, StudyError> {
+    pub fn new(scene: &'a PlaneScene) -> Result<Self, StudyError> {
         let model = exact_model(scene, determinate_model(scene)?)?;
         Ok(Self { scene, model })
     }
@@ -34,7 +34,7 @@ impl<'a> PreparedScene<'a> {
     ///
     /// # Errors
     /// As [`PreparedScene::new`].
-    pub fn without_loads(scene: &'a Scene) -> Result<Self, StudyError> {
+    pub fn without_loads(scene: &'a PlaneScene) -> Result<Self, StudyError> {
         let model = determinate_model(scene)?;
         let pruned = model.pruned_for(&requested_reaction_bodies(scene));
         let model = exact_model(scene, pruned)?;
@@ -76,7 +76,7 @@ impl<'a> PreparedScene<'a> {
 }
 
 /// The initial state of the free motion of one degree of freedom, if the scene has one.
-pub(crate) fn initial_reduced_state(scene: &Scene) -> Option<ReducedState> {
+pub(crate) fn initial_reduced_state(scene: &PlaneScene) -> Option<ReducedState> {
     let spec = scene.motion.as_ref()?;
     Some(ReducedState {
         t: 0.0,

@@ -4,7 +4,7 @@ use crate::models::PreparedScene;
 use crate::ranges::extent;
 use dwell_geometry::Range;
 use dwell_report::{Axis, Chart, Figure, Panel, Series};
-use dwell_scene::{Scene, SceneFile};
+use dwell_scene::{PlaneScene, SceneFile};
 
 /// Maximum number of reaction figures if none is requested by name.
 pub(crate) const MAX_REACTION_FIGURES: usize = 8;
@@ -151,7 +151,7 @@ pub(crate) fn indeterminate_note(names: impl Iterator<Item = String>) -> String 
 }
 
 /// The line of a summary about separating forces, which a and b cannot hold; empty if there are none.
-pub(crate) fn separating_note(scene: &Scene) -> String {
+pub(crate) fn separating_note(scene: &PlaneScene) -> String {
     let separating = scene.loads.iter().filter(|load| !load.does_work());
     let names: Vec<&str> = separating.map(|load| load.name.as_str()).collect();
     if names.is_empty() {
@@ -187,7 +187,7 @@ mod tests {
                  [joints]\nA = {{ revolute = [\"ground.A\", \"crank.A\"] }}\n[actuators]\n\
                  phi = {{ angle = [\"ground\", \"crank\"] }}\n{requests}"
             );
-            Scene::parse("crank.toml", &text).expect("a scene")
+            PlaneScene::parse("crank.toml", &text).expect("a scene")
         };
         let lists = crate::models::lists_reactions;
         assert_eq!(

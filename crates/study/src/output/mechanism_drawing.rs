@@ -10,11 +10,11 @@ use crate::symbols::{
 use dwell_geometry::{ActuatorKind, BodyId, Joint, JointKind, Vec2, vec2};
 use dwell_kinetostatics::LoadKind;
 use dwell_report::{Paint, Pen, Shape, TextPlacement};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// Draws a mechanism in some of its positions.
 pub struct MechanismDrawing<'a> {
-    scene: &'a Scene,
+    scene: &'a PlaneScene,
     /// Reference length of the symbols, m.
     size: f64,
     /// By joint: range of its second point along its axis over all positions, m.
@@ -33,7 +33,7 @@ fn array(at: Vec2) -> [f64; 2] {
 
 impl<'a> MechanismDrawing<'a> {
     /// For a scene at these positions.
-    pub fn new(scene: &'a Scene, positions: &[Vec<BodyPose>]) -> Self {
+    pub fn new(scene: &'a PlaneScene, positions: &[Vec<BodyPose>]) -> Self {
         let couplings = scene.mechanism.couplings.iter();
         let cams = couplings.filter_map(|coupling| pitch_curve(scene, coupling, positions));
         Self {

@@ -27,14 +27,14 @@ pub(super) fn signature(scene: &SceneFile, method_text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::Scene;
+    use dwell_scene::PlaneScene;
 
     #[test]
     fn a_signature_names_version_scene_hash_and_method_and_nothing_that_changes() {
         let text = "[bodies.ground]\npoints = { A = [0, 0] }\n[bodies.crank]\npoints = { A = [0, 0] }\n\
                     [joints]\nA = { revolute = [\"ground.A\", \"crank.A\"] }\n[actuators]\n\
                     phi = { angle = [\"ground\", \"crank\"] }\n";
-        let scene = Scene::parse("folder/crank.toml", text).expect("a scene");
+        let scene = PlaneScene::parse("folder/crank.toml", text).expect("a scene");
         let hash = scene.hash();
         let version = env!("CARGO_PKG_VERSION");
         assert_eq!(
@@ -45,7 +45,7 @@ mod tests {
             )
         );
         assert!(provenance_line(&scene).ends_with(&format!("(sha256 {hash})")));
-        let elsewhere = Scene::parse("/another/place/crank.toml", text).expect("a scene");
+        let elsewhere = PlaneScene::parse("/another/place/crank.toml", text).expect("a scene");
         assert_eq!(signature(&elsewhere, ""), signature(&scene, ""));
     }
 }

@@ -10,10 +10,10 @@ use contacts::{coupling_arrow, rolling_arrows, tooth_arrows};
 use dwell_geometry::{BodyId, Component, Joint, JointId, JointKind, Reaction, Vec2};
 use dwell_kinetostatics::{Guide, LoadKind};
 use dwell_page::{Anchor, Direction, ForceArrow, ForcePart};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// The reactions and loads among the columns of the page. A reaction is drawn on the joint's second body.
-pub(super) fn plane_arrows(scene: &Scene, results: &TrajectoryResults) -> Vec<ForceArrow> {
+pub(super) fn plane_arrows(scene: &PlaneScene, results: &TrajectoryResults) -> Vec<ForceArrow> {
     let reactions = scene.mechanism.reactions();
     let joints = scene.mechanism.joints.iter().enumerate();
     let joints = joints.map(|(j, joint)| JointForces {
@@ -53,7 +53,7 @@ pub(crate) fn force_arrow(
 
 /// The forces of a joint whose columns are there.
 struct JointForces<'a> {
-    scene: &'a Scene,
+    scene: &'a PlaneScene,
     results: &'a TrajectoryResults,
     /// All of the mechanism.
     reactions: &'a [Reaction],
@@ -149,7 +149,11 @@ fn pushing_apart(column: usize, ends: [Anchor; 2]) -> Direction {
 
 /// Where a load acts and where it points to; none where it is no force at one place, and of separating forces, which are drawn
 /// with the teeth.
-fn load_direction(scene: &Scene, kind: &LoadKind, column: usize) -> Option<(Anchor, Direction)> {
+fn load_direction(
+    scene: &PlaneScene,
+    kind: &LoadKind,
+    column: usize,
+) -> Option<(Anchor, Direction)> {
     match kind {
         LoadKind::Force {
             body,

@@ -15,7 +15,7 @@ use crate::trajectory::compute::ComputedTrajectory;
 pub(crate) use arrows::force_arrow;
 use arrows::plane_arrows;
 use dwell_page::{DisplayUnit, Page, PageMessage, PageScene, Peak};
-use dwell_scene::{Scene, SceneError, SceneFile};
+use dwell_scene::{PlaneScene, SceneError, SceneFile};
 pub(crate) use plane::paint;
 use plane::plane_drawing;
 
@@ -28,7 +28,7 @@ use plane::plane_drawing;
 /// joints.O = { revolute = ["ground.O", "bob.O"] }
 /// actuators.phi = { angle = ["ground", "bob"] }
 /// "#;
-/// let scene = dwell_scene::Scene::parse("pendulum.toml", text)?;
+/// let scene = dwell_scene::PlaneScene::parse("pendulum.toml", text)?;
 /// let page = dwell_study::page::scene_page(&scene, "check");
 /// assert_eq!(page.scene.map(|scene| scene.text), Some(text.to_owned()));
 /// # Ok::<(), dwell_scene::SceneError>(())
@@ -81,28 +81,8 @@ pub fn error_messages<'a>(errors: impl IntoIterator<Item = &'a SceneError>) -> V
     all.map(message).collect()
 }
 
-/// The page of an analysis along a trajectory: the rows of its table, peaks, and the mechanism in each row.
-///
-/// Of very many rows it holds every so many-th, and says so.
-///
-/// ```
-/// # let text = r#"
-/// # bodies.ground.points = { O = [0, 0] }
-/// # bodies.bob = { points = { O = [0, 0] }, mass = 2.0, center = [0.5, 0] }
-/// # joints.O = { revolute = ["ground.O", "bob.O"] }
-/// # actuators.phi = { angle = ["ground", "bob"] }
-/// # "#;
-/// use dwell_study::{Analysis, compute_trajectory, no_progress, page::trajectory_page};
-///
-/// let scene = dwell_scene::Scene::parse("pendulum.toml", text)?;
-/// let computed = compute_trajectory(&scene, Analysis::Kinematics, Some(13), &no_progress)?;
-/// let page = trajectory_page(&scene, &computed);
-/// let encoded = page.encode()?;
-/// assert!(encoded.description.contains("bob.angle"));
-/// assert_eq!(encoded.numbers.len() % 13, 0);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn trajectory_page(scene: &Scene, computed: &ComputedTrajectory<'_>) -> Page {
+/// The page of a trajectory in the plane, without what is printed.
+pub(crate) fn plane_page(scene: &PlaneScene, computed: &ComputedTrajectory<'_>) -> Page {
     let results = &computed.results;
     let mut page = run_page(&scene.file, scene.mechanism.size(), computed);
     let choice = RowChoice::new(results);
@@ -151,17 +131,18 @@ pub(crate) fn run_page(scene: &SceneFile, size: f64, computed: &ComputedTrajecto
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compute_trajectory;
     use crate::progress::no_progress;
-    use crate::trajectory::compute::{Analysis, compute_trajectory};
+    use crate::trajectory::compute::Analysis;
     use dwell_page::{Anchor, Direction, Drawing, Part};
 
     fn page_of(name: &str) -> Page {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation");
-        let scene = Scene::read(format!("{folder}/{name}/scene.toml")).expect("a scene");
+        let scene = PlaneScene::read(format!("{folder}/{name}/scene.toml")).expect("a scene");
         let analysis = Analysis::Kinetostatics;
         let computed = compute_trajectory(&scene, analysis, Some(25), &no_progress);
         let computed = computed.expect("a trajectory");
-        trajectory_page(&scene, &computed)
+        plane_page(&scene, &computed)
     }
 
     fn column<'p>(page: &'p Page, key: &str) -> &'p [f64] {

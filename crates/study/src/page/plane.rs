@@ -11,7 +11,7 @@ use dwell_kinetostatics::LoadKind;
 use dwell_page::{
     Anchor, Drawing, DrawnBody, DrawnPath, ForceArrow, LinkLook, Mark, MarkLook, OutlineLook, Part,
 };
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// Colours of bodies: six of the palette, then ink.
 const PAINTS: usize = 7;
@@ -21,7 +21,7 @@ const NEAR: f64 = 0.02;
 /// The mechanism along the rows of a page.
 /// `poses` are those of all bodies by row, of which those that are not modelled are left out.
 pub(super) fn plane_drawing(
-    scene: &Scene,
+    scene: &PlaneScene,
     (poses, modelled): (&[Vec<BodyPose>], &[bool]),
     choice: &RowChoice,
     arrows: Vec<ForceArrow>,
@@ -84,7 +84,7 @@ pub(super) fn anchors(bodies: [BodyId; 2], points: [Vec2; 2]) -> [Anchor; 2] {
 }
 
 /// The paths that can be shown: those that are requested, and those of all named points of moving bodies, each once.
-fn paths(scene: &Scene, modelled: &[bool]) -> Vec<DrawnPath> {
+fn paths(scene: &PlaneScene, modelled: &[bool]) -> Vec<DrawnPath> {
     let mechanism = &scene.mechanism;
     let requested = &scene.requests.paths;
     let mut paths = Vec::new();
@@ -105,7 +105,7 @@ fn paths(scene: &Scene, modelled: &[bool]) -> Vec<DrawnPath> {
 
 /// The parts of a mechanism, collected from the back to the front.
 struct DrawnParts<'a> {
-    scene: &'a Scene,
+    scene: &'a PlaneScene,
     size: f64,
     travels: Vec<Option<[f64; 2]>>,
     poses: &'a [Vec<BodyPose>],

@@ -7,7 +7,7 @@ use crate::models::loaded_model;
 use dwell_findings::Table;
 use dwell_geometry::body_states::BodyStates;
 use dwell_page::{Drawing, Page, PageColumn, Peak};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// A page with the rows of a table whose first column is the axis. `group` says what belongs in one chart with a column, and
 /// what the column is.
@@ -72,7 +72,7 @@ pub fn unit_group(_: &str, unit: &str) -> (String, String) {
 
 /// The mechanism at values of the only actuator's coordinate, rad or m, one for each row of a page; none where a position cannot
 /// be reached.
-pub fn drawing_along(scene: &Scene, coordinate: &[f64]) -> Option<Drawing> {
+pub fn drawing_along(scene: &PlaneScene, coordinate: &[f64]) -> Option<Drawing> {
     let model = loaded_model(scene).ok()?;
     let plan = model.plan();
     let mut pose = plan.pose();

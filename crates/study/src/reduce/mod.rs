@@ -7,8 +7,5 @@ pub mod figures;
 pub(crate) mod output;
 mod page;
 #[cfg(feature = "output")]
-pub(crate) use output::{add_table, reduction_outcome};
-#[cfg(feature = "output")]
 pub(crate) use page::column_group;
 pub(crate) use page::page_of;
-pub use page::reduction_page;

@@ -5,41 +5,17 @@ use super::page::page_of;
 use crate::explain::StudyError;
 use crate::number_format::{coordinate_unit, digits, digits_within};
 use crate::output::{Outcome, Picture};
-use crate::page::drawing_along;
 use crate::ranges::extent;
 use crate::reduce::compute::{
-    Peak, ReducedScene, Reduction, RoundingErrors, TableRequest, TabulatedScene, compute_reduction,
-    inertia_units, peak_between_rows, tabulate,
+    Peak, ReducedScene, Reduction, RoundingErrors, TableRequest, TabulatedScene, inertia_units,
+    peak_between_rows, tabulate,
 };
 use dwell_findings::Record;
 use dwell_kinetostatics::Coefficients;
 use dwell_report::{Figure, Files, TableFormat};
-use dwell_scene::Scene;
 
 /// The figures that are drawn unless others are wanted: m, ½m′, and the first reactions.
 const MAIN_FIGURES: [&str; 2] = ["reduced", "reaction"];
-
-/// The reduced parameters of a scene over its range, at `points` positions (two or more) if given, and an interpolation
-/// table if requested.
-///
-/// # Errors
-/// [`StudyError`] when the mechanism cannot be assembled, a figure cannot be drawn or the table cannot be
-/// built.
-pub fn reduce(
-    scene: &Scene,
-    points: Option<usize>,
-    table: Option<TableRequest>,
-) -> Result<Outcome, StudyError> {
-    let reduction = compute_reduction(scene, points)?;
-    let mut outcome = reduction_outcome(&reduction)?;
-    if let Some(run) = &mut outcome.run {
-        run.drawing = drawing_along(scene, &run.columns[0].values);
-    }
-    if let Some(request) = table {
-        add_table(&reduction.prepared, &request, &mut outcome)?;
-    }
-    Ok(outcome)
-}
 
 /// Adds an interpolation table to the results.
 pub(crate) fn add_table(

@@ -1,37 +1,13 @@
 //! The page of reduced parameters: their rows, with the mechanism.
 
-use crate::models::PreparedScene;
 use crate::number_format::count;
-use crate::page::{drawing_along, scene_page, table_page};
-use crate::reduce::compute::{Peak, ReducedScene, Reduction, peak_between_rows};
+use crate::page::{scene_page, table_page};
+use crate::reduce::compute::{Peak, ReducedScene, Reduction};
 use dwell_findings::Table;
 use dwell_page::Page;
 
 /// The column of m in the table.
 const M_COLUMN: usize = 1;
-
-/// The page of the reduced parameters of a scene in the plane.
-///
-/// ```
-/// # let text = r#"
-/// # bodies.ground.points = { O = [0, 0] }
-/// # bodies.bob = { points = { O = [0, 0] }, mass = 2.0, center = [0.5, 0] }
-/// # joints.O = { revolute = ["ground.O", "bob.O"] }
-/// # actuators.phi = { angle = ["ground", "bob"] }
-/// # "#;
-/// let scene = dwell_scene::Scene::parse("pendulum.toml", text)?;
-/// let reduction = dwell_study::compute_reduction(&scene, Some(5))?;
-/// let page = dwell_study::reduce::reduction_page(&reduction);
-/// // m = M r² everywhere.
-/// assert_eq!(page.columns[1].values, [0.5; 5]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn reduction_page(reduction: &Reduction<PreparedScene<'_>>) -> Page {
-    let peak = peak_between_rows(&reduction.prepared, &reduction.curves);
-    let mut page = page_of(reduction, &reduction.table(), peak);
-    page.drawing = drawing_along(reduction.prepared.scene, &page.columns[0].values);
-    page
-}
 
 /// The rows on a page; the largest m may be between them.
 pub(crate) fn page_of<P: ReducedScene>(

@@ -9,37 +9,14 @@ use crate::check::{
 use crate::explain::{StudyError, describe_coordinate};
 use crate::machines::MachineScene as _;
 use crate::number_format::{coordinate_unit, count};
-#[cfg(feature = "output")]
-use crate::output::Outcome;
 use dwell_findings::Record;
 use dwell_geometry::Range;
 use dwell_geometry::space::{ChangePoint, Plan};
 use dwell_kinetostatics::space::{Model, Reaction};
 use dwell_scene::SpaceScene;
 
-/// Describes a scene in space. It writes no file.
-///
-/// # Errors
-/// [`StudyError::Scene`] when the mechanism cannot be assembled.
-#[cfg(feature = "output")]
-pub fn check_in_space(scene: &SpaceScene) -> Result<Outcome, StudyError> {
-    let mut record = Record::default();
-    Ok(Outcome {
-        summary: description(scene, &mut record)?,
-        record,
-        ..Outcome::default()
-    })
-}
-
-/// The text of [`check_in_space`].
-///
-/// # Errors
-/// [`StudyError::Scene`] when the mechanism cannot be assembled.
-pub fn describe_scene_in_space(scene: &SpaceScene) -> Result<String, StudyError> {
-    description(scene, &mut Record::default())
-}
-
-fn description(scene: &SpaceScene, record: &mut Record) -> Result<String, StudyError> {
+/// Describes a scene in space; the numbers are recorded.
+pub(super) fn description(scene: &SpaceScene, record: &mut Record) -> Result<String, StudyError> {
     let mechanism = &scene.mechanism;
     let model = compile(scene, &scene.reactions)?;
     // What forces refuse is said before anything moves.

@@ -2,23 +2,14 @@
 
 use super::explain::explain_position;
 use super::prepared::PreparedSpaceScene;
-use crate::explain::StudyError;
-#[cfg(feature = "output")]
-use crate::explain::{actuator_labels, scene_error};
+use crate::explain::{StudyError, actuator_labels, scene_error};
 use crate::export::description::{
     LoadUnit, describe_loads, domain, machine_of, missing_parts, parts_of, reference_sizes,
     reject_friction, reject_stops,
 };
-#[cfg(feature = "output")]
-use crate::export::output::{ExportTarget, export_machine};
 use crate::export::{ExportRequest, explain_fit, no_operations};
-#[cfg(feature = "output")]
 use crate::number_format::count;
-#[cfg(feature = "output")]
-use crate::output::Outcome;
 use crate::reduce::compute::ReducedScene as _;
-#[cfg(feature = "output")]
-use crate::reduce::compute::Reduction;
 use dwell_export::{
     Domain, Export, FitError, Function, FunctionSampler, MachineDescription, PartKind,
 };
@@ -27,35 +18,21 @@ use dwell_kinetostatics::space::{Load, LoadKind, Workspace};
 use dwell_kinetostatics::{Coefficients, InverseDynamics, ReducedModel as _};
 use dwell_scene::SpaceScene;
 
-/// Exports the reduced model of a machine in space.
-///
-/// # Errors
-/// [`StudyError::Scene`] where the scene cannot be exported: it says why and what to change.
-#[cfg(feature = "output")]
-pub fn export_in_space(
-    scene: &SpaceScene,
-    target: ExportTarget,
-    asked: &ExportRequest,
-) -> Result<Outcome, StudyError> {
-    if scene.mechanism.actuators.len() > 1 {
-        let given = count(scene.mechanism.actuators.len(), "actuator");
-        let message =
-            format!("the scene has {given}: in space several degrees of freedom are not exported");
-        let labels = actuator_labels(scene, "drives it");
-        let help = "give exactly one actuator in [actuators]; of mechanisms in the plane several degrees of freedom are exported as C";
-        return Err(scene_error(scene, message, help, labels));
-    }
-    let table = || Ok(Reduction::new(PreparedSpaceScene::new(scene)?, None)?.table());
-    export_machine(scene, target, asked, table, || {
-        compute_export_in_space(scene, asked)
-    })
+/// Refuses several actuators.
+pub(super) fn several_freedoms_error(scene: &SpaceScene) -> StudyError {
+    let given = count(scene.mechanism.actuators.len(), "actuator");
+    let message =
+        format!("the scene has {given}: in space several degrees of freedom are not exported");
+    let labels = actuator_labels(scene, "drives it");
+    let help = "give exactly one actuator in [actuators]; of mechanisms in the plane several degrees of freedom are exported as C";
+    scene_error(scene, message, help, labels)
 }
 
 /// Fits the functions of a machine in space for export.
 ///
 /// # Errors
 /// [`StudyError::Scene`] where the scene cannot be exported: it says why and what to change.
-pub fn compute_export_in_space(
+pub(super) fn fit_in_space(
     scene: &SpaceScene,
     asked: &ExportRequest,
 ) -> Result<Export, StudyError> {

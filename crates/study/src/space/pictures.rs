@@ -1,13 +1,11 @@
 //! Pictures of a mechanism in space over its range, beside its reduced parameters.
 
 use super::prepared::PreparedSpaceScene;
-use super::reduction::compute_reduction_in_space;
-use super::views::{SpacePositions, page_drawing};
+use super::views::SpacePositions;
 use crate::explain::StudyError;
 use crate::number_format::{coordinate_unit, count};
-use crate::output::{Outcome, Picture, symbol};
-use crate::reduce::compute::{ReducedScene as _, TableRequest};
-use crate::reduce::{add_table, reduction_outcome};
+use crate::output::symbol;
+use crate::reduce::compute::ReducedScene as _;
 use crate::trajectory::figures::describe_abscissa;
 use dwell_geometry::Range;
 use dwell_geometry::space::Placement;
@@ -16,34 +14,6 @@ use dwell_scene::SpaceScene;
 
 /// Intervals of a revolution, or of the range, from which paths are drawn.
 const DRAWN_INTERVALS: usize = 240;
-
-/// The reduced parameters of a scene in space over its range, at `points` positions (two or more) if given, with pictures, and an
-/// interpolation table if requested.
-///
-/// # Errors
-/// As [`compute_reduction_in_space`](crate::compute_reduction_in_space()), and when the table cannot be built.
-pub fn reduce_in_space(
-    scene: &SpaceScene,
-    points: Option<usize>,
-    table: Option<TableRequest>,
-) -> Result<Outcome, StudyError> {
-    let reduction = compute_reduction_in_space(scene, points)?;
-    let mut outcome = reduction_outcome(&reduction)?;
-    if let Some(request) = table {
-        add_table(&reduction.prepared, &request, &mut outcome)?;
-    }
-    if let Some(run) = &mut outcome.run {
-        let rows = reduction.prepared.placements(&run.columns[0].values)?;
-        run.drawing = Some(page_drawing(scene, rows, Vec::new()));
-    }
-    let positions = reduction.prepared.drawn_positions()?;
-    let name = |rest: &str| format!("{}-mechanism.{rest}", scene.name);
-    let figure = Picture::figure(scene, name("png"), true, positions.figure());
-    let animation = Picture::animation(scene, name("gif"), positions.animation());
-    outcome.pictures.insert(0, figure);
-    outcome.pictures.push(animation);
-    Ok(outcome)
-}
 
 impl<'a> PreparedSpaceScene<'a> {
     /// The mechanism in three views and an axonometric one.
@@ -55,7 +25,7 @@ impl<'a> PreparedSpaceScene<'a> {
     }
 
     /// The mechanism over its range, for pictures: at the start, and in positions that follow each other.
-    fn drawn_positions(&self) -> Result<SpacePositions<'a>, StudyError> {
+    pub(super) fn drawn_positions(&self) -> Result<SpacePositions<'a>, StudyError> {
         let turns = match self.range() {
             Range::Revolutions(count) => count as usize,
             _ => 1,
@@ -80,7 +50,7 @@ impl<'a> PreparedSpaceScene<'a> {
 
 /// A mechanism in space in three views and an axonometric one, at the first of some positions, which are given with what they are; from
 /// all of them paths are drawn.
-pub fn mechanism_figure_in_space(
+pub fn figure_of_positions(
     scene: &SpaceScene,
     positions: Vec<(Vec<Placement>, String)>,
     provenance: String,

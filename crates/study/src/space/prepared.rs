@@ -118,10 +118,7 @@ pub(super) fn compile(scene: &SpaceScene, reactions: &[Reaction]) -> Result<Mode
 ///
 /// # Errors
 /// [`StudyError::Scene`] when the mechanism cannot be assembled, or a load does not fit it.
-pub fn loaded_model_in_space(
-    scene: &SpaceScene,
-    reactions: &[Reaction],
-) -> Result<Model, StudyError> {
+pub fn model_with_loads(scene: &SpaceScene, reactions: &[Reaction]) -> Result<Model, StudyError> {
     with_loads(scene, compile(scene, reactions)?)
 }
 

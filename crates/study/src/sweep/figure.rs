@@ -372,7 +372,7 @@ fn histogram(values: &[f64], quantity: &SweepQuantity) -> Option<Chart> {
 mod tests {
     use super::*;
     use crate::sweep::compute::RequestedQuantities;
-    use dwell_scene::Scene;
+    use dwell_scene::PlaneScene;
 
     #[test]
     fn numbers_have_the_names_that_readers_give_them() {
@@ -394,7 +394,7 @@ mod tests {
     #[test]
     fn smallest_and_largest_values_share_a_chart() {
         let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation");
-        let scene = Scene::read(format!("{cases}/single-dwell/scene.toml")).expect("a scene");
+        let scene = PlaneScene::read(format!("{cases}/single-dwell/scene.toml")).expect("a scene");
         let requested = RequestedQuantities::new(&scene, &[]).expect("results");
         let groups = chart_groups(&requested.quantities);
         let names: Vec<&str> = groups.iter().map(|group| group.title).collect();

@@ -5,14 +5,14 @@ use crate::find_value;
 use crate::models::PreparedScene;
 use crate::sweep::compute::{Design, RequestedQuantities, VariantFamily};
 use crate::sweep::spread::Spread;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-fn case(name: &str) -> Scene {
+fn case(name: &str) -> PlaneScene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
-    Scene::read(folder.join(name).join("scene.toml")).expect("a scene")
+    PlaneScene::read(folder.join(name).join("scene.toml")).expect("a scene")
 }
 
 fn words(texts: &[&str]) -> Vec<String> {
@@ -28,7 +28,7 @@ fn names(requested: &RequestedQuantities) -> Vec<&str> {
 }
 
 /// The results of one point, by name.
-fn at(scene: &Scene, requests: &[&str], values: &[(&str, f64)]) -> Vec<f64> {
+fn at(scene: &PlaneScene, requests: &[&str], values: &[(&str, f64)]) -> Vec<f64> {
     let requested = RequestedQuantities::new(scene, &words(requests)).expect("results");
     let result = requested.evaluate(scene, values);
     assert_eq!(result.message, None);
@@ -306,7 +306,7 @@ fn a_variant_without_a_cycle_is_named() {
 
 /// A sweep point by point: in the structure of its family, and each by a compilation of its own.
 fn both_ways(
-    scene: &Scene,
+    scene: &PlaneScene,
     vary: &[&str],
     requests: &[&str],
 ) -> [Vec<(Vec<f64>, Option<String>)>; 2] {

@@ -5,7 +5,7 @@ use crate::number_format::number;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::{Reaction, Vec2};
 use dwell_kinetostatics::{Coefficients, ExactModel, ExactWorkspace, ReducedModel};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_symbolic::{ClosedForm, QuantityOrigin};
 use dwell_verify::spread;
 
@@ -52,7 +52,7 @@ struct LargestDifference {
 
 /// Compares closed forms with the numerical model at some positions.
 pub(crate) struct ClosedFormCheck<'a> {
-    scene: &'a Scene,
+    scene: &'a PlaneScene,
     exact: &'a ExactModel,
     exact_values: Vec<(f64, Coefficients)>,
     workspace: ExactWorkspace,
@@ -65,7 +65,7 @@ pub(crate) struct ClosedFormCheck<'a> {
 }
 
 impl<'a> ClosedFormCheck<'a> {
-    pub(crate) fn new(scene: &'a Scene, exact: &'a ExactModel) -> Self {
+    pub(crate) fn new(scene: &'a PlaneScene, exact: &'a ExactModel) -> Self {
         let mut check = Self {
             scene,
             exact,

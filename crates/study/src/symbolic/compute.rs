@@ -9,7 +9,7 @@ use crate::trajectory::compute::reject_unknown_variables;
 use dwell_findings::Finding;
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::ExactModel;
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{PlaneScene, SceneLocation};
 use dwell_symbolic::{ClosedForm, Symbolic, SymbolicError};
 
 /// The closed forms of a scene and all its reactions, compared with the exact model at 24 positions; no findings
@@ -17,7 +17,7 @@ use dwell_symbolic::{ClosedForm, Symbolic, SymbolicError};
 ///
 /// # Errors
 /// [`StudyError`] when the mechanism cannot be put together.
-pub fn symbolic_findings(scene: &Scene) -> Result<Vec<Finding>, StudyError> {
+pub fn symbolic_findings(scene: &PlaneScene) -> Result<Vec<Finding>, StudyError> {
     if scene.mechanism.actuators.len() != 1 || !scene.varying_inertias.is_empty() {
         return Ok(Vec::new());
     }
@@ -38,14 +38,14 @@ pub fn symbolic_findings(scene: &Scene) -> Result<Vec<Finding>, StudyError> {
 }
 
 /// The exact model with every reaction.
-fn full_reduced_model(scene: &Scene) -> Result<ExactModel, StudyError> {
+fn full_reduced_model(scene: &PlaneScene) -> Result<ExactModel, StudyError> {
     if scene.mechanism.actuators.len() != 1 {
         return Err(not_one_actuator(scene));
     }
     reduced_model(scene, &scene.mechanism.reactions())
 }
 
-fn find_reaction(scene: &Scene, name: &str) -> Result<Reaction, StudyError> {
+fn find_reaction(scene: &PlaneScene, name: &str) -> Result<Reaction, StudyError> {
     let all = scene.mechanism.reactions();
     let names = all.iter().map(|&r| scene.mechanism.reaction_name(r));
     let names: Vec<String> = names.collect();
@@ -57,7 +57,7 @@ fn find_reaction(scene: &Scene, name: &str) -> Result<Reaction, StudyError> {
     })
 }
 
-fn explain_symbolic(scene: &Scene, error: &SymbolicError) -> StudyError {
+fn explain_symbolic(scene: &PlaneScene, error: &SymbolicError) -> StudyError {
     match error {
         SymbolicError::ActuatorCount(_) => not_one_actuator(scene),
         SymbolicError::Group {
@@ -90,9 +90,9 @@ fn explain_symbolic(scene: &Scene, error: &SymbolicError) -> StudyError {
     }
 }
 
-/// Closed forms of a scene, and their comparison with the exact model.
-pub fn compute_closed_form(
-    scene: &Scene,
+/// Closed forms of a scene in the plane, and their comparison with the exact model.
+pub(crate) fn closed_form_in_plane(
+    scene: &PlaneScene,
     reaction: Option<&str>,
 ) -> Result<(ClosedForm, Vec<Finding>), StudyError> {
     reject_unknown_variables(scene)?;

@@ -1,13 +1,11 @@
 //! Writes closed forms: document or code, and summary.
 
-use crate::explain::StudyError;
 use crate::number_format::{count, digits};
-use crate::output::{Outcome, separating_note};
+use crate::output::Outcome;
 use crate::symbolic::closed_form_check::POSITIONS;
-use crate::symbolic::compute::compute_closed_form;
 use dwell_findings::{Finding, Record};
 use dwell_report::{Block, Document};
-use dwell_scene::Scene;
+use dwell_scene::SceneFile;
 use dwell_symbolic::{ClosedForm, Constant, FormulaSection, Language};
 
 /// The output format of closed forms.
@@ -19,17 +17,19 @@ pub enum FormulaFormat {
     Code(Language),
 }
 
-/// The closed forms of a scene as formulas or code, for the named reaction or the first that the scene requests.
-///
-/// # Errors
-/// [`StudyError`] where the mechanism is not made of dyads, has several actuators, or has no such
-/// reaction.
-pub fn symbolic(
-    scene: &Scene,
-    output: FormulaFormat,
-    reaction: Option<&str>,
-) -> Result<Outcome, StudyError> {
-    let (form, findings) = compute_closed_form(scene, reaction)?;
+/// A scene whose closed forms are written: its file, the name of its coordinate, and what they leave out.
+pub(crate) struct WrittenForm<'a> {
+    pub(crate) file: &'a SceneFile,
+    pub(crate) coordinate: &'a str,
+    pub(crate) notes: &'a str,
+}
+
+/// Closed forms as formulas or code.
+pub(crate) fn closed_form_outcome(
+    scene: &WrittenForm<'_>,
+    (form, findings): (ClosedForm, Vec<Finding>),
+    format: FormulaFormat,
+) -> Outcome {
     let mut record = Record::default();
     record.add_count("steps", form.assignment_count());
     record.add_count("positions", POSITIONS);
@@ -43,9 +43,9 @@ pub fn symbolic(
         findings,
         ..Outcome::default()
     };
-    let about = format!("{}: closed forms, written by dwell", scene.title);
-    let name = function_name(&scene.name);
-    let (extension, text) = match output {
+    let about = format!("{}: closed forms, written by dwell", scene.file.title);
+    let name = function_name(&scene.file.name);
+    let (extension, text) = match format {
         FormulaFormat::Latex => ("md", document(scene, &form)),
         FormulaFormat::Code(language) => {
             let extension = match language {
@@ -56,9 +56,9 @@ pub fn symbolic(
             (extension, form.code(language, &name, &about))
         }
     };
-    let file = format!("{}-symbolic.{extension}", scene.name);
+    let file = format!("{}-symbolic.{extension}", scene.file.name);
     outcome.files.add(file, text);
-    Ok(outcome)
+    outcome
 }
 
 /// The name of the generated function; the prefix keeps it from being a reserved word.
@@ -70,26 +70,16 @@ pub(crate) fn function_name(scene: &str) -> String {
     format!("reduced_{}", scene.chars().map(plain).collect::<String>())
 }
 
-pub(crate) fn summary(scene: &Scene, form: &ClosedForm, findings: &[Finding]) -> String {
+fn summary(scene: &WrittenForm<'_>, form: &ClosedForm, findings: &[Finding]) -> String {
     let reaction = form.reaction.as_ref();
     let reaction = reaction.map_or_else(String::new, |r| format!("; a and b of {r}"));
     let mut text = format!(
         "{}: closed forms in {}\n  positions, m and ½m′ as functions of {}{reaction}\n",
-        scene.title,
+        scene.file.title,
         count(form.assignment_count(), "step"),
-        scene.mechanism.actuators[0].name,
+        scene.coordinate,
     );
-    if form.reaction.is_some() {
-        text += &separating_note(scene);
-    }
-    let loads = scene.loads.iter().filter(|load| load.does_work());
-    let loads: Vec<&str> = loads.map(|load| load.name.as_str()).collect();
-    if !loads.is_empty() {
-        text += &format!(
-            "  without the loads {}: `dwell reduce` computes w and c, their parts of the motion and of the reaction\n",
-            loads.join(", ")
-        );
-    }
+    text += scene.notes;
     for f in findings {
         let result = if f.pass { "pass" } else { "FAIL" };
         text += &format!(
@@ -101,7 +91,7 @@ pub(crate) fn summary(scene: &Scene, form: &ClosedForm, findings: &[Finding]) ->
 }
 
 /// Markdown with LaTeX.
-pub(crate) fn document(scene: &Scene, form: &ClosedForm) -> String {
+fn document(scene: &WrittenForm<'_>, form: &ClosedForm) -> String {
     let of = &form.coordinate;
     let constant = |c: &Constant| {
         let (latex, value) = (format!("${}$", c.latex), digits(c.value, 12));
@@ -111,7 +101,7 @@ pub(crate) fn document(scene: &Scene, form: &ClosedForm) -> String {
         Block::Text(format!(
             "The coordinate is ${}$ ({}), in {}. Each line depends only on lines above it. A prime is the derivative with respect to the \
              coordinate. All quantities are in SI units.",
-            of.latex, scene.mechanism.actuators[0].name, of.unit
+            of.latex, scene.coordinate, of.unit
         )),
         Block::Heading("Constants".to_owned()),
         Block::Table {
@@ -129,7 +119,7 @@ pub(crate) fn document(scene: &Scene, form: &ClosedForm) -> String {
             "```math\n\\begin{{aligned}}\n{lines}\n\\end{{aligned}}\n```"
         )));
     }
-    let title = format!("{}: closed forms", scene.title);
+    let title = format!("{}: closed forms", scene.file.title);
     Document { title, blocks }.markdown()
 }
 

@@ -4,7 +4,7 @@
 use crate::bodies::{BodyPose, point_position};
 use crate::ranges::extent;
 use dwell_geometry::{Coordinate, Coupling, JointKind, Vec2, vec2};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::f64::consts::{PI, TAU};
 
 /// A relation that is straight to this part of its range is that of a gear or a screw, and no cam.
@@ -30,7 +30,7 @@ pub(crate) struct PitchCurve {
 
 /// The pitch curve of a coupling that is a cam with its follower, from the positions in the order of the motion.
 pub(crate) fn pitch_curve(
-    scene: &Scene,
+    scene: &PlaneScene,
     coupling: &Coupling,
     positions: &[Vec<BodyPose>],
 ) -> Option<PitchCurve> {
@@ -66,7 +66,7 @@ pub(crate) fn pitch_curve(
 }
 
 /// The body that a cam moves, and the point by which it does: that of its guide, or the farthest from its pivot.
-fn follower_point(scene: &Scene, coupling: &Coupling) -> Option<(usize, Vec2)> {
+fn follower_point(scene: &PlaneScene, coupling: &Coupling) -> Option<(usize, Vec2)> {
     let mechanism = &scene.mechanism;
     match coupling.dependent {
         Coordinate::Travel(joint) => {
@@ -120,7 +120,7 @@ pub(crate) fn rack_outline([from, to]: [Vec2; 2], normal: Vec2, tooth: f64) -> V
 }
 
 /// The larger side of what all points of all bodies go through, m.
-pub(crate) fn drawn_size(scene: &Scene, positions: &[Vec<BodyPose>]) -> f64 {
+pub(crate) fn drawn_size(scene: &PlaneScene, positions: &[Vec<BodyPose>]) -> f64 {
     let all = positions.iter().flat_map(|poses| {
         let bodies = scene.points.iter().take(poses.len()).enumerate();
         bodies.flat_map(move |(b, points)| {
@@ -200,7 +200,7 @@ mod tests {
             env!("CARGO_MANIFEST_DIR"),
             "/../../validation/cam/scene.toml"
         );
-        let scene = Scene::read(path).expect("a scene");
+        let scene = PlaneScene::read(path).expect("a scene");
         let coupling = scene.mechanism.couplings.first().expect("a cam");
         let rise = |q: f64| 0.04 + 0.012 * (1.0 - q.cos()) + 0.003 * (1.0 - (2.0 * q).cos());
         let bodies = |name: &str| {

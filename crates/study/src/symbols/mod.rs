@@ -14,7 +14,7 @@ pub(crate) use outline::{
 use crate::bodies::{BodyPose, point_position};
 use crate::ranges::extent;
 use dwell_geometry::{Joint, vec2};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use kinematic::{axis_of, drawn_size};
 
 /// Reference length of the symbols, in sizes of the mechanism.
@@ -31,14 +31,14 @@ pub(crate) const TOOTH: f64 = 0.012;
 pub(crate) const TRACK_MARGIN: f64 = 0.25;
 
 /// The reference length of the symbols of a scene that is drawn at these positions, m.
-pub(crate) fn symbol_size(scene: &Scene, positions: &[Vec<BodyPose>]) -> f64 {
+pub(crate) fn symbol_size(scene: &PlaneScene, positions: &[Vec<BodyPose>]) -> f64 {
     let (size, drawn) = (scene.mechanism.size(), drawn_size(scene, positions));
     let bound = if drawn > 0.0 { drawn } else { f64::INFINITY };
     (SYMBOL_RATIO * size).clamp(MIN_SYMBOL_RATIO * drawn, MAX_SYMBOL_RATIO * bound)
 }
 
 /// By joint: the range of its second point along its axis over all positions, m.
-pub(crate) fn travels(scene: &Scene, positions: &[Vec<BodyPose>]) -> Vec<Option<[f64; 2]>> {
+pub(crate) fn travels(scene: &PlaneScene, positions: &[Vec<BodyPose>]) -> Vec<Option<[f64; 2]>> {
     let travel = |joint: &Joint| {
         let axis = axis_of(joint.kind)?;
         let [one, two] = joint.bodies.map(|b| b.0);

@@ -1,7 +1,7 @@
 //! The outlines of bodies, in their frames, and the labels of joints.
 
 use dwell_geometry::{ActuatorKind, BodyId, Joint, JointId, JointKind, Vec2};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// Half the height of a block that slides, in reference lengths, and its length in heights.
 const BLOCK: f64 = 0.045;
@@ -18,7 +18,7 @@ pub(crate) enum BodyOutline {
 }
 
 /// The largest distance of two points of a body, m.
-pub(crate) fn reach(scene: &Scene, body: usize) -> f64 {
+pub(crate) fn reach(scene: &PlaneScene, body: usize) -> f64 {
     let points = &scene.points[body];
     let pairs = points
         .iter()
@@ -27,7 +27,7 @@ pub(crate) fn reach(scene: &Scene, body: usize) -> f64 {
 }
 
 /// The outline of a body for symbols of this reference length, m.
-pub(crate) fn outline_of(scene: &Scene, body: usize, size: f64) -> BodyOutline {
+pub(crate) fn outline_of(scene: &PlaneScene, body: usize, size: f64) -> BodyOutline {
     let mut points: Vec<Vec2> = Vec::new();
     for (_, p) in &scene.points[body] {
         if !points.contains(p) {
@@ -66,7 +66,7 @@ fn block(middle: Vec2, axis: Vec2, size: f64) -> [Vec2; 4] {
 }
 
 /// The blocks by which a body slides that is more than such a block itself, in its frame: without them it would look pinned.
-pub(crate) fn blocks_on(scene: &Scene, body: usize, size: f64) -> Vec<[Vec2; 4]> {
+pub(crate) fn blocks_on(scene: &PlaneScene, body: usize, size: f64) -> Vec<[Vec2; 4]> {
     let joints = scene.mechanism.joints.iter().enumerate();
     let slides = joints.filter(|(j, joint)| joint.bodies[1].0 == body && !is_cylinder(scene, *j));
     let of = |(_, joint): (usize, &Joint)| match joint.kind {
@@ -78,7 +78,7 @@ pub(crate) fn blocks_on(scene: &Scene, body: usize, size: f64) -> Vec<[Vec2; 4]>
 }
 
 /// Whether a joint is a driven prismatic one between two moving bodies.
-pub(crate) fn is_cylinder(scene: &Scene, joint: usize) -> bool {
+pub(crate) fn is_cylinder(scene: &PlaneScene, joint: usize) -> bool {
     let mechanism = &scene.mechanism;
     let drives = ActuatorKind::Travel(JointId(joint));
     let bodies = mechanism.joints[joint].bodies;
@@ -87,7 +87,7 @@ pub(crate) fn is_cylinder(scene: &Scene, joint: usize) -> bool {
 }
 
 /// The axis of a body's prismatic joint, in its frame.
-fn slide_axis(scene: &Scene, body: usize) -> Option<Vec2> {
+fn slide_axis(scene: &PlaneScene, body: usize) -> Option<Vec2> {
     let joints = scene.mechanism.joints.iter().enumerate();
     let mut joints = joints.filter(|(j, _)| !is_cylinder(scene, *j));
     joints.find_map(|(_, joint)| match joint.kind {
@@ -107,7 +107,7 @@ fn slide_axis(scene: &Scene, body: usize) -> Option<Vec2> {
 }
 
 /// The common label of joints at one point: for a pin of several bodies, whose joints are named `pin-body`, the pin.
-pub(crate) fn common_joint_name(scene: &Scene, joints: &[&Joint]) -> String {
+pub(crate) fn common_joint_name(scene: &PlaneScene, joints: &[&Joint]) -> String {
     let pin = |joint: &&Joint| {
         let body = scene.mechanism.body_name(joint.bodies[1]);
         let pin = joint.name.strip_suffix(body)?.strip_suffix('-')?;

@@ -14,7 +14,7 @@ use dwell_geometry::Mechanism;
 use dwell_kinetostatics::{Distribution, Section};
 use dwell_laws::Law;
 use dwell_report::{Block, Document as Page, Figure};
-use dwell_scene::{Scene, SceneFile};
+use dwell_scene::{PlaneScene, SceneFile};
 
 /// Relative error up to which a value is printed with all six digits.
 const ALL_DIGITS: f64 = 1e-7;
@@ -64,7 +64,7 @@ pub(crate) struct Document<'a> {
 
 impl<'a> Document<'a> {
     /// Of a scene in the plane.
-    pub(crate) fn new(scene: &'a Scene, computed: &'a ComputedTrajectory<'a>) -> Self {
+    pub(crate) fn new(scene: &'a PlaneScene, computed: &'a ComputedTrajectory<'a>) -> Self {
         let mut document = Self::of_file(&scene.file, scene.mechanism.size(), computed);
         document.movement.scene = Some(scene);
         document.unmodelled = computed.results.unmodelled_bodies(scene);

@@ -3,7 +3,7 @@
 use crate::number_format::digits;
 use crate::trajectory::compute::{Column, Quantity, TrajectoryResults};
 use dwell_findings::Record;
-use dwell_scene::{Scene, SceneFile};
+use dwell_scene::{PlaneScene, SceneFile};
 use std::collections::VecDeque;
 
 /// Lines of each kind.
@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-9;
 pub(crate) struct Movement<'a> {
     pub(crate) file: &'a SceneFile,
     /// In the plane.
-    pub(crate) scene: Option<&'a Scene>,
+    pub(crate) scene: Option<&'a PlaneScene>,
     pub(crate) results: &'a TrajectoryResults,
     /// The column of time, or of the swept coordinate.
     pub(crate) abscissa: usize,

@@ -4,11 +4,10 @@ use super::figures::PictureSpan;
 use super::{document, figures};
 use crate::explain::StudyError;
 use crate::output::{DistinctNames, Outcome, Picture};
-use crate::page::trajectory_page;
-use crate::progress::Progress;
-use crate::trajectory::compute::{Analysis, ComputedTrajectory, RowStorage, compute_trajectory_in};
+use crate::page::plane_page;
+use crate::trajectory::compute::{Analysis, ComputedTrajectory};
 use dwell_report::{Animation, Figure, Files, TableExport as _, TableFormat};
-use dwell_scene::{Scene, SceneFile};
+use dwell_scene::{PlaneScene, SceneFile};
 
 /// The outcome of an analysis along a trajectory.
 #[derive(Debug)]
@@ -19,43 +18,19 @@ pub struct TrajectoryOutcome {
     pub early_stop: Option<StudyError>,
 }
 
-/// Analyses a scene along its prescribed motion, its sweep, or the range of its only actuator, at
-/// `points` positions (two or more) if given.
-///
-/// # Errors
-/// As [`compute_trajectory`](crate::compute_trajectory); [`StudyError::Scene`] where many rows cannot be stored.
-pub fn analyse_trajectory(
-    scene: &Scene,
-    analysis: Analysis,
-    points: Option<usize>,
-    progress: Progress<'_>,
-) -> Result<TrajectoryOutcome, StudyError> {
-    analyse_trajectory_within(scene, analysis, points, PictureSpan::default(), progress)
-}
-
-/// The same, with curves that show a part of the trajectory.
-///
-/// # Errors
-/// As [`compute_trajectory`]; [`StudyError::Scene`] where the part is not within the trajectory.
-pub fn analyse_trajectory_within(
-    scene: &Scene,
-    analysis: Analysis,
-    points: Option<usize>,
-    span: PictureSpan,
-    progress: Progress<'_>,
-) -> Result<TrajectoryOutcome, StudyError> {
-    let computed = compute_trajectory_in(RowStorage::Bounded, scene, analysis, points, progress)?;
-    let mut outcome = report(scene, &computed, span)?;
-    outcome.summary += &computed.notes;
-    Ok(TrajectoryOutcome {
-        outcome,
-        early_stop: computed.early_stop,
-    })
+impl From<Outcome> for TrajectoryOutcome {
+    fn from(outcome: Outcome) -> Self {
+        let early_stop = None;
+        Self {
+            outcome,
+            early_stop,
+        }
+    }
 }
 
 /// Tables, figures and text of the results along a trajectory.
 pub(crate) fn report(
-    scene: &Scene,
+    scene: &PlaneScene,
     computed: &ComputedTrajectory<'_>,
     span: PictureSpan,
 ) -> Result<Outcome, StudyError> {
@@ -75,7 +50,7 @@ pub(crate) fn report(
     let animation = figures::animation(scene, computed)?;
     let document = document::Document::new(scene, computed);
     let mut outcome = outcome_of(&scene.file, computed, &document, (figures, animation))?;
-    outcome.run = Some(Box::new(trajectory_page(scene, computed)));
+    outcome.run = Some(Box::new(plane_page(scene, computed)));
     outcome.files.extend("", files);
     outcome.summary += &left_out.map_or_else(String::new, |note| format!("  {note}\n"));
     Ok(outcome)

@@ -15,7 +15,8 @@ use crate::machines::MachineScene;
 use crate::models::{PreparedScene, loaded_model};
 use crate::progress::Progress;
 use crate::reduce::compute::{
-    ReducedCurves, ReducedScene, RoundingErrors, coefficient_units, flat, inertia_units,
+    ReducedCurves, ReducedScene, RoundingErrors, TabulatedScene, coefficient_units, flat,
+    inertia_units,
 };
 use crate::trajectory::compute::{
     Analysis, RowStorage, Spacing, Trajectory, compute_along, default_limits,
@@ -23,7 +24,7 @@ use crate::trajectory::compute::{
 use dwell_findings::{Column, Table};
 use dwell_kinetostatics::Coefficients;
 use dwell_laws::{Law, Polynomial};
-use dwell_scene::{PrescribedMotion, Requests, Scene};
+use dwell_scene::{PlaneScene, PrescribedMotion, Requests};
 
 /// Positions of each run if their number is not given: a degree apart over a revolution.
 const DEFAULT_POINTS: usize = 361;
@@ -124,7 +125,7 @@ impl UnitRun {
 /// A scene of which the runs can be made.
 pub trait UnitRunScene: MachineScene {
     /// The scene with its model.
-    type Prepared<'a>: ReducedScene
+    type Prepared<'a>: TabulatedScene
     where
         Self: 'a;
 
@@ -146,7 +147,7 @@ pub trait UnitRunScene: MachineScene {
     ) -> Result<Table, StudyError>;
 }
 
-impl UnitRunScene for Scene {
+impl UnitRunScene for PlaneScene {
     type Prepared<'a> = PreparedScene<'a>;
 
     fn prepared_without_loads(&self) -> Result<PreparedScene<'_>, StudyError> {

@@ -2,12 +2,12 @@
 
 use super::compute::{compute_unit_runs, values};
 use crate::no_progress;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::path::Path;
 
-fn case(name: &str) -> Scene {
+fn case(name: &str) -> PlaneScene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
-    Scene::read(folder.join(name).join("scene.toml")).expect("a scene")
+    PlaneScene::read(folder.join(name).join("scene.toml")).expect("a scene")
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use super::toolchain::{Scratch, c_compiler, cases, compile, request, run};
 use dwell_export::{Precision, c_files};
-use dwell_scene::{AnyScene, Scene};
-use dwell_study::{ExportTarget, compute_export, export_in_space};
+use dwell_scene::{PlaneScene, Scene};
+use dwell_study::{ExportTarget, compute_export, export};
 
 /// The cases that cannot be exported as they are, with words of the reason.
 pub(crate) const REFUSED: [(&str, &str); 7] = [
@@ -27,7 +27,7 @@ fn every_case_exports_or_says_why_not() {
     names.sort();
     for name in &names {
         let text = std::fs::read_to_string(cases().join(name).join("scene.toml")).unwrap();
-        let scene = Scene::parse(&format!("{name}.toml"), &text).unwrap();
+        let scene = PlaneScene::parse(&format!("{name}.toml"), &text).unwrap();
         let refused = REFUSED.iter().find(|(refused, _)| refused == name);
         let export = match (
             compute_export(&scene, &request(1e-7, Precision::Double)),
@@ -71,11 +71,11 @@ fn linkages_in_space_export() {
         }
         let text = std::fs::read_to_string(&path).unwrap();
         let name = path.file_name().unwrap().to_str().unwrap();
-        let AnyScene::Space(scene) = AnyScene::parse(name, &text).unwrap() else {
+        let Scene::Space(scene) = Scene::parse(name, &text).unwrap() else {
             panic!("{name} is in space");
         };
         let asked = request(1e-7, Precision::Double);
-        let outcome = match export_in_space(&scene, ExportTarget::C, &asked) {
+        let outcome = match export(&*scene, ExportTarget::C, &asked) {
             Ok(outcome) => outcome,
             Err(error) if scene.assembly.q.len() > 1 => {
                 let actuators = format!("{} actuators", scene.assembly.q.len());

@@ -3,7 +3,7 @@
 use super::cases::REFUSED;
 use super::toolchain::{Scratch, c_compiler, case, cases, compile, request, run};
 use dwell_export::{OperationKind, Precision, c_files};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::{ExportRequest, compute_export};
 
 /// The cases without operations that hold everywhere, with words of the reason.
@@ -124,7 +124,7 @@ fn single_precision_has_operations_too() {
 #[test]
 fn what_is_searched_has_no_operations() {
     let text = std::fs::read_to_string(cases().join("class-three-six-bar/scene.toml")).unwrap();
-    let scene = Scene::parse("class-three.toml", &text).unwrap();
+    let scene = PlaneScene::parse("class-three.toml", &text).unwrap();
     let error = compute_export(&scene, &exact()).unwrap_err().to_string();
     assert!(error.contains("no exact export"), "{error}");
     assert!(error.contains("Newton"), "{error}");

@@ -4,7 +4,7 @@
 use super::toolchain::request;
 use dwell_dynamics::Machine;
 use dwell_export::{Evaluator, Precision};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::models::build_machine;
 use dwell_study::{ExportRequest, compute_export};
 
@@ -51,13 +51,13 @@ initial-velocity = { phi = 2.0 }
 duration = 1
 "#;
 
-fn machine(scene: &Scene) -> Machine {
+fn machine(scene: &PlaneScene) -> Machine {
     let spec = scene.motion.as_ref().unwrap();
     build_machine(scene, spec, &scene.requests.reactions).unwrap()
 }
 
 /// Compares rates, reactions and energies over a grid of states, of cells and of the model's own operations.
-fn compare(scene: &Scene, states: &[Vec<f64>]) {
+fn compare(scene: &PlaneScene, states: &[Vec<f64>]) {
     for exact in [false, true] {
         let asked = ExportRequest {
             exact,
@@ -69,7 +69,7 @@ fn compare(scene: &Scene, states: &[Vec<f64>]) {
     }
 }
 
-fn compare_with(scene: &Scene, states: &[Vec<f64>], twin: &Evaluator<f64>, part: f64) {
+fn compare_with(scene: &PlaneScene, states: &[Vec<f64>], twin: &Evaluator<f64>, part: f64) {
     let machine = machine(scene);
     let mut workspace = machine.workspace::<f64>();
     for y in states {
@@ -106,7 +106,7 @@ fn compare_with(scene: &Scene, states: &[Vec<f64>], twin: &Evaluator<f64>, part:
 
 #[test]
 fn a_motor_with_a_rotor_and_a_current() {
-    let scene = Scene::parse("motor.toml", MOTOR).unwrap();
+    let scene = PlaneScene::parse("motor.toml", MOTOR).unwrap();
     let mut states = Vec::new();
     for i in 0..24 {
         let q = 0.27 * f64::from(i);

@@ -28,7 +28,7 @@ fn dry_friction_in_space_is_refused_by_name() {
         + "\n[friction]\nD = { coefficient = 0.1, radius = 0.01, regularization-speed = 0.1 }\n";
     let scene = dwell_scene::SpaceScene::parse("rssr.toml", &text).expect("a scene");
     let asked = request(1e-6, Precision::Double);
-    let error = dwell_study::compute_export_in_space(&scene, &asked).expect_err("a refusal");
+    let error = dwell_study::compute_export(&scene, &asked).expect_err("a refusal");
     let found = error.to_string();
     assert!(found.contains("D.friction is dry friction"), "{found}");
 }
@@ -45,7 +45,7 @@ fn end_stops_in_space_are_refused() {
     let text = format!("{text}\n[stops]\nend = {{ coordinate = \"{name}\", max = 9 }}\n");
     let scene = dwell_scene::SpaceScene::parse("rssr.toml", &text).expect("a scene");
     let asked = request(1e-6, Precision::Double);
-    let error = dwell_study::compute_export_in_space(&scene, &asked).expect_err("a refusal");
+    let error = dwell_study::compute_export(&scene, &asked).expect_err("a refusal");
     let found = error.to_string();
     assert!(found.contains("the scene has end stops"), "{found}");
 }
@@ -80,7 +80,7 @@ fn a_cam_that_rises_between_the_points_of_a_fit_is_refused() {
     assert!(text.contains(law));
     for width in [1e-5, 1e-6, 1e-8] {
         let steep = text.replace(law, &format!("0.04 + 0.0015*tanh((x - 1.2345678)/{width})"));
-        let scene = dwell_scene::Scene::parse("cam.toml", &steep).expect("a scene");
+        let scene = dwell_scene::PlaneScene::parse("cam.toml", &steep).expect("a scene");
         let error = compute_export(&scene, &request(1e-6, Precision::Double));
         let found = error.map(drop).expect_err("a refusal").to_string();
         assert!(found.contains("no export"), "{found}");

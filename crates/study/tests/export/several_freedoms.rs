@@ -2,7 +2,7 @@
 
 use super::toolchain::{Scratch, c_compiler, case, cases, compile, request, run};
 use dwell_export::{Precision, SeveralFreedomsEvaluator, c_files_of_several_freedoms};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::models::build_machine;
 use dwell_study::{ExportTarget, compute_export_of_several_freedoms, export};
 
@@ -110,7 +110,7 @@ fn every_case_of_several_freedoms_compiles_and_passes_its_self_test() {
 /// Rates, reactions and energies of the exported code are those of the machine that `simulate` integrates.
 #[test]
 fn loads_drives_and_reactions_are_those_of_the_machine() {
-    let scene = Scene::parse("five-bar.toml", FIVE_BAR).unwrap();
+    let scene = PlaneScene::parse("five-bar.toml", FIVE_BAR).unwrap();
     let asked = request(1e-9, Precision::Double);
     let export = compute_export_of_several_freedoms(&scene, &asked).unwrap();
     let twin = SeveralFreedomsEvaluator::new(&export.machine, &export.code);
@@ -197,7 +197,7 @@ swing = 0.3
     let text = text
         .replacen("[joints]\n", bob, 1)
         .replacen("[assembly]\n", swing, 1);
-    let scene = Scene::parse("two.toml", &text).unwrap();
+    let scene = PlaneScene::parse("two.toml", &text).unwrap();
     let asked = request(1e-9, Precision::Double);
     let found = export(&scene, ExportTarget::C, &asked).unwrap_err();
     let found = found.to_string();
@@ -225,7 +225,7 @@ fn other_targets_and_intervals_are_refused_by_name() {
         "[drives]",
         "[friction]\nA = { coefficient = 0.2, radius = 0.01 }\n[drives]",
     );
-    let scene = Scene::parse("five-bar.toml", &friction).unwrap();
+    let scene = PlaneScene::parse("five-bar.toml", &friction).unwrap();
     let found = export(&scene, ExportTarget::C, &asked).unwrap_err();
     assert!(found.to_string().contains("dry friction"), "{found}");
 }

@@ -3,7 +3,7 @@
 use super::toolchain::{Scratch, c_compiler, case, cases, compile, numbers, request, run};
 use dwell_export::{Evaluator, Precision, State, c_files};
 use dwell_kinetostatics::ReducedModel;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::{PreparedScene, compute_export};
 use std::f64::consts::TAU;
 
@@ -117,7 +117,7 @@ fn the_code_is_small() {
     let text = std::fs::read_to_string(path).unwrap();
     let lines = text.lines().filter(|line| !line.starts_with("paths = "));
     let text: Vec<&str> = lines.collect();
-    let scene = Scene::parse("single-dwell.toml", &text.join("\n")).unwrap();
+    let scene = PlaneScene::parse("single-dwell.toml", &text.join("\n")).unwrap();
     for (accuracy, precision, limit) in [
         (1e-9, Precision::Double, 10_000.0),
         (1e-6, Precision::Float, 4_000.0),

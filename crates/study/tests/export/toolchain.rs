@@ -1,7 +1,7 @@
 //! The C compilers of this machine, scratch folders and scenes.
 
 use dwell_export::{Precision, Request};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::ExportRequest;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -93,10 +93,10 @@ pub(crate) fn cases() -> PathBuf {
 }
 
 /// A case.
-pub(crate) fn case(name: &str) -> Scene {
+pub(crate) fn case(name: &str) -> PlaneScene {
     let path = cases().join(name).join("scene.toml");
     let text = std::fs::read_to_string(&path).unwrap();
-    Scene::parse(&format!("{name}.toml"), &text).unwrap()
+    PlaneScene::parse(&format!("{name}.toml"), &text).unwrap()
 }
 
 /// What is asked for, over the whole range.

@@ -3,17 +3,16 @@
 use dwell_geometry::{BodyId, JointKind, Vec2, vec2};
 use dwell_kinetostatics::{LoadKind, Magnitude};
 use dwell_page::{Anchor, Direction, Drawing, ForceArrow, ForcePart, Page};
-use dwell_scene::Scene;
-use dwell_study::page::trajectory_page;
-use dwell_study::{Analysis, compute_trajectory, no_progress};
+use dwell_scene::PlaneScene;
+use dwell_study::{Analysis, no_progress, trajectory_page};
 
 const ROWS: usize = 25;
 
 /// A page of statics with the scene's loads.
-fn statics(text: &str) -> (Scene, Page) {
-    let scene = Scene::parse("scene.toml", text).unwrap();
-    let computed = compute_trajectory(&scene, Analysis::Statics, Some(ROWS), &no_progress);
-    let page = trajectory_page(&scene, &computed.unwrap());
+fn statics(text: &str) -> (PlaneScene, Page) {
+    let scene = PlaneScene::parse("scene.toml", text).unwrap();
+    let page = trajectory_page(&scene, Analysis::Statics, Some(ROWS), &no_progress);
+    let (page, _) = page.unwrap();
     (scene, page)
 }
 
@@ -94,7 +93,7 @@ impl Row<'_> {
 }
 
 /// Force, and moment about the origin of the ground, on each body, by the arrows and the columns of couples.
-fn resultants(scene: &Scene, row: &Row<'_>) -> Vec<(Vec2, f64)> {
+fn resultants(scene: &PlaneScene, row: &Row<'_>) -> Vec<(Vec2, f64)> {
     let mechanism = &scene.mechanism;
     let mut sums = vec![(vec2(0.0, 0.0), 0.0); mechanism.bodies.len()];
     let mut add = |body: BodyId, at: Vec2, force: Vec2| {

@@ -91,7 +91,8 @@ fn nothing_can_be_told_of_a_pin() {
         "[actuators",
         "pin = { revolute = [\"ground.A\", \"body.P\"] }\n[actuators",
     );
-    let error = dwell_scene::Scene::parse("test.toml", &format!("{text}pin = 3\n")).unwrap_err();
+    let error =
+        dwell_scene::PlaneScene::parse("test.toml", &format!("{text}pin = 3\n")).unwrap_err();
     assert!(error.message.contains("`pin`"), "{}", error.message);
     let help = error.help.unwrap();
     assert!(

@@ -4,7 +4,7 @@ use crate::table::{Table, WEIGHTS, analyse, case, file, scene};
 use dwell_study::equilibria::compute::SearchedRange;
 use dwell_study::{
     Analysis, MotionSolver, OperatingPoint, SolverSettings, StudyError, analyse_trajectory, check,
-    compute_free_motion, equilibria, linearise, no_progress,
+    compute_free_motion, equilibria, free_motion_page, linearise, no_progress,
 };
 
 /// Crank 0.3, coupler 0.2, rocker 0.25 on a base of 0.4 m.
@@ -233,8 +233,9 @@ events = { early = { reaches = "x", value = 0.2 }, late = { reaches = "x", value
             panic!("{:?}", motion.events);
         };
         assert!((t - 0.2).abs() < 1e-9 && name == "early", "{name} at {t}");
-        assert_eq!(motion.event_table.rows.len(), 1);
-        let said = &motion.summary;
+        let (page, _) = free_motion_page(&scene(text), &solver, &no_progress).unwrap();
+        assert_eq!(page.events.len(), 1);
+        let said = &page.printed;
         assert!(said.starts_with("  0.5 of 1 s"), "{said}");
         assert!(
             said.contains("early: once") && said.contains("late: never\n"),

@@ -5,7 +5,7 @@ use dwell_study::{Analysis, check, reduce};
 use std::path::Path;
 
 /// A validation case with a pressure angle of 20° at the teeth described so.
-fn with_angle(name: &str, teeth: &str) -> dwell_scene::Scene {
+fn with_angle(name: &str, teeth: &str) -> dwell_scene::PlaneScene {
     let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
     let text = std::fs::read_to_string(home.join(name).join("scene.toml")).unwrap();
     assert_eq!(text.matches(teeth).count(), 1);
@@ -15,7 +15,7 @@ fn with_angle(name: &str, teeth: &str) -> dwell_scene::Scene {
     ))
 }
 
-fn table(of: &dwell_scene::Scene, analysis: Analysis) -> Table {
+fn table(of: &dwell_scene::PlaneScene, analysis: Analysis) -> Table {
     let end = match analysis {
         Analysis::Statics => "-statics.csv",
         _ => "-kinetostatics.csv",
@@ -87,7 +87,7 @@ fn the_separating_force_has_a_column_beside_the_tooth_force() {
 
 #[test]
 fn check_says_which_teeth_have_a_separating_force() {
-    let summary = |scene: &dwell_scene::Scene| check(scene).unwrap().summary;
+    let summary = |scene: &dwell_scene::PlaneScene| check(scene).unwrap().summary;
     let none = summary(&case("planetary"));
     let expected =
         "  no separating force is modelled, as no `pressure-angle` is given: inner, outer\n";

@@ -2,10 +2,11 @@
 
 use crate::table::scene;
 use dwell_dynamics::Method;
-use dwell_findings::Record;
-use dwell_scene::Scene;
-use dwell_study::free_motion::compute::FreeMotion;
-use dwell_study::{MotionSolver, SolverSettings, compute_free_motion};
+use dwell_findings::RecordedNumber;
+use dwell_scene::PlaneScene;
+use dwell_study::{
+    FreeMotion, MotionSolver, SolverSettings, compute_free_motion, free_motion_page,
+};
 
 const SCENES: [&str; 3] = [
     include_str!("four-bar-near-limit.toml"),
@@ -13,12 +14,17 @@ const SCENES: [&str; 3] = [
     include_str!("six-bar-driven.toml"),
 ];
 
-fn run(scene: &Scene, solver: MotionSolver) -> FreeMotion {
+fn run(scene: &PlaneScene, solver: MotionSolver) -> FreeMotion {
     compute_free_motion(scene, &solver, &|_| {}).unwrap()
 }
 
-fn number(record: &Record, name: &str) -> f64 {
-    let of = record.numbers.iter().find(|number| number.name == name);
+/// The numbers that are said of a motion.
+fn recorded(scene: &PlaneScene, solver: MotionSolver) -> Vec<RecordedNumber> {
+    free_motion_page(scene, &solver, &|_| {}).unwrap().0.numbers
+}
+
+fn number(numbers: &[RecordedNumber], name: &str) -> f64 {
+    let of = numbers.iter().find(|number| number.name == name);
     of.unwrap_or_else(|| panic!("{name}")).value
 }
 
@@ -62,15 +68,13 @@ fn energies_to_an_accuracy_err_by_no_more_than_is_said() {
             let largest = exact.iter().copied().fold(0.0, f64::max);
             for accuracy in [1e-2, 1e-3, 1e-4, 1e-6] {
                 let sample_interval = None;
-                let found = run(
-                    &scene,
-                    MotionSolver::Accuracy {
-                        accuracy,
-                        sample_interval,
-                    },
-                );
-                let estimate = number(&found.record, "error.kinetic_energy");
-                let balance = number(&found.record, "energy_balance_error");
+                let solver = MotionSolver::Accuracy {
+                    accuracy,
+                    sample_interval,
+                };
+                let (found, numbers) = (run(&scene, solver), recorded(&scene, solver));
+                let estimate = number(&numbers, "error.kinetic_energy");
+                let balance = number(&numbers, "energy_balance_error");
                 let pairs = kinetic(&found);
                 let pairs = pairs.iter().zip(&exact);
                 let error = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest;

@@ -2,7 +2,7 @@
 
 use crate::table::PENDULUM;
 use dwell_dynamics::Method;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::{OperatingPoint, Outcome, SolverSettings, StudyError, equilibria, linearise};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -32,13 +32,13 @@ fn pendulum_at(angle: &str) -> String {
     format!("{PENDULUM}[assembly]\nphi = {angle}\n")
 }
 
-fn scene(text: &str) -> Scene {
-    Scene::parse("machine.toml", text).unwrap()
+fn scene(text: &str) -> PlaneScene {
+    PlaneScene::parse("machine.toml", text).unwrap()
 }
 
 /// The cycle of a scene that has one.
 fn cycle(
-    scene: &Scene,
+    scene: &PlaneScene,
     settings: &SolverSettings,
     fluctuation: Option<f64>,
 ) -> Result<Outcome, StudyError> {

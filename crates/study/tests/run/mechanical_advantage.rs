@@ -1,10 +1,10 @@
 //! Mechanical advantage and poles, on request.
 
 use crate::table::{Table, WEIGHTS, case, scene, table};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::Analysis;
 
-fn requesting(text: &str, variables: &str) -> Scene {
+fn requesting(text: &str, variables: &str) -> PlaneScene {
     let variables = format!("[requests]\nvariables = [{variables}]");
     scene(&text.replace("[requests]", &variables))
 }

@@ -2,7 +2,7 @@
 
 use crate::table::scene;
 use dwell_scene::SpaceScene;
-use dwell_study::{TableRequest, compute_period, compute_period_in_space, reduce};
+use dwell_study::{TableRequest, compute_period, reduce};
 use std::f64::consts::{PI, TAU};
 
 /// ∫ √(of(x′, y′)) dz from 0 to π, where tan x = √c tan z and tan y = tan z / √c: the trapezoidal rule.
@@ -85,7 +85,7 @@ fn hooke(c: f64, [input, output]: [f64; 2]) -> f64 {
          [motion]\ninitial-velocity = {{ q = 10 }}\nperiods = 1\n"
     );
     let scene = SpaceScene::parse("hooke.toml", &text).unwrap();
-    compute_period_in_space(&scene).unwrap().period
+    compute_period(&scene).unwrap().period
 }
 
 /// A Hooke joint near a right angle turns its output by half a turn while the input turns by cos β.

@@ -1,17 +1,17 @@
 //! What is not requested is neither written nor drawn, and the rest is as it was, to the last bit.
 
 use crate::table::{Table, WEIGHTS, analyse, case, file, scene};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::{Analysis, PictureFormat, Pictures, analyse_trajectory, no_progress};
 use std::collections::BTreeMap;
 
 /// The crank-rocker with these requests.
-fn with_requests(requests: &str) -> Scene {
+fn with_requests(requests: &str) -> PlaneScene {
     scene(&WEIGHTS.replace("[requests]", &format!("[requests]\n{requests}")))
 }
 
 /// By name, the lines of the extrema of a run.
-fn extrema(scene: &Scene, analysis: Analysis) -> BTreeMap<String, String> {
+fn extrema(scene: &PlaneScene, analysis: Analysis) -> BTreeMap<String, String> {
     let result = analyse(scene, analysis, 181);
     let text = file(&result, &format!("-{}-extrema.csv", analysis.name()));
     let name = |line: &str| (line.split(',').next().unwrap().to_owned(), line.to_owned());
@@ -25,7 +25,7 @@ fn listed_reactions_are_all_that_is_written_beside_the_actuator() {
     let few = with_requests("reactions = [\"A\", \"C.x\"]\npaths = [\"coupler.C\"]\n");
     let all = with_requests("paths = [\"coupler.C\"]\n");
     for analysis in WITH_FORCES {
-        let table = |scene: &Scene| {
+        let table = |scene: &PlaneScene| {
             let result = analyse(scene, analysis, 181);
             Table::parse(&file(&result, &format!("-{}.csv", analysis.name())))
         };
@@ -55,7 +55,8 @@ fn listed_reactions_are_all_that_is_written_beside_the_actuator() {
         assert!(all.names.len() > 3 * few.names.len());
     }
     // Kinematics has no reactions to list.
-    let table = |scene: &Scene| file(&analyse(scene, Analysis::Kinematics, 61), "-kinematics.csv");
+    let table =
+        |scene: &PlaneScene| file(&analyse(scene, Analysis::Kinematics, 61), "-kinematics.csv");
     assert_eq!(table(&few), table(&all));
 }
 

@@ -1,6 +1,6 @@
 //! A run's table, read back from its file.
 
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::{
     Analysis, PictureFormat, Pictures, TrajectoryOutcome, analyse_trajectory, no_progress,
 };
@@ -44,16 +44,16 @@ impl Table {
     }
 }
 
-pub(crate) fn case(name: &str) -> Scene {
+pub(crate) fn case(name: &str) -> PlaneScene {
     let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
-    Scene::read(home.join(name).join("scene.toml")).unwrap()
+    PlaneScene::read(home.join(name).join("scene.toml")).unwrap()
 }
 
-pub(crate) fn scene(text: &str) -> Scene {
-    Scene::parse("test.toml", text).unwrap()
+pub(crate) fn scene(text: &str) -> PlaneScene {
+    PlaneScene::parse("test.toml", text).unwrap()
 }
 
-pub(crate) fn analyse(scene: &Scene, command: Analysis, points: usize) -> TrajectoryOutcome {
+pub(crate) fn analyse(scene: &PlaneScene, command: Analysis, points: usize) -> TrajectoryOutcome {
     let mut result = analyse_trajectory(scene, command, Some(points), &no_progress).unwrap();
     result.outcome = result
         .outcome
@@ -72,7 +72,7 @@ pub(crate) fn file(result: &TrajectoryOutcome, end: &str) -> String {
 }
 
 /// The table of a run that reaches its end.
-pub(crate) fn table(scene: &Scene, command: Analysis, points: usize) -> Table {
+pub(crate) fn table(scene: &PlaneScene, command: Analysis, points: usize) -> Table {
     let result = analyse(scene, command, points);
     assert!(result.early_stop.is_none(), "{}", scene.name);
     Table::parse(&file(&result, &format!("-{}.csv", command.name())))

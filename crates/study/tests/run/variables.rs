@@ -1,7 +1,7 @@
 //! A name in `variables` is right for every analysis or for none.
 
 use crate::table::{PENDULUM, case, scene};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::{
     Analysis, OperatingPoint, SolverSettings, StudyError, analyse_trajectory, check,
     compute_closed_form, compute_cycle, compute_equilibria, compute_linearisation,
@@ -9,7 +9,7 @@ use dwell_study::{
 };
 
 /// A pendulum whose pin has a motor, with all that any analysis needs, which requests one variable.
-fn requesting(variable: &str) -> Scene {
+fn requesting(variable: &str) -> PlaneScene {
     scene(&format!(
         "{PENDULUM}[drives]\nmotor = {{ motor = \"phi\", voltage = 24, torque-constant = 0.5, \
          resistance = 1.2, inductance = 0.002 }}\n[motion]\nduration = 0.1\n\
@@ -18,7 +18,7 @@ fn requesting(variable: &str) -> Scene {
 }
 
 /// What each analysis says of a scene, without its result.
-fn analyses(scene: &Scene) -> Vec<(&'static str, Result<(), StudyError>)> {
+fn analyses(scene: &PlaneScene) -> Vec<(&'static str, Result<(), StudyError>)> {
     let trajectory = |analysis| analyse_trajectory(scene, analysis, None, &no_progress).map(drop);
     let settings = SolverSettings::default();
     let vary = ["bar.mass=1,2".to_owned()];

@@ -5,12 +5,12 @@ use super::scene;
 use dwell_dynamics::Method;
 use dwell_scene::SpaceScene;
 use dwell_study::{
-    FreeMotionInSpace, MotionSolver, PictureSpan, SolverSettings, compute_free_motion_in_space,
-    no_progress, simulate_in_space,
+    FreeMotion, MotionSolver, PictureSpan, SolverSettings, compute_free_motion, no_progress,
+    simulate_within,
 };
 
-fn computed(scene: &SpaceScene, solver: &MotionSolver) -> FreeMotionInSpace {
-    let done = compute_free_motion_in_space(scene, solver, &no_progress);
+fn computed(scene: &SpaceScene, solver: &MotionSolver) -> FreeMotion {
+    let done = compute_free_motion(scene, solver, &no_progress);
     done.unwrap_or_else(|e| panic!("{e:?}"))
 }
 
@@ -64,7 +64,7 @@ fn what_is_stiff_in_space_goes_by_bdf() {
         let other = computed(scene, &by_method(reference, 1e-13));
         let actuators = scene.mechanism.actuators.iter();
         let off = actuators.map(|actuator| {
-            let angle = |of: &FreeMotionInSpace| column(&of.computed.table, &actuator.name);
+            let angle = |of: &FreeMotion| column(&of.computed.table, &actuator.name);
             let pairs = angle(&found).into_iter().zip(angle(&other));
             pairs.fold(0.0_f64, |off, (a, b)| off.max((a - b).abs()))
         });
@@ -79,7 +79,7 @@ fn what_is_stiff_in_space_goes_by_bdf() {
 fn the_summary_says_how_the_accuracy_is_reached() {
     let scene = lasting("governor-a05", ("duration = 10", "duration = 0.1"));
     let span = PictureSpan::default();
-    let done = simulate_in_space(&scene, &to_accuracy(1e-5), None, span, &no_progress);
+    let done = simulate_within(&scene, &to_accuracy(1e-5), None, span, &no_progress);
     let outcome = done.unwrap_or_else(|e| panic!("{e:?}")).outcome;
     let text = &outcome.summary;
     for words in [

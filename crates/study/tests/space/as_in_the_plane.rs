@@ -3,11 +3,11 @@
 
 use super::trajectories::written;
 use dwell_findings::Table;
-use dwell_scene::{Scene, SpaceScene};
+use dwell_scene::{PlaneScene, SpaceScene};
 use dwell_study::{
     Analysis, MotionSolver, PictureSpan, SolverSettings, StudyError, TrajectoryOutcome,
-    analyse_in_space, analyse_trajectory, describe_scene_in_space, no_progress, reduce,
-    reduce_in_space, simulate_in_space, simulate_with,
+    analyse_trajectory, analyse_trajectory_within, describe_scene, no_progress, reduce,
+    simulate_with, simulate_within,
 };
 use std::fmt::Write as _;
 
@@ -77,14 +77,14 @@ const SLIDE: [&str; 2] = [
 ];
 
 /// The slider-crank with a driver, loads and a last section, in the plane and in space.
-pub(super) fn both(driver: [&str; 2], loads: [&str; 2], rest: &str) -> (Scene, SpaceScene) {
+pub(super) fn both(driver: [&str; 2], loads: [&str; 2], rest: &str) -> (PlaneScene, SpaceScene) {
     let text = |k: usize, bodies: &str| {
         format!(
             "{bodies}{}{}[loads]\n{}{}{rest}",
             driver[k], PLACES[k], WEIGHT[k], loads[k]
         )
     };
-    let plane = Scene::parse("plane", &text(0, PLANE)).unwrap_or_else(|e| panic!("{e}"));
+    let plane = PlaneScene::parse("plane", &text(0, PLANE)).unwrap_or_else(|e| panic!("{e}"));
     let space = SpaceScene::parse("space", &text(1, SPACE)).unwrap_or_else(|e| panic!("{e}"));
     (plane, space)
 }
@@ -105,7 +105,8 @@ pub(super) fn difference(one: &[f64], other: &[f64]) -> f64 {
 }
 
 pub(super) fn analysed(scene: &SpaceScene, analysis: Analysis) -> TrajectoryOutcome {
-    let done = analyse_in_space(scene, analysis, None, PictureSpan::default(), &no_progress);
+    let done =
+        analyse_trajectory_within(scene, analysis, None, PictureSpan::default(), &no_progress);
     done.unwrap_or_else(|e| panic!("{e:?}"))
 }
 
@@ -173,10 +174,10 @@ fn loads_travels_and_named_coordinates_have_the_columns_of_the_plane() {
 #[test]
 fn a_driven_slide_has_the_range_of_the_plane() {
     let (plane, space) = both(SLIDE, ["", ""], "");
-    let text = describe_scene_in_space(&space).unwrap_or_else(|e| panic!("{e:?}"));
+    let text = describe_scene(&space).unwrap_or_else(|e| panic!("{e:?}"));
     assert!(text.contains("limit positions at both ends"), "{text}");
     let plane = reduce(&plane, None, None).unwrap_or_else(|e| panic!("{e:?}"));
-    let space = reduce_in_space(&space, None, None).unwrap_or_else(|e| panic!("{e:?}"));
+    let space = reduce(&space, None, None).unwrap_or_else(|e| panic!("{e:?}"));
     let number = |of: &dwell_study::Outcome, name: &str| {
         let mut all = of.record.numbers.iter();
         all.find(|n| n.name == name).map(|n| n.value)
@@ -215,7 +216,7 @@ pub(super) fn simulated(
     solver: &MotionSolver,
     times: Option<&[f64]>,
 ) -> TrajectoryOutcome {
-    let done = simulate_in_space(scene, solver, times, PictureSpan::default(), &no_progress);
+    let done = simulate_within(scene, solver, times, PictureSpan::default(), &no_progress);
     done.unwrap_or_else(|e| panic!("{e:?}"))
 }
 
@@ -373,14 +374,15 @@ fn columns_are_requested_by_name() {
         Analysis::Statics,
         Analysis::Kinetostatics,
     ] {
-        let done = analyse_in_space(&space, analysis, None, PictureSpan::default(), &no_progress);
+        let done =
+            analyse_trajectory_within(&space, analysis, None, PictureSpan::default(), &no_progress);
         let error = message(&done.expect_err("refused"));
         assert!(
             error.contains("there is no column `rod.C.angle`"),
             "{error}"
         );
     }
-    assert!(describe_scene_in_space(&space).is_err());
+    assert!(describe_scene(&space).is_err());
 }
 
 /// `check` says what a scene has.
@@ -395,7 +397,7 @@ fn a_scene_is_described_with_its_loads_and_motions() {
         ],
         rest,
     );
-    let text = describe_scene_in_space(&space).unwrap_or_else(|e| panic!("{e:?}"));
+    let text = describe_scene(&space).unwrap_or_else(|e| panic!("{e:?}"));
     for line in [
         "overall size at the start: 0.3 by",
         "moving mass 4.1 kg, its centre at the start at (",

@@ -74,7 +74,7 @@ fn a_load_off_the_line_of_an_idle_body_is_refused_by_check() {
         "C = [0.25, 0.02, 0.14], P = [0.1, 0.1, 0] }\n[bodies.arm]",
     ) + "[loads]\npull = { force = \"rod.P\", direction = [0, 0, 1], magnitude = 5 }\n";
     let scene = SpaceScene::parse("leg.toml", &loaded).unwrap();
-    let refused = dwell_study::describe_scene_in_space(&scene).unwrap_err();
+    let refused = dwell_study::describe_scene(&scene).unwrap_err();
     let message = refused.to_string();
     assert!(message.contains("`pull` cannot act"), "{message}");
 }
@@ -92,7 +92,7 @@ fn nearly_parallel_axes_that_leave_no_freedom_are_named() {
             "I = { revolute = [\"bar.I\", \"foot.I\"], axis = [0, 1, 0] }",
         );
         let scene = SpaceScene::parse("leg.toml", &text).unwrap();
-        let refused = dwell_study::describe_scene_in_space(&scene).unwrap_err();
+        let refused = dwell_study::describe_scene(&scene).unwrap_err();
         let message = refused.to_string();
         assert!(
             message.contains("`G`") && message.contains("from parallel"),

@@ -6,8 +6,8 @@ use super::trajectories::written;
 use dwell_findings::Table;
 use dwell_scene::SpaceScene;
 use dwell_study::{
-    MotionSolver, PictureSpan, SolverSettings, TrajectoryOutcome, no_progress, simulate_in_space,
-    simulate_with,
+    MotionSolver, PictureSpan, SolverSettings, TrajectoryOutcome, no_progress, simulate_with,
+    simulate_within,
 };
 
 /// A motor with an inductance, one without, and a drive that is no motor between them.
@@ -19,7 +19,7 @@ const DRIVES: &str = "[drives]\n\
 
 fn simulated(scene: &SpaceScene) -> TrajectoryOutcome {
     let solver = MotionSolver::Settings(SolverSettings::default());
-    let done = simulate_in_space(scene, &solver, None, PictureSpan::default(), &no_progress);
+    let done = simulate_within(scene, &solver, None, PictureSpan::default(), &no_progress);
     done.unwrap_or_else(|e| panic!("{e:?}"))
 }
 

@@ -4,7 +4,7 @@
 use super::{SCENES, scene};
 use dwell_scene::SpaceScene;
 use dwell_study::output::Picture;
-use dwell_study::{Analysis, PictureSpan, analyse_in_space, no_progress, reduce_in_space};
+use dwell_study::{Analysis, PictureSpan, analyse_trajectory_within, no_progress, reduce};
 use rayon::prelude::*;
 
 /// What is wrong with some pictures, and their number.
@@ -46,7 +46,7 @@ fn of_scene(name: &&str) -> (Vec<String>, usize) {
         count += pictures;
     };
     // The reduced model needs one actuator.
-    if let Ok(done) = reduce_in_space(&scene, Some(61), None) {
+    if let Ok(done) = reduce(&scene, Some(61), None) {
         add("reduce", &done.pictures);
     }
     for analysis in [
@@ -55,7 +55,7 @@ fn of_scene(name: &&str) -> (Vec<String>, usize) {
         Analysis::Kinetostatics,
     ] {
         let span = PictureSpan::default();
-        let done = analyse_in_space(&scene, analysis, None, span, &no_progress);
+        let done = analyse_trajectory_within(&scene, analysis, None, span, &no_progress);
         let done = done.unwrap_or_else(|e| panic!("{name}: {e:?}"));
         add(analysis.name(), &done.outcome.pictures);
     }
@@ -79,7 +79,7 @@ fn pictures_of_a_sweep_say_where_the_swept_coordinate_is() {
         "\n[coordinate-sweep]\npoints = 61\ns = [0.3, 0.7]\n",
     );
     let span = PictureSpan::default();
-    let done = analyse_in_space(&scene, Analysis::Kinematics, None, span, &no_progress);
+    let done = analyse_trajectory_within(&scene, Analysis::Kinematics, None, span, &no_progress);
     let done = done.unwrap_or_else(|e| panic!("{e:?}"));
     let words = |ending: &str| {
         let mut pictures = done.outcome.pictures.iter();

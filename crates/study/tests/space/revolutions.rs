@@ -3,7 +3,7 @@
 use super::as_in_the_plane::{analysed, by_dop853, column, difference, simulated};
 use super::trajectories::written;
 use dwell_findings::Table;
-use dwell_scene::{Scene, SpaceScene};
+use dwell_scene::{PlaneScene, SpaceScene};
 use dwell_study::{
     Analysis, MotionSolver, SolverSettings, analyse_trajectory, no_progress, simulate_with,
 };
@@ -66,7 +66,7 @@ fn geared_wheels_count_all_revolutions() {
             inertia("2e-4"),
         )
     };
-    let plane = Scene::parse("plane", &text(false)).unwrap_or_else(|e| panic!("{e}"));
+    let plane = PlaneScene::parse("plane", &text(false)).unwrap_or_else(|e| panic!("{e}"));
     let space = SpaceScene::parse("space", &text(true)).unwrap_or_else(|e| panic!("{e}"));
     let names = ["psi", "coil.load_moment", "coil.power", "A.x", "C.y"];
     let mut largest = 0.0_f64;

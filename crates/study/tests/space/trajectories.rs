@@ -9,8 +9,8 @@ use dwell_kinetostatics::Magnitude;
 use dwell_kinetostatics::space::{Axes, Component, Load};
 use dwell_scene::SpaceScene;
 use dwell_study::{
-    Analysis, MotionSolver, PictureSpan, SolverSettings, TrajectoryOutcome, analyse_in_space,
-    compute_free_motion_in_space, no_progress,
+    Analysis, MotionSolver, PictureSpan, SolverSettings, TrajectoryOutcome,
+    analyse_trajectory_within, compute_free_motion, no_progress,
 };
 use dwell_verify::space::DenseSpace;
 
@@ -271,10 +271,11 @@ fn compare_forces(scene: &SpaceScene, row: &Row<'_>, dense: &DenseSpace, found: 
 
 fn compare(name: &str, analysis: Analysis) -> usize {
     let scene = accelerated(name);
-    let done = analyse_in_space(&scene, analysis, None, PictureSpan::default(), &no_progress);
+    let done =
+        analyse_trajectory_within(&scene, analysis, None, PictureSpan::default(), &no_progress);
     let done = done.unwrap_or_else(|e| panic!("{name}: {e:?}"));
     assert!(done.early_stop.is_none(), "{name}");
-    let kinematics = analyse_in_space(
+    let kinematics = analyse_trajectory_within(
         &scene,
         Analysis::Kinematics,
         None,
@@ -361,7 +362,7 @@ fn forces_at_rest_and_in_motion_are_those_of_the_dense_equations() {
 #[test]
 fn what_redundant_constraints_share_is_not_written() {
     let scene = accelerated("bennett");
-    let done = analyse_in_space(
+    let done = analyse_trajectory_within(
         &scene,
         Analysis::Kinetostatics,
         None,
@@ -384,7 +385,7 @@ fn what_redundant_constraints_share_is_not_written() {
 fn gears_are_reduced_over_their_whole_period() {
     // Both ends of six revolutions are one position; its rounding is found in 32 digits.
     let scene = scene("bevel-differential-held", "");
-    let reduction = dwell_study::compute_reduction_in_space(&scene, Some(7)).unwrap();
+    let reduction = dwell_study::compute_reduction(&scene, Some(7)).unwrap();
     let all = &reduction.curves.coefficients;
     assert!((all[0].m - all[6].m).abs() < 1e-14 * all[0].m);
 }
@@ -395,7 +396,7 @@ fn rows_end_where_a_load_leaves_its_table() {
     let driven = "push = { torque = \"crank\", axis = [0, 0, 1], magnitude = { table = [[0, 2], [1, 3]], of = \"q\" } }\n\
                   [coordinate-sweep]\nq = [0.5, 1.5]\n";
     let scene = scene("rssr", driven);
-    let done = analyse_in_space(
+    let done = analyse_trajectory_within(
         &scene,
         Analysis::Statics,
         Some(11),
@@ -432,7 +433,7 @@ events = { early = { reaches = "x", value = 0.2 }, late = { reaches = "x", value
         ..SolverSettings::default()
     };
     let solver = MotionSolver::Settings(settings);
-    let motion = compute_free_motion_in_space(&scene, &solver, &no_progress).unwrap();
+    let motion = compute_free_motion(&scene, &solver, &no_progress).unwrap();
     let rows = &motion.computed.table.rows;
     let names: Vec<&str> = motion.events.iter().map(|(_, name)| &name[..]).collect();
     assert!(

@@ -1,13 +1,13 @@
 //! Friction that holds makes equilibria intervals, whose ends are where the static limit is reached.
 
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::compute_equilibria;
 
 const G: f64 = 9.81;
 
 /// The intervals in which a scene of one coordinate holds, rad or m.
 fn intervals(text: &str) -> Vec<[f64; 2]> {
-    let scene = Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e:?}"));
+    let scene = PlaneScene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e:?}"));
     let results = compute_equilibria(&scene).unwrap_or_else(|e| panic!("{e}"));
     let neutral = results.found.iter().flat_map(|e| &e.neutral);
     neutral.filter_map(|direction| direction.extent).collect()

@@ -2,7 +2,7 @@
 
 use crate::{run, tolerance};
 use dwell_dynamics::{ContactEvent, Method, StopChange};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::models::{build_machine, with_drive_loads};
 use std::f64::consts::PI;
 
@@ -60,7 +60,7 @@ duration = 3.0
 "#
     );
     let about_pin = inertia + mass * arm * arm;
-    let scene = Scene::parse("scene.toml", &text).unwrap_or_else(|e| panic!("{e:?}"));
+    let scene = PlaneScene::parse("scene.toml", &text).unwrap_or_else(|e| panic!("{e:?}"));
     let loaded = with_drive_loads(&scene).unwrap_or_else(|e| panic!("{e}"));
     let spec = scene.motion.as_ref().expect("a motion");
     let machine = build_machine(&loaded, spec, &scene.requests.reactions).expect("a machine");

@@ -14,7 +14,7 @@ mod yielding;
 use dwell_dynamics::{
     ContactEvent, ContactMode, DynamicsError, Machine, Method, OdeState, Options, StopChange,
 };
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
 use dwell_study::models::with_drive_loads;
 
@@ -43,7 +43,7 @@ fn attempt(text: &str, method: Method, rtol: f64) -> Option<DynamicsError> {
 
 /// A motion as far as it comes, with the error that ends it.
 fn integrate(text: &str, method: Method, rtol: f64) -> (Run, Option<DynamicsError>) {
-    let scene = Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e:?}"));
+    let scene = PlaneScene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e:?}"));
     let loaded = with_drive_loads(&scene).unwrap_or_else(|e| panic!("{e}"));
     let spec = scene.motion.as_ref().expect("a motion");
     let problem = FreeMotionProblem::new(&scene, &loaded, spec).unwrap_or_else(|e| panic!("{e}"));

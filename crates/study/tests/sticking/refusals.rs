@@ -1,6 +1,6 @@
 //! What friction that holds is refused for, and slips in a scene: by the name of the joint, with a place in the file.
 
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::{OperatingPoint, compute_linearisation};
 
 const SCENE: &str = r#"
@@ -26,13 +26,13 @@ duration = 1
 
 /// Message, help and labels of the first error of a scene.
 fn error_of(text: &str) -> String {
-    let error = Scene::parse("scene.toml", text).expect_err("an error");
+    let error = PlaneScene::parse("scene.toml", text).expect_err("an error");
     format!("{error:?}")
 }
 
 #[test]
 fn a_linearised_motion_names_the_joint_that_holds() {
-    let scene = Scene::parse("scene.toml", SCENE).expect("a scene");
+    let scene = PlaneScene::parse("scene.toml", SCENE).expect("a scene");
     let error = compute_linearisation(&scene, OperatingPoint::InitialState);
     let Err(error) = error else {
         panic!("it is refused");
@@ -61,10 +61,10 @@ fn a_static_coefficient_beside_a_regularization_speed_has_no_effect_and_says_so(
         "coefficient = 0.2,",
         "coefficient = 0.2, static-coefficient = 0.3, regularization-speed = 0.1,",
     );
-    let scene = Scene::parse("scene.toml", &text).expect("a scene");
+    let scene = PlaneScene::parse("scene.toml", &text).expect("a scene");
     let said = format!("{:?}", scene.warnings);
     assert!(said.contains("does not hold at rest"), "{said}");
     // Without it nothing is said.
-    let plain = Scene::parse("scene.toml", SCENE).expect("a scene");
+    let plain = PlaneScene::parse("scene.toml", SCENE).expect("a scene");
     assert!(plain.warnings.is_empty());
 }

@@ -2,7 +2,7 @@
 
 use crate::{Run, run, tolerance};
 use dwell_dynamics::{ContactEvent, Method, StopChange};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 const G: f64 = 9.81;
 
@@ -255,12 +255,12 @@ fn careless_stops_are_refused() {
         ("min = 0.0, bounce = 1", "unknown key `bounce`"),
     ] {
         let text = ball(stop, "", "duration = 1.0");
-        let error = Scene::parse("scene.toml", &text).expect_err(stop);
+        let error = PlaneScene::parse("scene.toml", &text).expect_err(stop);
         assert!(format!("{error:?}").contains(expected), "{error:?}");
     }
     let unknown =
         ball("min = 0.0", "", "duration = 1.0").replace("coordinate = \"z\"", "coordinate = \"y\"");
-    let error = Scene::parse("scene.toml", &unknown).expect_err("no actuator");
+    let error = PlaneScene::parse("scene.toml", &unknown).expect_err("no actuator");
     assert!(
         format!("{error:?}").contains("there is no actuator `y`"),
         "{error:?}"

@@ -2,7 +2,7 @@
 
 use crate::{run, tolerance};
 use dwell_dynamics::{Method, StopChange};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::f64::consts::PI;
 
 const G: f64 = 9.81;
@@ -175,7 +175,7 @@ fn careless_yielding_stops_are_refused() {
         ),
     ] {
         let text = ball(G, stop, "duration = 1.0");
-        let error = Scene::parse("scene.toml", &text).expect_err(stop);
+        let error = PlaneScene::parse("scene.toml", &text).expect_err(stop);
         assert!(format!("{error:?}").contains(expected), "{error:?}");
     }
 }

@@ -3,11 +3,11 @@
 use crate::report_parts::table;
 use dwell_geometry::BodyId;
 use dwell_report::Block;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::number_format::number;
 
 /// Heading and table.
-pub(super) fn blocks(scene: &Scene) -> [Block; 3] {
+pub(super) fn blocks(scene: &PlaneScene) -> [Block; 3] {
     let bodies = 0..scene.mechanism.bodies.len();
     [
         Block::Heading("Dimensions and masses".to_owned()),
@@ -22,7 +22,7 @@ pub(super) fn blocks(scene: &Scene) -> [Block; 3] {
     ]
 }
 
-fn body_row(scene: &Scene, body: usize) -> Vec<String> {
+fn body_row(scene: &PlaneScene, body: usize) -> Vec<String> {
     let pair = |x: f64, y: f64| format!("({}, {})", number(x), number(y));
     let points = scene.points.get(body).into_iter().flatten();
     let points = points.map(|(name, at)| format!("{name} {}", pair(at.x, at.y)));

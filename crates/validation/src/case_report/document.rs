@@ -8,7 +8,7 @@ use crate::checked::analysis::CaseAnalysis;
 use crate::report_parts::{TextColumn, figure_blocks, result_line, table_of};
 use dwell_findings::Finding;
 use dwell_report::{Block, Document, Figure};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::CalibrationResult;
 use dwell_study::number_format::count;
 use dwell_study::output::provenance_line;
@@ -16,7 +16,7 @@ use dwell_verify::{CheckedFreeMotion, ToleranceRun};
 
 /// The document with its figures.
 pub(super) fn document(
-    scene: &Scene,
+    scene: &PlaneScene,
     reference: &Reference,
     figures: &[Figure],
     analysis: &CaseAnalysis<'_>,
@@ -83,7 +83,7 @@ fn calibration_sentence(c: &CalibrationResult) -> String {
     )
 }
 
-fn dwell_sentence(scene: &Scene, dwell: &Dwell) -> String {
+fn dwell_sentence(scene: &PlaneScene, dwell: &Dwell) -> String {
     let body = scene.mechanism.body_name(dwell.body);
     let [variation, swing] = [dwell.variation, dwell.swing].map(f64::to_degrees);
     let [from, to] = [dwell.from, dwell.to].map(f64::to_degrees);

@@ -9,7 +9,7 @@ use crate::error::ValidationError;
 use dwell_dynamics::{Orbit, ReducedState};
 use dwell_geometry::Range;
 use dwell_kinetostatics::ReducedModel;
-use dwell_scene::{Calibration, Scene};
+use dwell_scene::{Calibration, PlaneScene};
 use dwell_study::{PreparedScene, find_value};
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -103,7 +103,7 @@ impl Family {
     ///
     /// # Errors
     /// [`ValidationError::Reference`] when the file cannot be read, or names a number that the scene does not have.
-    pub(super) fn read(folder: &Path, scene: &Scene) -> Result<Option<Self>, ValidationError> {
+    pub(super) fn read(folder: &Path, scene: &PlaneScene) -> Result<Option<Self>, ValidationError> {
         let path = folder.join(FILE);
         let refuse = |reason: String| ValidationError::Reference {
             path: path.display().to_string(),
@@ -124,7 +124,7 @@ impl Family {
         for number in described.drawn.iter().flat_map(|d| d.powers.keys()) {
             scene.value(number).map_err(|e| refuse(e.to_string()))?;
         }
-        let member = |scene: &Scene| Member::new(scene, calibration, described.shortest_dwell);
+        let member = |scene: &PlaneScene| Member::new(scene, calibration, described.shortest_dwell);
         let reconstruction = member(scene)
             .map_err(|why| refuse(format!("the scene itself is no member: {why:?}")))?;
         let drawn = (0..described.draws).into_par_iter().map(|k| {
@@ -150,7 +150,7 @@ impl Family {
 
 impl Description {
     /// The scene with the numbers of a draw; none where it cannot be assembled.
-    fn varied(&self, scene: &Scene, draw: usize) -> Option<Scene> {
+    fn varied(&self, scene: &PlaneScene, draw: usize) -> Option<PlaneScene> {
         let mut values: BTreeMap<&str, f64> = BTreeMap::new();
         for (number, prime) in self.drawn.iter().zip(PRIMES) {
             let [from, to] = number.factors;
@@ -170,7 +170,11 @@ impl Description {
 
 impl Member {
     /// The member of a scene, unless it is none.
-    fn new(scene: &Scene, calibration: &Calibration, shortest_dwell: f64) -> Result<Self, LeftOut> {
+    fn new(
+        scene: &PlaneScene,
+        calibration: &Calibration,
+        shortest_dwell: f64,
+    ) -> Result<Self, LeftOut> {
         let dwell = {
             let prepared = PreparedScene::new(scene).map_err(|_| LeftOut::Revolution)?;
             if prepared.model.range() != Range::Full {
@@ -252,9 +256,9 @@ fn revolution(prepared: &PreparedScene<'_>, start: ReducedState) -> Option<Vec<M
 mod tests {
     use super::*;
 
-    fn single_dwell() -> (std::path::PathBuf, Scene) {
+    fn single_dwell() -> (std::path::PathBuf, PlaneScene) {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/single-dwell");
-        let scene = Scene::read(folder.join("scene.toml")).expect("the scene");
+        let scene = PlaneScene::read(folder.join("scene.toml")).expect("the scene");
         (folder, scene)
     }
 

@@ -3,7 +3,7 @@
 use super::family::{DrawnNumber, Family, Member, MemberRow, part_below};
 use crate::report_parts::table;
 use dwell_report::Block;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::number_format::{count, digits};
 use std::f64::consts::{PI, TAU};
 
@@ -26,7 +26,7 @@ struct Observable<'a> {
 }
 
 /// Heading, sentences and tables.
-pub(super) fn blocks(scene: &Scene, family: &Family) -> Vec<Block> {
+pub(super) fn blocks(scene: &PlaneScene, family: &Family) -> Vec<Block> {
     let observables = observables(scene);
     vec![
         Block::Heading("What the lost dimensions decide".to_owned()),
@@ -70,7 +70,7 @@ fn drawn_row(number: &DrawnNumber) -> Vec<String> {
     vec![number.name.clone(), format!("{from} and {to} times")]
 }
 
-fn observables(scene: &Scene) -> Vec<Observable<'_>> {
+fn observables(scene: &PlaneScene) -> Vec<Observable<'_>> {
     let reaction = scene.requests.reactions.first();
     let (reaction, force) = reaction.map_or(("reaction".to_owned(), "N"), |r| {
         (scene.mechanism.reaction_name(*r), r.component.unit())

@@ -6,7 +6,7 @@ use crate::report_parts::{self, NumberColumn};
 use dwell_dynamics::Method;
 use dwell_findings::all_pass;
 use dwell_report::{FindingRecord, Number, Table, json};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_verify::{CheckedFreeMotion, ToleranceRun};
 use serde::Serialize;
 
@@ -54,7 +54,7 @@ struct ToleranceRunRow {
 
 /// The JSON text. What only the reduced model has is null or empty for other cases.
 pub(super) fn numbers(
-    scene: &Scene,
+    scene: &PlaneScene,
     analysis: &CaseAnalysis<'_>,
 ) -> Result<String, ValidationError> {
     let reduced = analysis.reduced.as_ref();

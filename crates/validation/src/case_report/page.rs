@@ -4,11 +4,11 @@ use super::validate::summary;
 use crate::checked::analysis::CaseAnalysis;
 use dwell_page::{FileLink, Page};
 use dwell_report::Figure;
-use dwell_scene::Scene;
-use dwell_study::page::{scene_page, trajectory_page};
+use dwell_scene::PlaneScene;
+use dwell_study::page::scene_page;
 use dwell_study::{
-    Analysis, MotionSolver, SolverSettings, StudyError, compute_free_motion, compute_trajectory,
-    no_progress,
+    Analysis, MotionSolver, SolverSettings, StudyError, free_motion_page, no_progress,
+    trajectory_page,
 };
 
 /// The page, as HTML. Its rows are those of the free motion of the scene, or else of its prescribed motion or its sweep.
@@ -16,7 +16,7 @@ use dwell_study::{
 /// # Errors
 /// [`StudyError::Page`] where it cannot be made.
 pub(super) fn page(
-    scene: &Scene,
+    scene: &PlaneScene,
     analysis: &CaseAnalysis<'_>,
     figures: &[Figure],
     tables: &[String],
@@ -51,16 +51,16 @@ pub(super) fn page(
 }
 
 /// The rows of the case. Where none can be computed its findings say why.
-fn rows(scene: &Scene) -> Page {
+fn rows(scene: &PlaneScene) -> Page {
     let settings = MotionSolver::Settings(SolverSettings::default());
     if scene.motion.is_some()
-        && let Ok(motion) = compute_free_motion(scene, &settings, &no_progress)
+        && let Ok((page, _)) = free_motion_page(scene, &settings, &no_progress)
     {
-        return trajectory_page(&motion.loaded_scene, &motion.computed);
+        return page;
     }
     for analysis in [Analysis::Kinetostatics, Analysis::Kinematics] {
-        if let Ok(computed) = compute_trajectory(scene, analysis, None, &no_progress) {
-            return trajectory_page(scene, &computed);
+        if let Ok((page, _)) = trajectory_page(scene, analysis, None, &no_progress) {
+            return page;
         }
     }
     scene_page(scene, "validate")

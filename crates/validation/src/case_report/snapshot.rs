@@ -5,7 +5,7 @@ use crate::checked::multibody::FreeMotionRun;
 use crate::checked::states::CheckedStates;
 use dwell_findings::Finding;
 use dwell_kinetostatics::ReducedModel;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 const PRINTED_STATES: usize = 8;
 
 /// The whole snapshot.
-pub(super) fn snapshot(scene: &Scene, analysis: &CaseAnalysis<'_>) -> String {
+pub(super) fn snapshot(scene: &PlaneScene, analysis: &CaseAnalysis<'_>) -> String {
     let values = match &analysis.reduced {
         Some(reduced) => reduced_values(reduced),
         None => state_values(scene, &analysis.states, analysis.free_motion.as_ref()),
@@ -61,7 +61,11 @@ fn reduced_values(reduced: &ReducedAnalysis<'_>) -> String {
 }
 
 /// Some states, and the end of a free motion that the scene does not prescribe.
-fn state_values(scene: &Scene, checked: &CheckedStates, run: Option<&FreeMotionRun>) -> String {
+fn state_values(
+    scene: &PlaneScene,
+    checked: &CheckedStates,
+    run: Option<&FreeMotionRun>,
+) -> String {
     let mechanism = &scene.mechanism;
     let reactions = mechanism.reactions();
     let drawn = &checked.states[..checked.drawn_count];
@@ -107,7 +111,7 @@ fn state_values(scene: &Scene, checked: &CheckedStates, run: Option<&FreeMotionR
 }
 
 /// Where the free motion ends, to the digits that are stable.
-fn end_of_motion(scene: &Scene, run: &FreeMotionRun) -> String {
+fn end_of_motion(scene: &PlaneScene, run: &FreeMotionRun) -> String {
     let (Some(last), Some(coordinates)) = (run.steps.last(), run.coordinates.last()) else {
         return String::new();
     };

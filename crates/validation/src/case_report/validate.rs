@@ -13,7 +13,7 @@ use crate::error::ValidationError;
 use crate::report_parts::findings_text;
 use dwell_findings::{Check, Record};
 use dwell_report::{Figure, Files, TableExport as _};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::output::Picture;
 use dwell_study::{Outcome, Progress, Step, reduce};
 use std::path::Path;
@@ -40,7 +40,7 @@ pub struct Validation {
 /// # Errors
 /// [`ValidationError`] when the scene or the reference cannot be used. A failed check is no error.
 pub fn validate(
-    scene: &Scene,
+    scene: &PlaneScene,
     folder: &Path,
     progress: Progress<'_>,
 ) -> Result<Validation, ValidationError> {
@@ -52,7 +52,7 @@ pub fn validate(
 /// # Errors
 /// As [`validate`].
 pub fn validate_program(
-    scene: &Scene,
+    scene: &PlaneScene,
     folder: &Path,
     program: &Path,
     progress: Progress<'_>,
@@ -61,7 +61,7 @@ pub fn validate_program(
 }
 
 fn validate_case(
-    scene: &Scene,
+    scene: &PlaneScene,
     folder: &Path,
     program: Option<&Path>,
     progress: Progress<'_>,
@@ -117,7 +117,7 @@ fn validate_case(
 }
 
 /// How many findings pass, those that fail, and the period.
-pub(super) fn summary(scene: &Scene, analysis: &CaseAnalysis<'_>) -> String {
+pub(super) fn summary(scene: &PlaneScene, analysis: &CaseAnalysis<'_>) -> String {
     let mut text = findings_text(&scene.name, &analysis.findings, "");
     let Some(reduced) = &analysis.reduced else {
         return text;
@@ -136,7 +136,7 @@ pub(super) fn summary(scene: &Scene, analysis: &CaseAnalysis<'_>) -> String {
 
 /// All figures, and the dwell that the drawing of the mechanism shows.
 fn case_figures(
-    scene: &Scene,
+    scene: &PlaneScene,
     analysis: &CaseAnalysis<'_>,
     family: Option<&Family>,
 ) -> Result<(Vec<Figure>, Option<Dwell>), ValidationError> {

@@ -4,7 +4,7 @@ use dwell_geometry::{ActuatorId, BodyId, Pose, Vec2};
 use dwell_kinetostatics::{
     EvaluatedState, InverseDynamics, KinematicState, KinetostaticsError, Model, Workspace,
 };
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{PlaneScene, SceneLocation};
 use dwell_study::StudyError;
 use dwell_study::explain::explain_position;
 use dwell_study::models::loaded_model;
@@ -28,7 +28,7 @@ pub(crate) struct StateRequest {
 /// A scene's model with every reaction, under its loads, stepping from state to state.
 #[derive(Debug)]
 pub(crate) struct ModelStates<'a> {
-    scene: &'a Scene,
+    scene: &'a PlaneScene,
     pub(crate) model: Model,
     reached: ReachedPose,
     /// By body: its angle, rad, whole revolutions counted from the assembly on.
@@ -51,7 +51,7 @@ struct ReachedPose {
 impl ReachedPose {
     fn evaluate<'s>(
         &'s mut self,
-        scene: &Scene,
+        scene: &PlaneScene,
         model: &'s Model,
         StateRequest { t, q_dot, .. }: &StateRequest,
         q_ddot: &[f64],
@@ -79,7 +79,7 @@ fn kinematic_state<'s>(
 /// A state of motion that was evaluated.
 #[derive(Debug)]
 pub(crate) struct StateValues<'m> {
-    pub(crate) scene: &'m Scene,
+    pub(crate) scene: &'m PlaneScene,
     pub(crate) state: EvaluatedState<'m>,
     pub(crate) q_ddot: Vec<f64>,
     /// The frames of all bodies.
@@ -100,7 +100,7 @@ impl<'a> ModelStates<'a> {
     ///
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be put together or a load does not fit.
-    pub(crate) fn new(scene: &'a Scene) -> Result<Self, StudyError> {
+    pub(crate) fn new(scene: &'a PlaneScene) -> Result<Self, StudyError> {
         let model = loaded_model(scene)?;
         let size = scene.mechanism.size();
         let step = |a: usize| match model.plan().is_angle(a) {
@@ -275,7 +275,7 @@ impl<'a> ModelStates<'a> {
 }
 
 /// The error with the names of the scene.
-fn explain(scene: &Scene, model: &Model, error: &KinetostaticsError) -> StudyError {
+fn explain(scene: &PlaneScene, model: &Model, error: &KinetostaticsError) -> StudyError {
     if let KinetostaticsError::Position(error) = error {
         return explain_position(scene, model.plan(), error);
     }

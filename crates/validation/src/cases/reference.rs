@@ -7,7 +7,7 @@ mod tolerances;
 use crate::error::ValidationError;
 use dwell_findings::Finding;
 use dwell_geometry::{BodyId, Vec2};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_verify::checks::{PublishedPoint, PublishedSample};
 pub(crate) use kinds::{SourceKind, SourceKinds};
 use serde_json::{Map, Value};
@@ -92,7 +92,7 @@ const SAMPLE_KEYS: [&str; 5] = ["phi_rad", "phi_deg", "m1_kg_m2", "half_dm1", "r
 impl Reference {
     /// Reads the file of a case; an absent one is an empty reference. A key that is not known
     /// is an error: a value that is never compared would be taken for agreement.
-    pub(crate) fn read(folder: &Path, scene: &Scene) -> Result<Self, ValidationError> {
+    pub(crate) fn read(folder: &Path, scene: &PlaneScene) -> Result<Self, ValidationError> {
         let path = folder.join(FILE);
         if !path.exists() {
             return Ok(Self::default());
@@ -127,7 +127,7 @@ impl Reference {
         applied.map_err(|reason| ValidationError::Reference { path, reason })
     }
 
-    fn from_value(value: &Value, scene: &Scene) -> Result<Self, String> {
+    fn from_value(value: &Value, scene: &PlaneScene) -> Result<Self, String> {
         check_keys(object(value, "the file")?, &KEYS)?;
         let has_values = |s: &Value| s.get("values").is_some();
         let all = list(value, "samples")?;
@@ -257,7 +257,7 @@ fn optional(object: &Value, key: &str) -> Result<Option<f64>, String> {
     }
 }
 
-fn sample(value: &Value, scene: &Scene) -> Result<PublishedSample, String> {
+fn sample(value: &Value, scene: &PlaneScene) -> Result<PublishedSample, String> {
     let fields = object(value, "it")?;
     let q = match (optional(value, "phi_rad")?, optional(value, "phi_deg")?) {
         (None, None) => return Err("neither `phi_rad` nor `phi_deg` is given".to_owned()),
@@ -284,7 +284,7 @@ fn sample(value: &Value, scene: &Scene) -> Result<PublishedSample, String> {
 }
 
 /// The reactions of a sample: (index in the mechanism, a, b).
-fn reactions(value: &Value, scene: &Scene) -> Result<Vec<(usize, f64, f64)>, String> {
+fn reactions(value: &Value, scene: &PlaneScene) -> Result<Vec<(usize, f64, f64)>, String> {
     if value.is_null() {
         return Ok(Vec::new());
     }
@@ -311,7 +311,7 @@ fn reactions(value: &Value, scene: &Scene) -> Result<Vec<(usize, f64, f64)>, Str
 }
 
 /// The reactions that the scene gives over the angle of a body.
-fn known_names(scene: &Scene) -> Vec<&str> {
+fn known_names(scene: &PlaneScene) -> Vec<&str> {
     let varying = scene.varying_inertias.iter();
     let reactions = varying.flat_map(|varying| &varying.reactions);
     reactions.map(|reaction| reaction.name.as_str()).collect()
@@ -321,7 +321,7 @@ fn known_names(scene: &Scene) -> Vec<&str> {
 fn known_samples(
     all: &[Value],
     samples: &[PublishedSample],
-    scene: &Scene,
+    scene: &PlaneScene,
 ) -> Result<Vec<KnownSample>, String> {
     let mut found = Vec::new();
     for (value, sample) in all.iter().zip(samples) {
@@ -343,14 +343,14 @@ fn known_samples(
 
 /// Whether a key gives the angle of a body, such as `theta_guide_rad`. It is not compared: the
 /// points are.
-fn is_angle(key: &str, scene: &Scene) -> bool {
+fn is_angle(key: &str, scene: &PlaneScene) -> bool {
     let body = key.strip_prefix("theta_");
     let body = body.and_then(|k| k.strip_suffix("_rad"));
     body.is_some_and(|body| scene.mechanism.bodies.iter().any(|b| b.name == body))
 }
 
 /// A point is published by its name alone, such as `P_m`: the first body that has it is meant.
-fn point(key: &str, at: &Value, scene: &Scene) -> Result<PublishedPoint, String> {
+fn point(key: &str, at: &Value, scene: &PlaneScene) -> Result<PublishedPoint, String> {
     let Some(name) = key.strip_suffix("_m") else {
         let known = SAMPLE_KEYS.join(", ");
         return Err(format!(

@@ -3,7 +3,7 @@
 use crate::cases::model_states::StateValues;
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, Component, Coordinate, JointId, Vec2};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// The kinds of quantities, as findings call them: each is compared relative to the largest of its unit.
 pub(crate) const KINDS: [&str; 5] = [
@@ -36,7 +36,7 @@ fn position(words: &[&str], word: &str) -> Option<usize> {
 
 impl StateQuantity {
     /// The quantity of a name in a scene; none if it has no such quantity.
-    pub(crate) fn find(scene: &Scene, name: &str) -> Option<Self> {
+    pub(crate) fn find(scene: &PlaneScene, name: &str) -> Option<Self> {
         let coordinate = |name, order| Some(Self::Coordinate(scene.coordinate(name)?, order));
         let Some((whose, what)) = name.split_once('.') else {
             return coordinate(name, 0);
@@ -51,7 +51,7 @@ impl StateQuantity {
             })
     }
 
-    fn of_body(scene: &Scene, whose: &str, what: &str) -> Option<Self> {
+    fn of_body(scene: &PlaneScene, whose: &str, what: &str) -> Option<Self> {
         let mut bodies = scene.mechanism.bodies.iter();
         let body = bodies.position(|b| b.name == whose)?;
         let id = BodyId(body);
@@ -65,7 +65,7 @@ impl StateQuantity {
         Some(Self::PointCoordinate(id, *at, part))
     }
 
-    fn of_joint(scene: &Scene, whose: &str, what: &str, name: &str) -> Option<Self> {
+    fn of_joint(scene: &PlaneScene, whose: &str, what: &str, name: &str) -> Option<Self> {
         let mechanism = &scene.mechanism;
         if what == "travel" {
             let joint = mechanism.joints.iter().position(|j| j.name == whose)?;
@@ -90,7 +90,7 @@ impl StateQuantity {
     }
 
     /// Its unit.
-    pub(crate) fn unit(self, scene: &Scene) -> &'static str {
+    pub(crate) fn unit(self, scene: &PlaneScene) -> &'static str {
         const ANGLES: [&str; 3] = ["rad", "rad/s", "rad/s2"];
         const LENGTHS: [&str; 3] = ["m", "m/s", "m/s2"];
         match self {

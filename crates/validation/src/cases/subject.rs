@@ -2,7 +2,7 @@
 
 use dwell_geometry::PositionError;
 use dwell_kinetostatics::{ExactModel, ReducedModel};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::StudyError;
 use dwell_study::models::reduced_model;
 use dwell_verify::{Coefficients, InverseDynamics, Subject, SubjectError};
@@ -18,7 +18,7 @@ impl PlanSubject {
     ///
     /// # Errors
     /// As [`reduced_model`].
-    pub fn new(scene: &Scene) -> Result<Self, StudyError> {
+    pub fn new(scene: &PlaneScene) -> Result<Self, StudyError> {
         Ok(Self {
             exact: reduced_model(scene, &scene.mechanism.reactions())?,
         })

@@ -13,7 +13,7 @@ use crate::written;
 use dwell_dynamics::DynamicsError;
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::ReducedModel;
-use dwell_scene::{MotionDuration, Scene};
+use dwell_scene::{MotionDuration, PlaneScene};
 use dwell_study::explain::explain_motion;
 use dwell_study::reduce::compute::ReducedCurves;
 use dwell_study::{CalibrationResult, PreparedScene, find_value, symbolic_findings};
@@ -58,7 +58,7 @@ pub(crate) struct ReducedAnalysis<'a> {
 /// # Errors
 /// [`ValidationError`] when the scene or the reference cannot be used. A failed check is no error.
 pub(crate) fn analyse<'a>(
-    scene: &'a Scene,
+    scene: &'a PlaneScene,
     reference: &Reference,
     program: Option<&Path>,
     done: &(dyn Fn(&str) + Sync),
@@ -127,7 +127,7 @@ fn in_order(reduced: bool, mut findings: [Vec<Finding>; 6]) -> Vec<Finding> {
 }
 
 /// Whether the reduced model describes the whole case: it has no loads, drives and laws.
-fn is_reduced(scene: &Scene) -> bool {
+fn is_reduced(scene: &PlaneScene) -> bool {
     let motion = scene.motion.as_ref();
     scene.mechanism.actuators.len() == 1
         && scene.loads.is_empty()
@@ -137,7 +137,7 @@ fn is_reduced(scene: &Scene) -> bool {
 
 /// The checks without findings, and in a few words why.
 fn not_applicable(
-    scene: &Scene,
+    scene: &PlaneScene,
     findings: &[Finding],
     period: Option<&'static str>,
 ) -> Vec<(Check, &'static str)> {
@@ -159,7 +159,7 @@ fn not_applicable(
 /// The checks of the reduced model at single positions, on every reaction of every joint. The reduced model does not
 /// depend on loads.
 fn check_reduced_model(
-    scene: &Scene,
+    scene: &PlaneScene,
     reference: &Reference,
 ) -> Result<(Vec<Finding>, Vec<ErrorCurve>), ValidationError> {
     if scene.mechanism.actuators.len() != 1 {

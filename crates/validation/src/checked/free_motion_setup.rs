@@ -2,7 +2,7 @@
 
 use crate::cases::reference::Reference;
 use crate::checked::multibody::FreeMotionRun;
-use dwell_scene::{FreeMotionSpec, MotionDuration, Scene};
+use dwell_scene::{FreeMotionSpec, MotionDuration, PlaneScene};
 use dwell_study::StudyError;
 use dwell_study::models::compile_model;
 use dwell_study::number_format::digits;
@@ -17,7 +17,7 @@ const MIN_STEPS: f64 = 100.0;
 
 /// A scene that is given a free motion.
 pub(crate) struct FreeMotionSetup {
-    pub(crate) scene: Scene,
+    pub(crate) scene: PlaneScene,
     /// The longest step of its integration, s.
     pub(crate) max_step: f64,
     actuator: usize,
@@ -34,7 +34,7 @@ impl FreeMotionSetup {
     ///
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be put together.
-    pub(crate) fn new(scene: &Scene, reference: &Reference) -> Result<Self, StudyError> {
+    pub(crate) fn new(scene: &PlaneScene, reference: &Reference) -> Result<Self, StudyError> {
         let model = compile_model(scene, &[])?;
         let plan = model.plan();
         let mut start = scene.assembly.coordinates.clone();

@@ -6,7 +6,7 @@ use crate::written::poses::angle_table::AngleTable;
 use crate::written::poses::units::Units;
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::KnownReaction;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// Angles that the scene's text is compared at, by the golden ratio: none at a position of the table.
 const ANGLES: usize = 24;
@@ -19,8 +19,8 @@ const REFERENCE_TOLERANCE: f64 = 1e-12;
 
 /// The findings of what one scene claims, where another is right; none without such reactions.
 pub(crate) fn known_reaction_findings(
-    right: &Scene,
-    claims: &Scene,
+    right: &PlaneScene,
+    claims: &PlaneScene,
     reference: &Reference,
 ) -> Vec<Finding> {
     let claimed: Vec<&KnownReaction> = of(claims);
@@ -44,7 +44,7 @@ fn find<'a>(
     claimed.find(|reaction| reaction.name == name && reaction.is_moment == is_moment)
 }
 
-fn of(scene: &Scene) -> Vec<&KnownReaction> {
+fn of(scene: &PlaneScene) -> Vec<&KnownReaction> {
     let all = scene.varying_inertias.iter();
     all.flat_map(|varying| &varying.reactions).collect()
 }
@@ -93,7 +93,7 @@ impl Largest {
     }
 }
 
-fn text_finding(right: &Scene, claimed: &[&KnownReaction]) -> Finding {
+fn text_finding(right: &PlaneScene, claimed: &[&KnownReaction]) -> Finding {
     let mut largest = Largest::default();
     let root: toml::Table = right.source.inner().parse().unwrap_or_default();
     let bodies = root.get("bodies").and_then(toml::Value::as_table);

@@ -9,7 +9,7 @@ use dwell_findings::{Check, Finding};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::{InverseDynamics, Model, Workspace};
-use dwell_scene::{MotionDuration, Scene};
+use dwell_scene::{MotionDuration, PlaneScene};
 use dwell_study::StudyError;
 use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _, SegmentedMotion};
 use dwell_study::models::with_drive_loads;
@@ -53,13 +53,13 @@ impl FreeMotionRun {
 ///
 /// # Errors
 /// [`StudyError::Scene`] when the scene cannot be put together or its start cannot be evaluated.
-pub fn free_motion_run(scene: &Scene) -> Result<Option<FreeMotionRun>, StudyError> {
+pub fn free_motion_run(scene: &PlaneScene) -> Result<Option<FreeMotionRun>, StudyError> {
     solve_motion(scene, None, None)
 }
 
 /// The same, or until a time.
 fn solve_motion(
-    scene: &Scene,
+    scene: &PlaneScene,
     until: Option<f64>,
     max_step: Option<f64>,
 ) -> Result<Option<FreeMotionRun>, StudyError> {
@@ -93,7 +93,7 @@ fn solve_motion(
 
 /// Every step, segment by segment. Within the window of a change point's fit there are no reactions.
 fn collect_steps(
-    scene: &Scene,
+    scene: &PlaneScene,
     problem: &FreeMotionProblem<'_>,
     motion_segments: &SegmentedMotion,
 ) -> Result<FreeMotionRun, DynamicsError> {
@@ -124,7 +124,7 @@ fn collect_steps(
 
 /// Evaluates states of a machine.
 struct StateReader<'a> {
-    scene: &'a Scene,
+    scene: &'a PlaneScene,
     machine: &'a Machine,
     output_model: &'a Model,
     workspace: dwell_dynamics::MachineWorkspace,
@@ -207,7 +207,7 @@ pub(crate) type CheckedRun = (Option<FreeMotionRun>, Vec<Finding>);
 /// # Errors
 /// As [`free_motion_run`]; [`ValidationError::Reference`] where a name is none of the scene's.
 pub(crate) fn check_free_motion(
-    scene: &Scene,
+    scene: &PlaneScene,
     reference: &Reference,
 ) -> Result<CheckedRun, ValidationError> {
     let Some(run) = free_motion_run(scene)? else {
@@ -233,7 +233,7 @@ pub(crate) fn check_free_motion(
 
 impl FreeMotionRun {
     /// The values of the last step by name, each with its unit.
-    fn final_values(&self, scene: &Scene) -> Vec<(String, String, f64)> {
+    fn final_values(&self, scene: &PlaneScene) -> Vec<(String, String, f64)> {
         let (Some(step), Some(coordinates)) = (self.steps.last(), self.coordinates.last()) else {
             return Vec::new();
         };
@@ -254,7 +254,7 @@ impl FreeMotionRun {
     /// Compares the last step with its published values.
     fn compare_published(
         &self,
-        scene: &Scene,
+        scene: &PlaneScene,
         published: &PublishedState,
         source: &str,
     ) -> Result<Finding, ValidationError> {
@@ -298,7 +298,7 @@ impl FreeMotionRun {
     }
 
     /// Compares the run with the multibody equations of a scene: its own, but for deliberate faults.
-    pub fn check(&self, scene: &Scene) -> Vec<Finding> {
+    pub fn check(&self, scene: &PlaneScene) -> Vec<Finding> {
         let last = self.steps.len().saturating_sub(1);
         let instants = (0..=CHECKED_INSTANTS).map(|k| k * last / CHECKED_INSTANTS);
         let mut instants: Vec<usize> = instants.collect();
@@ -314,7 +314,7 @@ impl FreeMotionRun {
 }
 
 /// The multibody equations of a scene.
-fn multibody_system(scene: &Scene) -> Result<MultibodySystem, MultibodyError> {
+fn multibody_system(scene: &PlaneScene) -> Result<MultibodySystem, MultibodyError> {
     let laws = scene.motion.iter().flat_map(|motion| &motion.laws);
     let mode = |law: &Option<dwell_laws::Law>| {
         let prescribed = law.clone().map(CoordinateMode::Prescribed);

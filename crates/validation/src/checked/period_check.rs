@@ -6,7 +6,7 @@ use crate::checked::free_motion_setup::FreeMotionSetup;
 use dwell_dynamics::{DynamicsError, Method, MotionClass, Options, Orbit};
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::{Load, Magnitude};
-use dwell_scene::{EventTrigger, FreeMotionSpec, MotionDuration, NamedEvent, Scene};
+use dwell_scene::{EventTrigger, FreeMotionSpec, MotionDuration, NamedEvent, PlaneScene};
 use dwell_study::StudyError;
 use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
 use dwell_study::models::with_drive_loads;
@@ -31,7 +31,7 @@ pub(crate) type PeriodFindings = Result<Vec<Finding>, &'static str>;
 /// # Errors
 /// As [`check_period`].
 pub(crate) fn check_case(
-    scene: &Scene,
+    scene: &PlaneScene,
     reference: &Reference,
 ) -> Result<PeriodFindings, StudyError> {
     match scene.motion {
@@ -44,7 +44,7 @@ pub(crate) fn check_case(
 ///
 /// # Errors
 /// [`StudyError::Scene`] when the scene cannot be put together.
-fn check_period(scene: &Scene) -> Result<PeriodFindings, StudyError> {
+fn check_period(scene: &PlaneScene) -> Result<PeriodFindings, StudyError> {
     let Some(spec) = &scene.motion else {
         return Ok(Err("no motion"));
     };
@@ -103,7 +103,7 @@ fn check_period(scene: &Scene) -> Result<PeriodFindings, StudyError> {
 }
 
 /// The cause of nonconservative work.
-fn nonconservative_cause(scene: &Scene) -> &'static str {
+fn nonconservative_cause(scene: &PlaneScene) -> &'static str {
     let is_friction = |load: &Load| matches!(load.magnitude, Magnitude::Friction(_));
     match () {
         () if !scene.drives.is_empty() => "driven",
@@ -177,14 +177,14 @@ mod tests {
     use super::*;
 
     /// A bar on a pin under its weight, started downwards with a speed in rad/s.
-    fn pendulum(speed: f64, more: &str) -> Scene {
+    fn pendulum(speed: f64, more: &str) -> PlaneScene {
         let text = format!(
             "[bodies.ground]\npoints = {{ A = [0, 0] }}\n[bodies.bar]\npoints = {{ A = [0, 0] }}\nmass = 2.0\n\
              center = [0.5, 0]\ninertia = 0.3\n[joints]\nA = {{ revolute = [\"ground.A\", \"bar.A\"] }}\n\
              [actuators]\nphi = {{ angle = [\"ground\", \"bar\"] }}\n[assembly]\nbar = -90\n\
              [loads]\nweight = {{ gravity = [0, -9.81] }}\n{more}\n[motion]\ninitial-velocity = {speed}\nduration = 1"
         );
-        Scene::parse("pendulum.toml", &text).expect("a scene")
+        PlaneScene::parse("pendulum.toml", &text).expect("a scene")
     }
 
     #[test]

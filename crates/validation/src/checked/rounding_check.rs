@@ -4,7 +4,7 @@
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::{KinetostaticsError, Model};
 use dwell_numerics::{DoubleDouble, Scalar};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::StudyError;
 use dwell_study::models::loaded_model;
 use dwell_verify::ClaimedState;
@@ -40,7 +40,7 @@ fn evaluate<T: Scalar>(model: &Model, state: &ClaimedState) -> Result<Vec<T>, Ki
 /// # Errors
 /// [`StudyError`] when the mechanism cannot be assembled.
 pub(crate) fn rounding_errors(
-    scene: &Scene,
+    scene: &PlaneScene,
     states: &[ClaimedState],
 ) -> Result<Vec<StateRounding>, StudyError> {
     let model = loaded_model(scene)?;

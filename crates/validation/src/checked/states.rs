@@ -6,7 +6,7 @@ use crate::cases::reference::Reference;
 use crate::error::ValidationError;
 use dwell_findings::Finding;
 use dwell_geometry::Reaction;
-use dwell_scene::{PrescribedMotion, Scene};
+use dwell_scene::{PlaneScene, PrescribedMotion};
 use dwell_study::models::indeterminate_reactions;
 use dwell_verify::{ClaimedState, Inertias, check_energies, check_states};
 use std::collections::HashSet;
@@ -49,7 +49,7 @@ pub struct CheckedStates {
 ///
 /// # Errors
 /// [`ValidationError`] when the scene or the reference cannot be used, or a state cannot be reached.
-pub fn check_case(scene: &Scene, folder: &Path) -> Result<CheckedStates, ValidationError> {
+pub fn check_case(scene: &PlaneScene, folder: &Path) -> Result<CheckedStates, ValidationError> {
     check(scene, &Reference::read(folder, scene)?)
 }
 
@@ -58,7 +58,7 @@ pub fn check_case(scene: &Scene, folder: &Path) -> Result<CheckedStates, Validat
 /// # Errors
 /// [`ValidationError::Study`] when a state cannot be reached.
 pub(crate) fn check(
-    scene: &Scene,
+    scene: &PlaneScene,
     reference: &Reference,
 ) -> Result<CheckedStates, ValidationError> {
     let mut model = ModelStates::new(scene)?;
@@ -102,7 +102,7 @@ pub(crate) fn check(
 
 /// The states along the prescribed motion and over the sweep, so many of each.
 pub(crate) fn motions(
-    scene: &Scene,
+    scene: &PlaneScene,
     model: &ModelStates<'_>,
     reference: &Reference,
     count: usize,
@@ -117,7 +117,7 @@ pub(crate) fn motions(
 }
 
 /// Masses and moments of inertia as the independent checks need them.
-pub(crate) fn inertias(scene: &Scene) -> Inertias<'_> {
+pub(crate) fn inertias(scene: &PlaneScene) -> Inertias<'_> {
     Inertias {
         masses: &scene.masses,
         varying: &scene.varying_inertias,
@@ -127,7 +127,7 @@ pub(crate) fn inertias(scene: &Scene) -> Inertias<'_> {
 /// The findings on states of a scene with their generalised inertias; at most so many of them, spread evenly, are checked by kinetic
 /// energy.
 pub(crate) fn state_findings(
-    scene: &Scene,
+    scene: &PlaneScene,
     assembly_poses: &[[f64; 3]],
     (states, mass_matrices): (&[ClaimedState], &[Vec<f64>]),
     energy_checked: usize,
@@ -163,7 +163,7 @@ fn prescribed_states(motion: &PrescribedMotion, count: usize) -> Vec<StateReques
 /// One actuator from end to end of the sweep, or else of the range, as a cosine: rest, speed and
 /// acceleration all occur. None where several actuators have no sweep.
 fn cosine_sweep(
-    scene: &Scene,
+    scene: &PlaneScene,
     model: &ModelStates<'_>,
     reference: &Reference,
     count: usize,

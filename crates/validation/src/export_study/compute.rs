@@ -3,7 +3,7 @@
 use dwell_dynamics::{Orbit, ReducedState};
 use dwell_findings::Table;
 use dwell_kinetostatics::{ExactModel, ReducedModel};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::explain::{explain_motion, explain_position};
 use dwell_study::exported_runs::{
     ColumnNames, ExportedRuns, ExportedTable, SampleErrors, SampleInterpolation, SampledModel,
@@ -50,7 +50,7 @@ struct Exact {
 }
 
 /// All exports, by number of positions, then digits, then interpolation.
-pub(super) fn cells(scene: &Scene) -> Result<Vec<Cell>, StudyError> {
+pub(super) fn cells(scene: &PlaneScene) -> Result<Vec<Cell>, StudyError> {
     let prepared = PreparedScene::without_loads(scene)?;
     let names = prepared.reaction_units();
     let reaction = names.iter().position(|(name, _)| name == REACTION);
@@ -94,7 +94,7 @@ fn printed(table: &Table, coordinate: &str, digits: usize) -> String {
 }
 
 impl Exact {
-    fn of(scene: &Scene, model: &ExactModel, reaction: usize) -> Result<Self, StudyError> {
+    fn of(scene: &PlaneScene, model: &ExactModel, reaction: usize) -> Result<Self, StudyError> {
         let mut workspace = model.workspace();
         let mut at = model.model().coefficient_buffer();
         let mut coefficients = Vec::with_capacity(COMPARED);

@@ -8,7 +8,7 @@
 mod compute;
 mod report;
 
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::{Outcome, StudyError};
 
 /// The case whose runs are exported.
@@ -20,6 +20,6 @@ pub const NAME: &str = "exported runs";
 ///
 /// # Errors
 /// [`StudyError`] where a run cannot be computed or combined.
-pub fn study(scene: &Scene) -> Result<Outcome, StudyError> {
+pub fn study(scene: &PlaneScene) -> Result<Outcome, StudyError> {
     report::outcome(&compute::cells(scene)?)
 }

@@ -13,7 +13,7 @@ use dwell_kinetostatics::{
     Coefficients, ExactModel, Inertia, ReducedModel, ReducibleModel, TableDomain, TabulatedModel,
 };
 use dwell_numerics::{DoubleDouble, Scalar};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::models::{compile_model, reduced_model};
 use dwell_study::{ExportRequest, compute_export, estimate};
 use std::error::Error;
@@ -104,7 +104,7 @@ fn exported<R: Real + Send + Sync + 'static>(
 
 /// The planar scene obliquely in space, at a distance from the origin and with heights in proportion to it.
 fn in_space(
-    scene: &Scene,
+    scene: &PlaneScene,
     reactions: &[Reaction],
     planes: bool,
 ) -> Result<(SpaceModel, Sums), Box<dyn Error>> {
@@ -170,7 +170,7 @@ impl FormModel {
     /// The model of a scene with some reactions.
     pub(super) fn new(
         form: Form,
-        mut scene: Scene,
+        mut scene: PlaneScene,
         reactions: Vec<Reaction>,
         around: Option<[f64; 2]>,
     ) -> Result<Self, Box<dyn Error>> {
@@ -303,7 +303,7 @@ fn measured(errors: &[f64], reactions: usize) -> Statement {
 
 fn as_code(
     form: Form,
-    scene: &Scene,
+    scene: &PlaneScene,
     interval: Option<(f64, f64)>,
 ) -> Result<(NewEvaluate, Statement), Box<dyn Error>> {
     let (accuracy, precision) = (form.accuracy(), form.precision);

@@ -6,7 +6,7 @@ use super::series::{CellResult, EstimatedValue, RunResult};
 use dwell_findings::Table;
 use dwell_kinetostatics::Coefficients;
 use dwell_numerics::{DoubleDouble, Scalar};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::{Analysis, StudyError, compute_reduction, compute_trajectory, no_progress};
 
 /// Rows from one that another form is evaluated at to the next: those beside the peaks are among them.
@@ -36,7 +36,7 @@ impl StatedTable {
         text: &str,
         points: usize,
     ) -> Result<Self, Box<dyn std::error::Error>> {
-        let scene = Scene::parse("scene.toml", text)?;
+        let scene = PlaneScene::parse("scene.toml", text)?;
         let reduction = compute_reduction(&scene, Some(points))?;
         let found = Self {
             table: reduction.curves.table(&reduction.prepared),
@@ -93,7 +93,7 @@ impl StatedTable {
 
     /// What `kinetostatics` finds.
     pub(super) fn kinetostatics(text: &str, points: usize) -> Result<Self, StudyError> {
-        let scene = Scene::parse("scene.toml", text)?;
+        let scene = PlaneScene::parse("scene.toml", text)?;
         let points = Some(points);
         let found = compute_trajectory(&scene, Analysis::Kinetostatics, points, &no_progress)?;
         if let Some(error) = found.early_stop {

@@ -12,7 +12,7 @@ use crate::checked::states::inertias;
 use dwell_findings::Finding;
 use dwell_kinetostatics::Mass;
 use dwell_numerics::{DoubleDouble, Scalar};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_verify::check_states;
 
 /// Positions of a revolution.
@@ -153,7 +153,7 @@ pub(super) fn dense_findings() -> Vec<Finding> {
 }
 
 fn findings_of(text: &str) -> Result<Vec<Finding>, String> {
-    let scene = Scene::parse("ring.toml", text).map_err(|e| e.to_string())?;
+    let scene = PlaneScene::parse("ring.toml", text).map_err(|e| e.to_string())?;
     let mut model = ModelStates::new(&scene).map_err(|e| e.to_string())?;
     let state = |k: usize| {
         let request = StateRequest {

@@ -4,7 +4,7 @@ use dwell_geometry::{Vec2, vec2};
 #[cfg(test)]
 use dwell_kinetostatics::ExactModel;
 use dwell_kinetostatics::Mass;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 #[cfg(test)]
 use dwell_study::models::reduced_model;
 
@@ -26,8 +26,8 @@ pub(crate) fn body(name: &str, points: &str, of: &Mass) -> String {
 }
 
 /// The scene of a text.
-pub(crate) fn scene(text: &str) -> Result<Scene, String> {
-    Scene::parse("scene.toml", text).map_err(|e| e.to_string())
+pub(crate) fn scene(text: &str) -> Result<PlaneScene, String> {
+    PlaneScene::parse("scene.toml", text).map_err(|e| e.to_string())
 }
 
 /// The reduced model of a text, with the reaction of a joint if there is one of this name.

@@ -11,7 +11,7 @@ use super::series::{
 use dwell_geometry::{Vec2, vec2};
 use dwell_kinetostatics::Mass;
 use dwell_numerics::{DoubleDouble, Scalar};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::f64::consts::TAU;
 
 /// Roundings that an evaluation is allowed: of two dyads in a row.
@@ -222,7 +222,7 @@ fn near_path(form: Form) -> ParameterSeries {
 fn peak_between_rows() -> ParameterSeries {
     let run = |distance: f64| -> RunResult {
         let mechanism = SingleDwell::pivot_off_path(BETWEEN_ROWS, distance);
-        let scene = Scene::parse("scene.toml", &mechanism.text())?;
+        let scene = PlaneScene::parse("scene.toml", &mechanism.text())?;
         let printed = dwell_study::reduce(&scene, Some(POINTS), None)?
             .record
             .numbers;

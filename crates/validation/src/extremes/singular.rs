@@ -10,7 +10,7 @@ use dwell_dynamics::{
 use dwell_geometry::Vec2;
 use dwell_kinetostatics::LoadKind;
 use dwell_numerics::{DoubleDouble, Scalar};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::estimate;
 use dwell_study::models::reduced_model;
 use std::f64::consts::PI;
@@ -166,7 +166,7 @@ fn from_dead_point(distance: f64) -> RunResult {
 
 /// The travel of the slider at the samples of a motion from a state.
 fn travel_history(
-    test: &Scene,
+    test: &PlaneScene,
     state: [f64; 2],
     end: f64,
     options: &Options,

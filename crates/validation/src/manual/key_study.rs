@@ -3,7 +3,7 @@
 use super::altered::altered_texts;
 use super::planted::{PlantedResult, PlantedScene};
 use dwell_findings::Check;
-use dwell_scene::{KeyUse, Scene, SceneKey, key_uses, scene_keys};
+use dwell_scene::{KeyUse, PlaneScene, SceneKey, key_uses, scene_keys};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use toml::Table;
@@ -74,7 +74,7 @@ fn planted_fault(
         let texts = here.flat_map(|key_use| altered_texts(&root, key_use));
         for altered in texts.take(MAX_ALTERATIONS) {
             // A text that is no scene is a fault that the reader refuses.
-            let Ok(read) = Scene::parse(&scene.scene.name, &altered.text) else {
+            let Ok(read) = PlaneScene::parse(&scene.scene.name, &altered.text) else {
                 refused = true;
                 continue;
             };

@@ -28,7 +28,7 @@ use crate::overview::CaseResult;
 use committed_mutations::committed_mutations;
 use document::{CaseEntry, Contents, counts, document, text};
 use dwell_findings::Finding;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::Outcome;
 use key_study::{KeyResult, study_keys};
 use lines::{CaseFindings, Line, command_lines, key_lines};
@@ -45,7 +45,7 @@ const REPORT_FOLDER: &str = "reports";
 pub struct KeyStudy {
     folder: PathBuf,
     /// As they are written.
-    written: Vec<Scene>,
+    written: Vec<PlaneScene>,
     scenes: Vec<PlantedScene>,
     /// By scene: its findings, where it is not a case.
     findings: Vec<Vec<Finding>>,
@@ -56,16 +56,16 @@ pub struct KeyStudy {
 
 impl KeyStudy {
     /// Plants a fault in every key that the cases' scenes use, or the small scenes in their folder.
-    pub fn new(cases: &[&Scene], folder: &Path) -> Self {
-        let mut written: Vec<Scene> = cases.iter().map(|scene| (*scene).clone()).collect();
+    pub fn new(cases: &[&PlaneScene], folder: &Path) -> Self {
+        let mut written: Vec<PlaneScene> = cases.iter().map(|scene| (*scene).clone()).collect();
         let mut unread = Vec::new();
         for path in scene_files(&folder.join(CAPABILITY_FOLDER)) {
-            match Scene::read(&path) {
+            match PlaneScene::read(&path) {
                 Ok(scene) => written.push(scene),
                 Err(error) => unread.push(format!("{}: {}", path.display(), error.message)),
             }
         }
-        let planted = |scene: &Scene| PlantedScene::new(scene, &folder.join(&scene.name));
+        let planted = |scene: &PlaneScene| PlantedScene::new(scene, &folder.join(&scene.name));
         let scenes: Vec<PlantedScene> = written.iter().filter_map(planted).collect();
         let own = scenes.par_iter().map(|planted| {
             let is_case = cases.iter().any(|case| case.name == planted.scene.name);
@@ -165,7 +165,7 @@ impl KeyStudy {
     }
 
     /// Where the reference values of a scene come from.
-    fn source(&self, scene: &Scene) -> String {
+    fn source(&self, scene: &PlaneScene) -> String {
         let reference = Reference::read(&self.folder.join(&scene.name), scene);
         match reference {
             Ok(reference) if !reference.source.is_empty() => reference.source,

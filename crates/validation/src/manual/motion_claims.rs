@@ -4,7 +4,7 @@
 use super::rotor::{Rotor, RotorState};
 use crate::checked::multibody::{FreeMotionRun, free_motion_run};
 use dwell_findings::{Check, Finding};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// Relative difference from the rotor's own integration, whose steps are fixed and pass kinks: measured at most 1.2e-6, of a
 /// controller that leaves its limit within a step.
@@ -30,7 +30,7 @@ pub(super) struct MotionClaims {
 
 impl MotionClaims {
     /// The motion of a scene; none where it has none, or none can be computed.
-    pub(super) fn new(scene: &Scene) -> Option<Self> {
+    pub(super) fn new(scene: &PlaneScene) -> Option<Self> {
         let run = free_motion_run(scene).ok().flatten()?;
         let rotor = Rotor::read(scene.source.inner());
         (run.steps.len() > 1).then_some(Self { run, rotor })
@@ -54,7 +54,7 @@ impl MotionClaims {
     }
 
     /// The findings of this motion as that of the scene whose own motion is `own`.
-    pub(super) fn check(&self, scene: &Scene, own: &Self) -> Vec<Finding> {
+    pub(super) fn check(&self, scene: &PlaneScene, own: &Self) -> Vec<Finding> {
         let counts = |claims: &Self| {
             let first = claims.run.steps.first();
             first.map(|s| [s.poses.len(), s.drive_forces.len(), s.reactions.len()])
@@ -75,7 +75,7 @@ impl MotionClaims {
     }
 
     /// The coordinates and speeds at the start with those of the scene.
-    fn start(&self, scene: &Scene) -> Finding {
+    fn start(&self, scene: &PlaneScene) -> Finding {
         let claimed = self.run.coordinates.first().cloned().unwrap_or_default();
         let given = scene.motion.iter().flat_map(|motion| {
             let q = motion.initial_coordinates.iter();

@@ -12,7 +12,7 @@ use crate::cases::reference::Reference;
 use crate::checked::known_reactions::known_reaction_findings;
 use crate::checked::states::{motions, state_findings};
 use dwell_findings::{Check, Finding};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::StudyError;
 use dwell_verify::ClaimedState;
 use std::collections::BTreeSet;
@@ -26,7 +26,7 @@ const ENERGY_STATES: usize = 2;
 
 /// A scene that faults are planted in.
 pub(super) struct PlantedScene {
-    pub(super) scene: Scene,
+    pub(super) scene: PlaneScene,
     /// Its text, the keys in alphabetical order.
     pub(super) text: String,
     reference: Reference,
@@ -60,11 +60,11 @@ impl PlantedScene {
     /// A scene, and the folder of its reference; none where its text is no TOML.
     ///
     /// Altered texts have their keys in alphabetical order. So has this one: bodies and joints are numbered alike in both.
-    pub(super) fn new(written: &Scene, folder: &Path) -> Option<Self> {
+    pub(super) fn new(written: &PlaneScene, folder: &Path) -> Option<Self> {
         let text = written.source.inner().trim_start_matches('\u{feff}');
         let root: toml::Table = toml::from_str(text).ok()?;
         let text = toml::to_string(&root).ok()?;
-        let scene = Scene::parse(&format!("{}.toml", written.name), &text).ok()?;
+        let scene = PlaneScene::parse(&format!("{}.toml", written.name), &text).ok()?;
         Some(Self {
             reference: Reference::read(folder, &scene).unwrap_or_default(),
             scene,
@@ -91,7 +91,7 @@ impl PlantedScene {
     }
 
     /// What the checks detect where the results come from another scene.
-    pub(super) fn check_altered(&self, altered: &Scene) -> PlantedResult {
+    pub(super) fn check_altered(&self, altered: &PlaneScene) -> PlantedResult {
         let (mut changed, mut failed, mut seen) = (false, BTreeSet::new(), false);
         if let (Some(own), Some(claims)) = (self.own_states(), self.claims(altered)) {
             let claims = claims.with_requests_of(own);
@@ -114,7 +114,8 @@ impl PlantedScene {
                 failed.extend(self.detecting(&claims.check(&self.scene, own)));
             }
         }
-        let known = |scene: &Scene| known_reaction_findings(&self.scene, scene, &self.reference);
+        let known =
+            |scene: &PlaneScene| known_reaction_findings(&self.scene, scene, &self.reference);
         if !self.scene.varying_inertias.is_empty()
             && altered.varying_inertias != self.scene.varying_inertias
         {
@@ -154,7 +155,7 @@ impl PlantedScene {
     }
 
     /// The states that a scene claims along its motion or sweep.
-    fn claims(&self, scene: &Scene) -> Option<StateClaims> {
+    fn claims(&self, scene: &PlaneScene) -> Option<StateClaims> {
         let claims = || -> Result<StateClaims, StudyError> {
             let mut model = ModelStates::new(scene)?;
             let requests = motions(scene, &model, &self.reference, STATES).flatten();
@@ -229,13 +230,13 @@ mod tests {
 
     #[test]
     fn a_scene_that_is_not_altered_has_the_same_results_and_one_that_is_fails_checks() {
-        let scene = Scene::parse("arm.toml", ARM).unwrap();
+        let scene = PlaneScene::parse("arm.toml", ARM).unwrap();
         let planted = PlantedScene::new(&scene, Path::new("")).unwrap();
-        let same = Scene::parse("arm.toml", &planted.text).unwrap();
+        let same = PlaneScene::parse("arm.toml", &planted.text).unwrap();
         assert_eq!(planted.check_altered(&same), PlantedResult::Unchanged);
         let text = planted.text.replace("inertia = 0.2", "inertia = 0.202");
         assert_ne!(text, planted.text);
-        let altered = Scene::parse("arm.toml", &text).unwrap();
+        let altered = PlaneScene::parse("arm.toml", &text).unwrap();
         let PlantedResult::Detected(checks) = planted.check_altered(&altered) else {
             panic!("not detected");
         };

@@ -10,7 +10,7 @@ use dwell_kinetostatics::{
 };
 use dwell_numerics::Scalar;
 use dwell_scene::SpaceScene;
-use dwell_study::{StudyError, loaded_model_in_space};
+use dwell_study::{StudyError, model_with_loads};
 use dwell_verify::SubjectError;
 use dwell_verify::space::{
     SpaceCase, SpaceState, SpaceSubject, sliding_in_space, with_friction_in_space,
@@ -35,7 +35,7 @@ impl<'a> SpaceClaims<'a> {
     /// [`StudyError::Scene`] when the mechanism cannot be assembled, or a load does not fit it.
     pub fn new(scene: &'a SpaceScene) -> Result<Self, StudyError> {
         let all = all_reactions(scene, &[Axes::Ground, Axes::Joint]);
-        let model = loaded_model_in_space(scene, &all)?;
+        let model = model_with_loads(scene, &all)?;
         let mut pose = model.plan().pose::<f64>();
         // The mechanism was assembled there.
         let at_start = model.plan().positions(&scene.assembly.q, &mut pose);

@@ -15,7 +15,7 @@ use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::space::Axes;
 use dwell_report::Figure;
 use dwell_scene::SpaceScene;
-use dwell_study::mechanism_figure_in_space;
+use dwell_study::figure_of_positions;
 use dwell_verify::FindingSpec;
 use std::fmt::Write as _;
 
@@ -140,7 +140,7 @@ fn mechanism(scene: &SpaceScene) -> Result<Figure, ValidationError> {
     let (_, start) = claims.case().start;
     let position = (start.to_vec(), "the assembly".to_owned());
     let provenance = "the mechanism at its assembly".to_owned();
-    Ok(mechanism_figure_in_space(scene, vec![position], provenance))
+    Ok(figure_of_positions(scene, vec![position], provenance))
 }
 
 /// Inertias, actions under the loads at rest and free accelerations at some states, to seven digits after the first of the largest of

@@ -6,7 +6,7 @@ use dwell_dynamics::{CoordinateMode, Machine};
 use dwell_findings::Finding;
 use dwell_kinetostatics::space::{Axes, Model};
 use dwell_scene::SpaceScene;
-use dwell_study::{StudyError, loaded_model_in_space};
+use dwell_study::{StudyError, model_with_loads};
 use dwell_verify::SubjectError;
 use dwell_verify::space::{SpaceState, check_branch_in_space, check_states_in_space};
 
@@ -56,7 +56,7 @@ pub(super) fn near_assembly(scene: &SpaceScene, model: &Model) -> Vec<Vec<f64>> 
 
 /// A machine of the scene whose coordinates are all free, under its loads alone.
 pub(super) fn free_machine(scene: &SpaceScene) -> Result<Option<Machine<Model>>, StudyError> {
-    let model = loaded_model_in_space(scene, &[])?;
+    let model = model_with_loads(scene, &[])?;
     let modes = vec![CoordinateMode::Free; model.plan().actuators()];
     Ok(Machine::new(model, &scene.loads, modes, &[]).ok())
 }

@@ -7,7 +7,9 @@ use super::studied_scene::{CommandedMotion, StudiedScene};
 use super::subject::Subject;
 use dwell_findings::Table;
 use dwell_report::{OutputFolder, ReportError};
-use dwell_study::{Outcome, PictureFormat, Pictures, StudyError, no_progress};
+use dwell_study::{
+    Outcome, PictureFormat, Pictures, StudyError, no_progress, simulate_to_accuracy,
+};
 use std::fs;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -70,7 +72,7 @@ pub(super) fn command_runs<S: StudiedScene>(
             estimated_error,
             is_reached,
             table,
-        } = scene.commanded(preset.1)?;
+        } = CommandedMotion::new(&scene, preset.1)?;
         let computing = started.elapsed().as_secs_f64();
         let states = rows_at(subject, &reference.states, &table);
         // Loads need not have a value where there is no row.
@@ -132,7 +134,7 @@ fn whole_command<S: StudiedScene>(scene: &S, accuracy: f64) -> Result<[f64; 2], 
     let name = format!("dwell-work-precision-{}-{number}", std::process::id());
     let path = std::env::temp_dir().join(name);
     let started = Instant::now();
-    let outcome = scene.simulated(accuracy)?;
+    let outcome = simulate_to_accuracy(scene, accuracy, None, &no_progress)?.outcome;
     let computing = started.elapsed().as_secs_f64();
     let written = |outcome: Outcome, pictures: Pictures| -> Result<f64, StudyError> {
         let started = Instant::now();

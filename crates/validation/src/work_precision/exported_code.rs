@@ -8,7 +8,7 @@ use super::reference_solution::ReferenceSolution;
 use super::studied_scene::StudiedScene;
 use super::subject::Subject;
 use dwell_export::{Export, Identifiers, LoadEffect, Precision, Request, c_files};
-use dwell_study::ExportRequest;
+use dwell_study::{ExportRequest, compute_export};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -96,7 +96,7 @@ fn export<S: StudiedScene>(
         exact,
         interval: None,
     };
-    let export = scene.export(&asked).map_err(|e| e.to_string())?;
+    let export = compute_export(scene, &asked).map_err(|e| e.to_string())?;
     let varies = |effect: &LoadEffect| match effect {
         LoadEffect::Input { .. } | LoadEffect::VariableDamper { .. } | LoadEffect::Motor(_) => true,
         LoadEffect::Conservative { .. }

@@ -34,7 +34,7 @@ use dwell_kinetostatics::{
     ExactModel, ReducedModel, ReducibleModel as _, TableDomain, TabulatedModel,
 };
 use dwell_report::TableExport as _;
-use dwell_scene::SceneLocation;
+use dwell_scene::{Scene, SceneLocation};
 use dwell_study::StudyError;
 use dwell_study::output::Picture;
 use dwell_study::{Outcome, Progress, Step};
@@ -55,10 +55,14 @@ const TIMING_PASSES: usize = 20;
 ///
 /// # Errors
 /// As [`measure`]; [`StudyError::Report`] when a table cannot be written.
-pub fn work_precision<S: StudiedScene>(
-    scene: &S,
-    progress: Progress<'_>,
-) -> Result<Outcome, StudyError> {
+pub fn work_precision(scene: &Scene, progress: Progress<'_>) -> Result<Outcome, StudyError> {
+    match scene {
+        Scene::Plane(scene) => outcome(&**scene, progress),
+        Scene::Space(scene) => outcome(&**scene, progress),
+    }
+}
+
+fn outcome<S: StudiedScene>(scene: &S, progress: Progress<'_>) -> Result<Outcome, StudyError> {
     let found = measure(scene, &Effort::full(), progress)?;
     let name = format!("{}-work-precision", scene.name);
     let mut outcome = Outcome {

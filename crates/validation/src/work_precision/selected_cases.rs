@@ -5,7 +5,7 @@ use super::combination::{
 };
 use super::{figure, measure, report};
 use dwell_report::Files;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::StudyError;
 use dwell_study::number_format::digits;
 use dwell_study::output::Picture;
@@ -25,10 +25,10 @@ const ACCURACIES: [f64; 3] = [1e-3, 1e-6, 1e-9];
 ///
 /// # Errors
 /// As [`measure`].
-pub fn selected_case_reports(scenes: &[&Scene]) -> Result<Outcome, StudyError> {
-    let is_selected = |scene: &&&Scene| SELECTED_CASES.contains(&scene.name.as_str());
-    let selected: Vec<&Scene> = scenes.iter().filter(is_selected).copied().collect();
-    let one = |scene: &&Scene| -> Result<(Files, Picture, String), StudyError> {
+pub fn selected_case_reports(scenes: &[&PlaneScene]) -> Result<Outcome, StudyError> {
+    let is_selected = |scene: &&&PlaneScene| SELECTED_CASES.contains(&scene.name.as_str());
+    let selected: Vec<&PlaneScene> = scenes.iter().filter(is_selected).copied().collect();
+    let one = |scene: &&PlaneScene| -> Result<(Files, Picture, String), StudyError> {
         let found = measure(*scene, &Effort::brief(), &no_progress)?;
         let name = &scene.name;
         let mut files = Files::new();
@@ -58,7 +58,7 @@ pub fn selected_case_reports(scenes: &[&Scene]) -> Result<Outcome, StudyError> {
 }
 
 /// Counts to two digits and errors to powers of ten, where they do not depend on rounding.
-fn snapshot(scene: &Scene, found: &WorkPrecision) -> String {
+fn snapshot(scene: &PlaneScene, found: &WorkPrecision) -> String {
     let mut text = format!(
         "\n{}, t = 0 to {} s, against quadrature: evaluations, and errors of coordinate ({}), energy and worst reaction\n",
         scene.title.trim_end_matches('.'),

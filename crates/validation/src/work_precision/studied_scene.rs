@@ -6,23 +6,19 @@ use dwell_dynamics::{
     DynamicsError, Event, EventKind, Machine, OdeState, Options, TabulatedMachine, TabulationError,
     solve,
 };
-use dwell_export::Export;
 use dwell_findings::Table;
 use dwell_geometry::JointId;
 use dwell_geometry::space::CoordinateFunction;
 use dwell_kinetostatics::TableDomain;
 use dwell_kinetostatics::space::{Axes, Component, Model as SpaceModel};
 use dwell_kinetostatics::table::TableModel;
-use dwell_scene::{FreeMotionSpec, MotionDuration, Scene, SpaceScene};
+use dwell_scene::{FreeMotionSpec, MotionDuration, PlaneScene, SpaceScene};
 use dwell_study::explain::NamedScene;
 use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
-use dwell_study::machines::MachineScene;
+use dwell_study::machines::MachineScene as _;
 use dwell_study::models::{pruned_machine, with_drive_loads};
-use dwell_study::trajectory::compute::ComputedTrajectory;
 use dwell_study::{
-    ExportRequest, MotionSolver, Outcome, PictureSpan, StudyError, compute_export,
-    compute_export_in_space, compute_free_motion, compute_free_motion_in_space,
-    compute_period_in_space, no_progress, simulate_in_space, simulate_to_accuracy,
+    MotionSolver, StudyError, StudyScene, compute_free_motion, compute_period, no_progress,
 };
 use std::f64::consts::TAU;
 use std::num::NonZeroUsize;
@@ -55,18 +51,28 @@ pub struct CommandedMotion {
 }
 
 impl CommandedMotion {
-    fn new(computed: ComputedTrajectory<'_>, estimated_error: Option<f64>) -> Self {
-        Self {
+    /// Computes a motion without files, as `dwell simulate --accuracy` does.
+    ///
+    /// # Errors
+    /// [`StudyError`] where the motion cannot be computed.
+    pub(super) fn new<S: StudyScene>(scene: &S, accuracy: f64) -> Result<Self, StudyError> {
+        let solver = MotionSolver::Accuracy {
+            accuracy,
+            sample_interval: None,
+        };
+        let motion = compute_free_motion(scene, &solver, &no_progress)?;
+        let computed = motion.computed;
+        Ok(Self {
             method: computed.trajectory.method_text,
-            estimated_error,
+            estimated_error: motion.estimated_error,
             is_reached: computed.early_stop.is_none(),
             table: computed.table,
-        }
+        })
     }
 }
 
 /// A scene whose motion is studied, in the plane or in space.
-pub trait StudiedScene: MachineScene<Model: TableModel> + Clone {
+pub trait StudiedScene: StudyScene<Model: TableModel> + Clone {
     /// The scene with a motion: its own, or a free motion from the assembly.
     ///
     /// # Errors
@@ -110,26 +116,8 @@ pub trait StudiedScene: MachineScene<Model: TableModel> + Clone {
         domain: TableDomain,
     ) -> Option<Result<TabulatedMachine, TabulationError>>;
 
-    /// Its export.
-    ///
-    /// # Errors
-    /// [`StudyError::Scene`] where it cannot be exported.
-    fn export(&self, asked: &ExportRequest) -> Result<Export, StudyError>;
-
     /// The same scene with a motion of another duration, s, and all coordinates and speeds in its table.
     fn lasting(&self, duration: f64) -> Self;
-
-    /// Computes its motion without files, as `dwell simulate --accuracy` does.
-    ///
-    /// # Errors
-    /// [`StudyError`] where the motion cannot be computed.
-    fn commanded(&self, accuracy: f64) -> Result<CommandedMotion, StudyError>;
-
-    /// What `dwell simulate` yields.
-    ///
-    /// # Errors
-    /// [`StudyError`] where the motion cannot be computed.
-    fn simulated(&self, accuracy: f64) -> Result<Outcome, StudyError>;
 }
 
 /// The limit positions of the only coordinate of a scene in space, a little in front of each: there a motion in it ends.
@@ -172,14 +160,7 @@ fn with_states(scene: &impl NamedScene, requested: Option<&[String]>) -> Option<
     Some(columns)
 }
 
-fn to_accuracy(accuracy: f64) -> MotionSolver {
-    MotionSolver::Accuracy {
-        accuracy,
-        sample_interval: None,
-    }
-}
-
-impl StudiedScene for Scene {
+impl StudiedScene for PlaneScene {
     fn with_free_motion(&self) -> Result<Self, StudyError> {
         if self.motion.is_some() {
             return Ok(self.clone());
@@ -239,10 +220,6 @@ impl StudiedScene for Scene {
         Some(TabulatedMachine::new(machine, accuracy, domain))
     }
 
-    fn export(&self, asked: &ExportRequest) -> Result<Export, StudyError> {
-        compute_export(self, asked)
-    }
-
     fn lasting(&self, duration: f64) -> Self {
         let mut scene = self.clone();
         if let Some(motion) = &mut scene.motion {
@@ -250,16 +227,6 @@ impl StudiedScene for Scene {
         }
         scene.requests.variables = with_states(self, self.requests.variables.as_deref());
         scene
-    }
-
-    fn commanded(&self, accuracy: f64) -> Result<CommandedMotion, StudyError> {
-        let done = compute_free_motion(self, &to_accuracy(accuracy), &no_progress)?;
-        let (computed, estimate) = (done.computed, done.estimated_error);
-        Ok(CommandedMotion::new(computed, estimate))
-    }
-
-    fn simulated(&self, accuracy: f64) -> Result<Outcome, StudyError> {
-        Ok(simulate_to_accuracy(self, accuracy, None, &no_progress)?.outcome)
     }
 }
 
@@ -315,9 +282,7 @@ impl StudiedScene for SpaceScene {
         match self.motion.as_ref().map(|motion| motion.duration) {
             None => Ok(0.0),
             Some(MotionDuration::Seconds(seconds)) => Ok(seconds),
-            Some(MotionDuration::Periods(periods)) => {
-                Ok(periods * compute_period_in_space(self)?.period)
-            }
+            Some(MotionDuration::Periods(periods)) => Ok(periods * compute_period(self)?.period),
         }
     }
 
@@ -346,10 +311,6 @@ impl StudiedScene for SpaceScene {
         None
     }
 
-    fn export(&self, asked: &ExportRequest) -> Result<Export, StudyError> {
-        compute_export_in_space(self, asked)
-    }
-
     fn lasting(&self, duration: f64) -> Self {
         let mut scene = self.clone();
         if let Some(motion) = &mut scene.motion {
@@ -357,16 +318,5 @@ impl StudiedScene for SpaceScene {
         }
         scene.variables = with_states(self, self.variables.as_deref());
         scene
-    }
-
-    fn commanded(&self, accuracy: f64) -> Result<CommandedMotion, StudyError> {
-        let done = compute_free_motion_in_space(self, &to_accuracy(accuracy), &no_progress)?;
-        let (computed, estimate) = (done.computed, done.estimated_error);
-        Ok(CommandedMotion::new(computed, estimate))
-    }
-
-    fn simulated(&self, accuracy: f64) -> Result<Outcome, StudyError> {
-        let (solver, span) = (to_accuracy(accuracy), PictureSpan::default());
-        Ok(simulate_in_space(self, &solver, None, span, &no_progress)?.outcome)
     }
 }

@@ -21,6 +21,24 @@ impl Actuator {
         Self(Keys::new("angle", [first, second]))
     }
 
+    /// The angle of a joint in space, rad.
+    ///
+    /// ```
+    /// let phi = dwell::Actuator::joint_angle("A");
+    /// ```
+    pub fn joint_angle(joint: &str) -> Self {
+        Self(Keys::new("angle", joint))
+    }
+
+    /// The travel of a joint in space, m.
+    ///
+    /// ```
+    /// let feed = dwell::Actuator::joint_travel("slide");
+    /// ```
+    pub fn joint_travel(joint: &str) -> Self {
+        Self(Keys::new("travel", joint))
+    }
+
     /// The distance of two points, m.
     ///
     /// ```

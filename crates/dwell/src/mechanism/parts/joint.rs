@@ -18,10 +18,12 @@ use crate::value::Value;
 pub struct Joint(pub(crate) Keys);
 
 impl Joint {
-    /// A pin. Its reaction has the components `x` and `y`, N, in the ground's axes.
+    /// A pin. Its reaction has the components `x` and `y`, N, in the ground's axes. In space it turns about an axis, which is the same in
+    /// the frames of both bodies, and the reaction has `x`, `y`, `z`, `moment-x`, `moment-y` and `moment-z` there.
     ///
     /// ```
     /// let pin = dwell::Joint::revolute("ground.A", "crank.A");
+    /// let in_space = dwell::Joint::revolute("ground.A", "crank.A").with("axis", [0.0, 0.0, 1.0]);
     /// ```
     pub fn revolute(first: &str, second: &str) -> Self {
         Self(Keys::new("revolute", [first, second]))
@@ -33,8 +35,17 @@ impl Joint {
     /// ```
     /// let guide = dwell::Joint::prismatic("ground.G", "piston.C", [1.0, 0.0]);
     /// ```
-    pub fn prismatic(first: &str, second: &str, axis: [f64; 2]) -> Self {
+    pub fn prismatic<const N: usize>(first: &str, second: &str, axis: [f64; N]) -> Self {
         Self(Keys::new("prismatic", [first, second]).with("axis", axis))
+    }
+
+    /// A ball in a socket, in space. Its reaction is `x`, `y` and `z`, N.
+    ///
+    /// ```
+    /// let ball = dwell::Joint::spherical("crank.B", "coupler.B");
+    /// ```
+    pub fn spherical(first: &str, second: &str) -> Self {
+        Self(Keys::new("spherical", [first, second]))
     }
 
     /// A pin of the second body in a straight slot of the first, along `axis`. Its reaction is `normal`, N.

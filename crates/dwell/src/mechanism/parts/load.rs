@@ -142,7 +142,7 @@ impl Load {
     /// ```
     /// let weight = dwell::Load::gravity([0.0, -9.81]);
     /// ```
-    pub fn gravity(acceleration: [f64; 2]) -> Self {
+    pub fn gravity<const N: usize>(acceleration: [f64; N]) -> Self {
         Self {
             keys: Keys::new("gravity", acceleration),
             function: None,
@@ -154,12 +154,16 @@ impl Load {
     /// ```
     /// let push = dwell::Load::force("piston.P", [-1.0, 0.0], 100.0);
     /// ```
-    pub fn force(point: &str, direction: [f64; 2], magnitude: impl Into<Magnitude>) -> Self {
+    pub fn force<const N: usize>(
+        point: &str,
+        direction: [f64; N],
+        magnitude: impl Into<Magnitude>,
+    ) -> Self {
         let keys = Keys::new("force", point).with("direction", direction);
         Self::new(keys, "magnitude", magnitude)
     }
 
-    /// A torque on a body, N·m, counter-clockwise positive.
+    /// A torque on a body, N·m, counter-clockwise positive; in space about an axis, `.with("axis", [0.0, 0.0, 1.0])`.
     ///
     /// ```
     /// let brake = dwell::Load::torque("crank", "-0.5*phi.velocity");

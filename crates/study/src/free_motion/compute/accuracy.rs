@@ -236,7 +236,7 @@ mod tests {
     use super::*;
     use crate::free_motion::compute::MotionProblem as _;
     use crate::models::with_drive_loads;
-    use dwell_scene::Scene;
+    use dwell_scene::PlaneScene;
 
     fn text(case: &str) -> String {
         let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation");
@@ -248,7 +248,7 @@ mod tests {
     #[test]
     fn val_what_is_promised_is_kept() {
         for case in CASES {
-            let scene = Scene::parse(case, &text(case)).unwrap();
+            let scene = PlaneScene::parse(case, &text(case)).unwrap();
             let loaded_scene = with_drive_loads(&scene).unwrap();
             let problem =
                 FreeMotionProblem::new(&scene, &loaded_scene, scene.motion.as_ref().unwrap())
@@ -297,7 +297,7 @@ mod tests {
 
     /// The method that is selected for `text`; its result must agree with a reference to the accuracy.
     fn picked_method(text: &str, accuracy: f64, duration: f64, reference: (Method, f64)) -> String {
-        let scene = Scene::parse("scene", text).unwrap();
+        let scene = PlaneScene::parse("scene", text).unwrap();
         let loaded_scene = with_drive_loads(&scene).unwrap();
         let problem =
             FreeMotionProblem::new(&scene, &loaded_scene, scene.motion.as_ref().unwrap()).unwrap();

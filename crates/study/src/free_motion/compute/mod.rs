@@ -30,15 +30,14 @@ pub(crate) use error_estimate::{error_of, large_energy_error, large_error};
 pub(crate) use events::{event_table, named_events};
 pub use motion_problem::MotionProblem;
 pub(crate) use motion_problem::{compiled_event, motion_to_simulate};
-pub use period::compute_period;
+pub(crate) use period::orbit_in_plane;
 pub use problem::FreeMotionProblem;
 pub use segmented_motion::SegmentedMotion;
 pub(crate) use segmented_motion::{ComputedMotion, PlaceInMotion};
 pub(crate) use shortfall::{LARGE_ERROR, not_accurate, not_resolved, too_many_steps};
 pub(crate) use simulation::check_times;
-#[cfg(feature = "output")]
 pub(crate) use simulation::compute_free_motion_at;
-pub use simulation::{FreeMotion, MotionSolver, compute_free_motion};
+pub use simulation::{FreeMotion, MotionSolver};
 pub(crate) use summary_lines::{
     Energies, balance_line, class_line, cost_line, event_line, first_changes, times_of,
 };

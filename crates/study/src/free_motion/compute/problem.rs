@@ -18,14 +18,14 @@ use dwell_dynamics::{DynamicsError, Event, Machine, Options, solve};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Coordinate, Reaction};
 use dwell_kinetostatics::Model;
-use dwell_scene::{FreeMotionSpec, Scene};
+use dwell_scene::{FreeMotionSpec, PlaneScene};
 
 /// The initial value problem of a scene's free motion.
 pub struct FreeMotionProblem<'a> {
     /// The scene.
-    pub(crate) scene: &'a Scene,
+    pub(crate) scene: &'a PlaneScene,
     /// The same with the loads of its drives added.
-    pub(crate) loaded_scene: &'a Scene,
+    pub(crate) loaded_scene: &'a PlaneScene,
     pub(crate) spec: &'a FreeMotionSpec,
     /// The model with all loads and reactions, for outputs.
     pub output_model: Model,
@@ -43,8 +43,8 @@ impl<'a> FreeMotionProblem<'a> {
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism or its machine cannot be built.
     pub fn new(
-        scene: &'a Scene,
-        loaded_scene: &'a Scene,
+        scene: &'a PlaneScene,
+        loaded_scene: &'a PlaneScene,
         spec: &'a FreeMotionSpec,
     ) -> Result<Self, StudyError> {
         let output_model = loaded_model(loaded_scene)?;
@@ -194,13 +194,13 @@ impl<'a> FreeMotionProblem<'a> {
 }
 
 impl MotionProblem for FreeMotionProblem<'_> {
-    type Scene = Scene;
+    type Scene = PlaneScene;
 
     #[allow(
         clippy::misnamed_getters,
         reason = "what moves is the scene with the loads of its drives"
     )]
-    fn scene(&self) -> &Scene {
+    fn scene(&self) -> &PlaneScene {
         self.loaded_scene
     }
 

@@ -180,7 +180,7 @@ fn compared_motion(samples: Vec<OdeState>, end: f64) -> SegmentedMotion {
 mod tests {
     use super::*;
     use crate::models::with_drive_loads;
-    use dwell_scene::Scene;
+    use dwell_scene::PlaneScene;
 
     /// Rotations and librations, with and without loads.
     const CASES: [&str; 4] = [
@@ -195,7 +195,7 @@ mod tests {
     fn errors(case: &str, periods: f64, accuracy: f64) -> Option<(usize, f64, f64)> {
         let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation");
         let text = std::fs::read_to_string(format!("{cases}/{case}/scene.toml")).unwrap();
-        let scene = Scene::parse(case, &text).unwrap();
+        let scene = PlaneScene::parse(case, &text).unwrap();
         let loaded_scene = with_drive_loads(&scene).unwrap();
         let motion = scene.motion.as_ref().unwrap();
         let problem = FreeMotionProblem::new(&scene, &loaded_scene, motion).unwrap();

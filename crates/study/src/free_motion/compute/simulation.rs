@@ -16,7 +16,7 @@ use crate::trajectory::compute::{
 };
 use dwell_dynamics::{DynamicsError, Options};
 use dwell_findings::{Record, Table};
-use dwell_scene::{Scene, SceneError};
+use dwell_scene::{PlaneScene, SceneError};
 
 /// Number of samples if no sample interval is given.
 const DEFAULT_SAMPLES: f64 = 1000.0;
@@ -43,45 +43,42 @@ pub enum MotionSolver {
 
 /// A free motion, up to where it ended.
 pub struct FreeMotion {
-    /// The scene with the loads through which its drives act.
-    pub loaded_scene: Scene,
     /// Coordinates, energies and forces at the samples, and why the motion ended early or misses the required accuracy.
     pub computed: ComputedTrajectory<'static>,
     /// By event that happened: its time, s, and its name.
     pub events: Vec<(f64, String)>,
-    /// By event that happened: its time and number, and the actuator coordinates and speeds then.
-    pub event_table: Table,
     /// The estimated error, in the sense of [`MotionSolver::Accuracy`], where an accuracy was required.
     pub estimated_error: Option<f64>,
+}
+
+/// A free motion in the plane, and what is said of it.
+pub(crate) struct DescribedMotion {
+    /// The motion.
+    pub(crate) motion: FreeMotion,
+    /// The scene with the loads through which its drives act.
+    pub(crate) loaded_scene: PlaneScene,
+    /// By event that happened: its time and number, and the actuator coordinates and speeds then.
+    #[cfg_attr(
+        not(feature = "output"),
+        expect(dead_code, reason = "pages do not show it")
+    )]
+    pub(crate) event_table: Table,
     /// What the integration reports: method, events, cost, motion class, energy balance and estimated error.
-    pub summary: String,
+    pub(crate) summary: String,
     /// The numbers in it.
-    pub record: Record,
+    pub(crate) record: Record,
 }
 
 /// A motion at its rows, and what is known between them.
 type FollowedMotion<'s> = (Trajectory<'static>, Option<MotionBetweenRows<'s>>);
 
-/// The free motion of a scene.
-///
-/// # Errors
-/// [`StudyError`] when the scene has no motion, or its initial state cannot be evaluated. An error later in
-/// the motion, or an accuracy that is not reached, is in [`ComputedTrajectory::early_stop`].
-pub fn compute_free_motion(
-    scene: &Scene,
-    solver: &MotionSolver,
-    progress: Progress<'_>,
-) -> Result<FreeMotion, StudyError> {
-    compute_free_motion_at(scene, solver, None, progress)
-}
-
-/// The same with rows at wanted times (s, ascending) and at the end of the motion.
+/// The free motion of a scene in the plane, with rows at wanted times (s, ascending) and at the end of the motion.
 pub(crate) fn compute_free_motion_at(
-    scene: &Scene,
+    scene: &PlaneScene,
     solver: &MotionSolver,
     times: Option<&[f64]>,
     progress: Progress<'_>,
-) -> Result<FreeMotion, StudyError> {
+) -> Result<DescribedMotion, StudyError> {
     let spec = motion_to_simulate(scene, scene.motion.as_ref())?;
     let loaded_scene = with_drive_loads(scene)?;
     let problem = FreeMotionProblem::new(scene, &loaded_scene, spec)?;
@@ -110,12 +107,8 @@ pub(crate) fn compute_free_motion_at(
         sampler: &sampler,
     });
     let second = || problem.second_rows(&integrated, others, times);
-    let rows = problem.rows_and_summary(
-        &integrated,
-        ((trajectory, between), second),
-        duration,
-        progress,
-    );
+    let followed = ((trajectory, between), second);
+    let rows = problem.rows_and_summary(&integrated, followed, duration, progress);
     let (mut computed, (mut summary, mut record)) = rows?;
     if let Some(end) = computed.end_of_rows() {
         integrated.end_at(end);
@@ -126,11 +119,13 @@ pub(crate) fn compute_free_motion_at(
     record.extend(integrated.record.clone());
     summary += &problem.notes;
     summary += &integrated.remarks;
-    Ok(FreeMotion {
-        computed,
-        events: named_events(&problem, &integrated.motion.segments),
+    Ok(DescribedMotion {
+        motion: FreeMotion {
+            computed,
+            events: named_events(&problem, &integrated.motion.segments),
+            estimated_error: integrated.accuracy.map(|[_, error]| error),
+        },
         event_table: problem.event_table(&integrated.motion),
-        estimated_error: integrated.accuracy.map(|[_, error]| error),
         summary,
         record,
         loaded_scene,

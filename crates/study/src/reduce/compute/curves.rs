@@ -2,13 +2,12 @@
 
 use crate::estimate::{is_rounding, relative};
 use crate::explain::StudyError;
-use crate::models::PreparedScene;
 use crate::number_format::coordinate_unit;
 use crate::reduce::compute::{ReducedScene, UnitLoadCurves};
-use crate::trajectory::compute::{force_scales, reject_unknown_variables};
+use crate::trajectory::compute::force_scales;
 use dwell_findings::{Column, Table};
 use dwell_kinetostatics::Coefficients;
-use dwell_scene::{Scene, SceneError};
+use dwell_scene::SceneError;
 use rayon::prelude::*;
 
 /// Positions of the table if their number is not given: half a degree apart over a revolution.
@@ -221,18 +220,6 @@ pub struct Reduction<P> {
     pub unit_loads: Option<UnitLoadCurves>,
     /// Estimated rounding errors of the coefficients.
     pub errors: RoundingErrors,
-}
-
-/// Computes the reduced parameters of a scene over its range, at `points` positions (two or more) if given.
-///
-/// # Errors
-/// [`StudyError`] when the mechanism cannot be assembled, or a position of the range cannot be evaluated.
-pub fn compute_reduction(
-    scene: &Scene,
-    points: Option<usize>,
-) -> Result<Reduction<PreparedScene<'_>>, StudyError> {
-    reject_unknown_variables(scene)?;
-    Reduction::new(PreparedScene::without_loads(scene)?, points)
 }
 
 impl<P: ReducedScene> Reduction<P> {

@@ -10,7 +10,7 @@ mod unit_load_curves;
 #[cfg(feature = "output")]
 pub(crate) use curves::coefficient_table;
 pub(crate) use curves::flat;
-pub use curves::{ReducedCurves, Reduction, RoundingErrors, compute_reduction};
+pub use curves::{ReducedCurves, Reduction, RoundingErrors};
 pub(crate) use curves::{coefficient_units, inertia_units};
 pub(crate) use peak::{Peak, fast_turns, peak_between_rows};
 pub use reduced_scene::{InertiaAt, ReducedScene, TabulatedScene};

@@ -186,7 +186,7 @@ fn unexplained_turn(step: f64, from: &[Turning], to: &[Turning]) -> f64 {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::*;
-    use dwell_scene::Scene;
+    use dwell_scene::PlaneScene;
 
     /// A crank's pin in the slot of a rocker, whose pivot is outside the pin's circle by a part `gap` of the crank: where they
     /// are nearest, the rocker turns 1/gap times as fast as the crank.
@@ -205,7 +205,7 @@ mod tests {
     #[test]
     fn a_peak_that_no_row_shows_is_found() {
         let gap = 1e-5;
-        let scene = Scene::parse("near.toml", &slotted_rocker(gap)).unwrap();
+        let scene = PlaneScene::parse("near.toml", &slotted_rocker(gap)).unwrap();
         let prepared = PreparedScene::without_loads(&scene).unwrap();
         let curves = ReducedCurves::new(&prepared, None).unwrap();
         let Peak { q, m, error } = peak_between_rows(&prepared, &curves).unwrap();
@@ -222,7 +222,7 @@ mod tests {
     #[test]
     fn a_peak_narrower_than_a_step_is_found() {
         let text = slotted_rocker(1e-3);
-        let scene = Scene::parse("near.toml", &text).unwrap();
+        let scene = PlaneScene::parse("near.toml", &text).unwrap();
         let prepared = PreparedScene::without_loads(&scene).unwrap();
         let curves = ReducedCurves::new(&prepared, None).unwrap();
         let Peak { q, m, error } = peak_between_rows(&prepared, &curves).unwrap();
@@ -253,7 +253,7 @@ mod tests {
     #[test]
     fn a_peak_that_rows_show_is_not_mentioned() {
         let text = slotted_rocker(0.5);
-        let scene = Scene::parse("far.toml", &text).unwrap();
+        let scene = PlaneScene::parse("far.toml", &text).unwrap();
         let prepared = PreparedScene::without_loads(&scene).unwrap();
         let curves = ReducedCurves::new(&prepared, None).unwrap();
         assert_eq!(peak_between_rows(&prepared, &curves), None);

@@ -37,7 +37,7 @@ pub(super) struct OfChart {
 #[derive(Default)]
 pub(crate) struct Motion {
     /// By part: its chart (0: the scene's own coordinate) and its solution.
-    pub(super) parts: Vec<(usize, Solution)>,
+    pub(in crate::space) parts: Vec<(usize, Solution)>,
     /// The charts from number 1 on.
     pub(super) charts: Vec<SpaceMotionProblem<'static>>,
 }

@@ -3,15 +3,10 @@
 mod between_rows;
 mod change_points;
 mod charts;
-#[cfg(feature = "output")]
-mod output;
 mod problem;
 mod run;
 mod summary;
 mod tables;
-
-#[cfg(feature = "output")]
-pub use self::output::simulate_in_space;
 
 use self::between_rows::MotionSampler;
 use self::charts::Motion;
@@ -29,87 +24,8 @@ use crate::trajectory::compute::{
     Analysis, ComputedTrajectory, MotionBetweenRows, Quantity, Sampler, SecondRows,
     TrajectorySample, extra_columns,
 };
-use dwell_dynamics::Orbit;
 use dwell_findings::RecordedEvent;
 use dwell_page::Page;
-use dwell_scene::SpaceScene;
-
-/// A free motion in space, up to where it ended.
-pub struct FreeMotionInSpace {
-    /// Coordinates, energies and forces at the samples, and why the motion ended early or misses the required accuracy.
-    pub computed: ComputedTrajectory<'static>,
-    /// By event that happened: its time, s, and its name.
-    pub events: Vec<(f64, String)>,
-    /// The estimated error, in the sense of [`MotionSolver::Accuracy`], where an accuracy was required.
-    pub estimated_error: Option<f64>,
-}
-
-/// The free motion of a scene in space.
-///
-/// # Errors
-/// [`StudyError`] when the scene has no motion, or its initial state cannot be evaluated. What ends it later is in
-/// [`ComputedTrajectory::early_stop`].
-pub fn compute_free_motion_in_space(
-    scene: &SpaceScene,
-    solver: &MotionSolver,
-    progress: Progress<'_>,
-) -> Result<FreeMotionInSpace, StudyError> {
-    let problem = SpaceMotionProblem::new(scene)?.for_solver(solver);
-    let SimulatedMotion { run, computed } = problem.simulate(solver, None, progress)?;
-    let estimated_error = run.accuracy.and_then(|_| problem.largest_error(&run));
-    Ok(FreeMotionInSpace {
-        computed,
-        events: named_events(&problem, &run.motion.parts),
-        estimated_error,
-    })
-}
-
-/// The orbit of the conservative free motion of one coordinate of a scene in space: its period and its energy.
-///
-/// # Errors
-/// [`StudyError`] when the scene has no motion, or it is not conservative.
-pub fn compute_period_in_space(scene: &SpaceScene) -> Result<Orbit, StudyError> {
-    let problem = SpaceMotionProblem::new(scene)?;
-    problem.orbit(1.0).map_err(|error| problem.explain(&error))
-}
-
-/// The free motion of a scene in space as a page, and why it ended early or misses the required accuracy.
-///
-/// # Errors
-/// [`StudyError`] when the scene has no motion, or its initial state cannot be evaluated.
-///
-/// ```
-/// use dwell_study::{MotionSolver, SolverSettings, free_motion_page_in_space, no_progress};
-///
-/// let text = r#"
-/// bodies.ground.points = { O = [0, 0, 0] }
-/// bodies.bob = { points = { O = [0, 0, 0] }, mass = 2.0, center = [0.5, 0, 0] }
-/// joints.O = { revolute = ["ground.O", "bob.O"], axis = [0, 1, 0] }
-/// actuators.phi = { angle = "O" }
-/// assembly.phi = 0.0
-/// loads.weight = { gravity = [0, 0, -9.81] }
-/// motion.duration = 1.0
-/// "#;
-/// let scene = dwell_scene::SpaceScene::parse("pendulum.toml", text)?;
-/// let solver = MotionSolver::Settings(SolverSettings::default());
-/// let (page, early_stop) = free_motion_page_in_space(&scene, &solver, &no_progress)?;
-/// assert!(page.drawing.is_some() && early_stop.is_none());
-/// # Ok::<(), dwell_study::StudyError>(())
-/// ```
-pub fn free_motion_page_in_space(
-    scene: &SpaceScene,
-    solver: &MotionSolver,
-    progress: Progress<'_>,
-) -> Result<(Page, Option<StudyError>), StudyError> {
-    let problem = SpaceMotionProblem::new(scene)?.for_solver(solver);
-    let simulated = problem.simulate(solver, None, progress)?;
-    let mut page = problem.page(&simulated);
-    let (summary, record) = problem.summary(&simulated.run, problem.duration()?);
-    page.printed = summary;
-    page.numbers = record.numbers;
-    page.events = problem.recorded_events(&simulated.run);
-    Ok((page, simulated.computed.early_stop))
-}
 
 /// A motion and its rows.
 pub(super) struct SimulatedMotion {
@@ -170,7 +86,10 @@ impl SpaceMotionProblem<'_> {
     }
 
     /// What evaluates the samples of a motion, by chart.
-    fn evaluators<'p>(&'p self, motion: &'p Motion) -> Vec<SpaceEvaluator<'p>> {
+    pub(in crate::space) fn evaluators<'p>(
+        &'p self,
+        motion: &'p Motion,
+    ) -> Vec<SpaceEvaluator<'p>> {
         let all = (0..=motion.charts.len()).map(|chart| {
             let problem = motion.problem(self, chart);
             let model = (&problem.output_model, &self.reactions);
@@ -180,7 +99,7 @@ impl SpaceMotionProblem<'_> {
     }
 
     /// The rows and the mechanism in them.
-    fn page(&self, simulated: &SimulatedMotion) -> Page {
+    pub(in crate::space) fn page(&self, simulated: &SimulatedMotion) -> Page {
         let SimulatedMotion { run, computed } = simulated;
         let size = self.output_model.plan().size();
         let evaluators = self.evaluators(&run.motion);
@@ -188,7 +107,7 @@ impl SpaceMotionProblem<'_> {
     }
 
     /// The events that happened, with their times.
-    fn recorded_events(&self, run: &Run) -> Vec<RecordedEvent> {
+    pub(in crate::space) fn recorded_events(&self, run: &Run) -> Vec<RecordedEvent> {
         let events = named_events(self, &run.motion.parts).into_iter();
         events.map(|(t, name)| RecordedEvent { name, t }).collect()
     }

@@ -31,9 +31,9 @@ pub(crate) struct SpaceMotionProblem<'a> {
     pub(super) tolerance: Option<f64>,
     /// The reactions of the model for outputs, and that model with all loads.
     pub(super) reactions: JointReactions,
-    pub(super) output_model: Model,
+    pub(in crate::space) output_model: Model,
     /// The equations of motion.
-    pub(super) machine: Machine<Model>,
+    pub(in crate::space) machine: Machine<Model>,
     /// The same with the requested reactions, for their impulses where there are end stops.
     pub(super) impact_machine: Option<Machine<Model>>,
     /// The model whose reactions events are about.

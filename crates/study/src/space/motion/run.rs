@@ -23,7 +23,7 @@ const BEFORE_END: f64 = 1e-6;
 
 /// A computed motion.
 pub(crate) struct Run {
-    pub(super) motion: Motion,
+    pub(in crate::space) motion: Motion,
     /// The second run, whose difference shows the errors.
     pub(super) second: Option<Motion>,
     /// The orbit that it was computed from, by quadrature, and the part of all times by which it may be late.
@@ -32,7 +32,7 @@ pub(crate) struct Run {
     /// The options of the rows between its steps.
     pub(super) options: Options,
     /// The accuracy that was required.
-    pub(super) accuracy: Option<f64>,
+    pub(in crate::space) accuracy: Option<f64>,
     /// The error of a motion that was integrated to an accuracy, and what is said of that.
     pub(super) found: Option<(Difference, (String, Record))>,
 }
@@ -245,7 +245,7 @@ impl SpaceMotionProblem<'_> {
     }
 
     /// The largest estimated error of a motion, in the sense of [`MotionSolver::Accuracy`]; none where it has no second run.
-    pub(super) fn largest_error(&self, run: &Run) -> Option<f64> {
+    pub(in crate::space) fn largest_error(&self, run: &Run) -> Option<f64> {
         match &run.found {
             Some((difference, _)) => Some(difference.largest()),
             None => self.errors(run).map(|errors| errors.largest),

@@ -15,7 +15,7 @@ use dwell_findings::Record;
 
 impl SpaceMotionProblem<'_> {
     /// What is said of a motion, and the numbers in it.
-    pub(super) fn summary(&self, run: &Run, duration: f64) -> (String, Record) {
+    pub(in crate::space) fn summary(&self, run: &Run, duration: f64) -> (String, Record) {
         let mut record = Record::default();
         let end = run.motion.end();
         let of_all = match end < duration {

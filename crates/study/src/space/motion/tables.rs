@@ -143,7 +143,7 @@ impl SpaceMotionProblem<'_> {
 
     /// The events of a motion as a table.
     #[cfg(feature = "output")]
-    pub(super) fn event_table(&self, motion: &Motion) -> Table {
+    pub(in crate::space) fn event_table(&self, motion: &Motion) -> Table {
         event_table(self, &motion.parts, |event| {
             let problem = motion.problem(self, event.chart);
             let mut workspace = problem.machine.workspace();

@@ -2,7 +2,6 @@
 
 use super::columns::all_columns;
 use super::evaluator::SpaceEvaluator;
-use super::page::space_page;
 use super::reactions::JointReactions;
 use super::requested::{reject_unknown_variables, requested};
 use super::rounding::RoundingInSpace;
@@ -17,7 +16,6 @@ use crate::trajectory::compute::{
 use dwell_geometry::space::{Coordinate, Plan};
 use dwell_kinetostatics::KinetostaticsError;
 use dwell_kinetostatics::space::Model;
-use dwell_page::Page;
 use dwell_scene::SpaceScene;
 
 /// Some columns of a scene in space along its prescribed motion, its sweep, or the range of its only actuator, among which is the
@@ -104,51 +102,6 @@ pub(crate) fn computed_columns<'a>(
         trajectory,
         results,
     })
-}
-
-/// An analysis of a scene in space along its prescribed motion, its sweep, or the range of its only actuator.
-///
-/// # Errors
-/// [`StudyError::Scene`] when the mechanism cannot be assembled, the scene gives no coordinates, or the first position cannot
-/// be reached.
-pub fn compute_trajectory_in_space<'a>(
-    scene: &'a SpaceScene,
-    analysis: Analysis,
-    progress: Progress<'_>,
-) -> Result<ComputedTrajectory<'a>, StudyError> {
-    let (reactions, model) = JointReactions::new(scene)?;
-    let of_model = (&reactions, &model);
-    let (computed, _) = computed_rows(scene, of_model, (analysis, None), &|_| true, progress)?;
-    Ok(computed)
-}
-
-/// The page of an analysis of a scene in space along its prescribed motion, its sweep, or the range of its only actuator, and why it
-/// ended early, if it did.
-///
-/// # Errors
-/// [`StudyError::Scene`] when the mechanism cannot be assembled, the scene gives no coordinates, or the first position cannot
-/// be reached.
-///
-/// ```
-/// use dwell_study::{Analysis, no_progress, trajectory_page_in_space};
-///
-/// let scene = dwell_scene::SpaceScene::read("../../validation/spatial/rssr.toml")?;
-/// let (page, early_stop) = trajectory_page_in_space(&scene, Analysis::Kinematics, &no_progress)?;
-/// assert!(page.drawing.is_some_and(|drawing| drawing.view.is_some()) && early_stop.is_none());
-/// # Ok::<(), dwell_study::StudyError>(())
-/// ```
-pub fn trajectory_page_in_space(
-    scene: &SpaceScene,
-    analysis: Analysis,
-    progress: Progress<'_>,
-) -> Result<(Page, Option<StudyError>), StudyError> {
-    let (reactions, model) = JointReactions::new(scene)?;
-    let of_model = (&reactions, &model);
-    let (computed, evaluator) =
-        computed_rows(scene, of_model, (analysis, None), &|_| true, progress)?;
-    let size = model.plan().size();
-    let page = space_page(scene, size, &computed, (&reactions, vec![evaluator]));
-    Ok((page, computed.early_stop))
 }
 
 /// Evaluates one row after another, each by the evaluator of its chart, and some for their rounding. Why it ends early, if it does, and

@@ -11,7 +11,7 @@ use crate::sweep::compute::{Axis, Design};
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::InverseDynamics;
 use dwell_kinetostatics::variants::{Extremum, Turn, TurningVariant, VariantModel};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::cell::Cell;
 
 /// Displacements in the range of an axis: of the typical variant, to find slopes, and to verify them. Multiples of the
@@ -119,13 +119,13 @@ fn place(axis: &Axis, nominal: f64, (number, attempt): (usize, usize), displacem
 }
 
 /// A variant as a scene is read.
-fn scene_at(scene: &Scene, design: &Design, values: &[f64]) -> Option<Scene> {
+fn scene_at(scene: &PlaneScene, design: &Design, values: &[f64]) -> Option<PlaneScene> {
     scene.with_values(&design.assigned(values)).ok()
 }
 
 /// Whether two variants differ in numbers of the mechanism, of the masses and of the start alone, and besides in their loads
 /// where the model [has](VariantModel::numbers) these.
-fn differ_in_numbers_only(one: &Scene, other: &Scene, has_loads: bool) -> bool {
+fn differ_in_numbers_only(one: &PlaneScene, other: &PlaneScene, has_loads: bool) -> bool {
     one.assembly == other.assembly
         && one.varying_inertias == other.varying_inertias
         && (has_loads || one.loads == other.loads)
@@ -140,7 +140,7 @@ impl VariantFamily {
     /// The family of a sweep; none where its variants need a compilation each: for motions, cycles and periods under
     /// loads, under friction, or where a varied number is a direction, say.
     pub(crate) fn new(
-        scene: &Scene,
+        scene: &PlaneScene,
         design: &Design,
         requested: &RequestedQuantities,
     ) -> Option<Self> {
@@ -163,7 +163,7 @@ impl VariantFamily {
 
     /// The family whose structure is that of a typical variant.
     fn about(
-        scene: &Scene,
+        scene: &PlaneScene,
         design: &Design,
         requested: &RequestedQuantities,
         attempt: usize,

@@ -7,7 +7,7 @@ use dwell_geometry::{Coordinate, Reaction};
 use dwell_kinetostatics::variants::{TurningVariant, VariantModel};
 use dwell_kinetostatics::{InverseDynamics, Load, Signal};
 use dwell_laws::Law;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::f64::consts::TAU;
 
 /// A trajectory that misses a revolution by less than this part of it covers it.
@@ -17,7 +17,7 @@ const WHOLE_REVOLUTION: f64 = 1e-12;
 #[derive(Debug)]
 pub(crate) struct FamilyForces {
     /// A variant, for what all have in common.
-    scene: Scene,
+    scene: PlaneScene,
     analysis: Analysis,
     /// By index among the reactions of the mechanism, in ascending order.
     pub(crate) reactions: Vec<usize>,
@@ -30,7 +30,7 @@ pub(crate) struct FamilyForces {
 impl FamilyForces {
     /// The forces among the requested quantities, of variants of which `typical` is one; none where a table depends on
     /// points.
-    pub(crate) fn new(typical: &Scene, requested: &RequestedQuantities) -> Option<Self> {
+    pub(crate) fn new(typical: &PlaneScene, requested: &RequestedQuantities) -> Option<Self> {
         if typical.loads.iter().any(has_table_of_points) {
             return None;
         }
@@ -87,7 +87,7 @@ fn has_table_of_points(load: &Load) -> bool {
 }
 
 /// The constant velocity of the scene's trajectory, rad/s, where it covers a revolution of an actuator that turns fully.
-fn revolution_velocity(scene: &Scene, analysis: Analysis) -> Option<f64> {
+fn revolution_velocity(scene: &PlaneScene, analysis: Analysis) -> Option<f64> {
     if let Some(prescribed) = &scene.prescribed {
         let [Law::Polynomial(law)] = &prescribed.laws[..] else {
             return None;

@@ -2,7 +2,7 @@
 
 use crate::branch_note::branch_note;
 use crate::explain::{StudyError, explain_machine, explain_model, explain_position};
-use crate::free_motion::compute::{MotionSolver, compute_free_motion};
+use crate::free_motion::compute::{MotionSolver, compute_free_motion_at};
 use crate::models::{SolverSettings, compile_model, end_stops, exact_model, with_loads};
 use crate::number_format::force_unit;
 use crate::progress::no_progress;
@@ -16,9 +16,9 @@ use crate::trajectory::compute::{
 };
 use dwell_dynamics::{CoordinateMode, Machine};
 use dwell_kinetostatics::Model;
-use dwell_scene::{Scene, SceneError};
+use dwell_scene::{PlaneScene, SceneError};
 
-impl SweptScene for Scene {
+impl SweptScene for PlaneScene {
     /// With all reactions.
     type Compiled = Model;
 
@@ -66,7 +66,8 @@ impl SweptScene for Scene {
 
     fn free_motion(&self) -> Result<ComputedTrajectory<'static>, StudyError> {
         let solver = MotionSolver::Settings(SolverSettings::default());
-        Ok(compute_free_motion(self, &solver, &no_progress)?.computed)
+        let described = compute_free_motion_at(self, &solver, None, &no_progress)?;
+        Ok(described.motion.computed)
     }
 
     fn free_machine(&self, model: &Model) -> Result<Machine, StudyError> {
@@ -129,7 +130,7 @@ impl SweptScene for Scene {
 
 /// Some reactions of a model, by their index, in the free rotation of an energy, J.
 fn free_reaction_curves(
-    scene: &Scene,
+    scene: &PlaneScene,
     model: &Model,
     indices: &[usize],
     energy: f64,

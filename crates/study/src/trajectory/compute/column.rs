@@ -5,7 +5,7 @@ use crate::trajectory::compute::{Analysis, Dyad};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::space::{self, Vec3};
 use dwell_geometry::{BodyId, Guide, JointId, Reaction, Vec2};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// Whether a name selects a column: its full name, or a prefix up to a dot.
 pub(crate) fn is_prefix_of(name: &str, column: &str) -> bool {
@@ -66,7 +66,7 @@ pub(crate) struct Column {
 
 impl Quantity {
     /// The bodies that it depends on: if they are not modelled, it has no value.
-    pub(crate) fn bodies(self, scene: &Scene, reactions: &[Reaction]) -> Vec<BodyId> {
+    pub(crate) fn bodies(self, scene: &PlaneScene, reactions: &[Reaction]) -> Vec<BodyId> {
         let joint = |j: JointId| scene.mechanism.joints[j.0].bodies.to_vec();
         match self {
             Self::Measured(

@@ -6,7 +6,7 @@ use dwell_geometry::{
     ActuatorKind, BodyId, Component, Coordinate, JointId, JointKind, Plan, Reaction,
 };
 use dwell_kinetostatics::{Load, LoadKind, Model};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 const BODY_ANGLE: [(&str, &str); 3] = [
     (
@@ -18,7 +18,7 @@ const BODY_ANGLE: [(&str, &str); 3] = [
 ];
 
 /// Every column of a scene, whatever the analysis; with the time if `timed`.
-pub(crate) fn all_columns(scene: &Scene, model: &Model, timed: bool) -> Vec<Column> {
+pub(crate) fn all_columns(scene: &PlaneScene, model: &Model, timed: bool) -> Vec<Column> {
     let mut columns = Columns {
         scene,
         plan: model.plan(),
@@ -37,7 +37,7 @@ pub(crate) fn all_columns(scene: &Scene, model: &Model, timed: bool) -> Vec<Colu
 
 /// Collects columns.
 struct Columns<'a> {
-    scene: &'a Scene,
+    scene: &'a PlaneScene,
     plan: &'a Plan,
     list: ColumnList,
 }

@@ -10,7 +10,7 @@ use crate::trajectory::compute::{Trajectory, TrajectorySample};
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{BodyId, Coordinate, JointId, Plan, PositionError, RangeLimit};
 use dwell_kinetostatics::{KinetostaticsError, LoadKind};
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{PlaneScene, SceneLocation};
 use std::f64::consts::TAU;
 
 /// Halvings between the last position that was reached and the first that was not.
@@ -96,7 +96,7 @@ impl<'a> EarlyStop<'a> {
     }
 
     /// The error message, with its locations in the scene.
-    pub(crate) fn explain(&self, scene: &Scene) -> StudyError {
+    pub(crate) fn explain(&self, scene: &PlaneScene) -> StudyError {
         let position = self.describe_position(scene);
         let when = match self.has_begun {
             true => format!("soon after {position}"),
@@ -136,7 +136,12 @@ impl<'a> EarlyStop<'a> {
     }
 
     /// The error where the trajectory cannot go on. One arm for each cause, so longer than a screen.
-    fn explain_limit(&self, scene: &Scene, position: &str, error: &PositionError) -> StudyError {
+    fn explain_limit(
+        &self,
+        scene: &PlaneScene,
+        position: &str,
+        error: &PositionError,
+    ) -> StudyError {
         let plan = self.plan;
         if let Some(relation) = non_finite_coupling(&scene.mechanism, &self.first_failed.q) {
             let at = if self.has_begun { "soon after" } else { "at" };
@@ -214,7 +219,7 @@ impl<'a> EarlyStop<'a> {
     /// The error where the range of a single actuator ends.
     fn explain_range_limit(
         &self,
-        scene: &Scene,
+        scene: &PlaneScene,
         (limit, revolutions): (RangeLimit, f64),
     ) -> StudyError {
         let plan = self.plan;
@@ -244,7 +249,7 @@ impl<'a> EarlyStop<'a> {
     /// The error where not even the first position can be reached.
     fn explain_first_position(
         &self,
-        scene: &Scene,
+        scene: &PlaneScene,
         position: &str,
         error: &PositionError,
     ) -> StudyError {
@@ -266,7 +271,7 @@ impl<'a> EarlyStop<'a> {
     }
 
     /// The actuator coordinates of the last position, and the time unless it is a sweep.
-    fn describe_position(&self, scene: &Scene) -> String {
+    fn describe_position(&self, scene: &PlaneScene) -> String {
         let at = &self.last_reached;
         let one = |(i, q): (usize, &f64)| {
             let name = &scene.mechanism.actuators[i].name;
@@ -282,7 +287,7 @@ impl<'a> EarlyStop<'a> {
 }
 
 /// The error where a load or the equations of motion are undefined.
-fn explain_load(scene: &Scene, error: KinetostaticsError, when: &str) -> StudyError {
+fn explain_load(scene: &PlaneScene, error: KinetostaticsError, when: &str) -> StudyError {
     let load = error.load().unwrap_or(0);
     let name = scene.load_name(load).unwrap_or_default();
     let (message, help, place) = match error {

@@ -13,7 +13,7 @@ use dwell_kinetostatics::{
     AppliedWrench, EvaluatedState, ForceSource, FreeBodyForces, InverseDynamics, LinkForces,
     LoadKind, Model, PowerBalance, Workspace, Wrench,
 };
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// Evaluates the forces at one position after another.
 #[derive(Clone)]
@@ -36,7 +36,7 @@ pub(crate) struct ForceEvaluator<'a> {
 }
 
 impl<'a> ForceEvaluator<'a> {
-    pub(crate) fn new(scene: &'a Scene, model: &'a Model, analysis: Analysis) -> Self {
+    pub(crate) fn new(scene: &'a PlaneScene, model: &'a Model, analysis: Analysis) -> Self {
         Self {
             model,
             analysis,
@@ -122,7 +122,7 @@ fn check_tables(
 /// What the forces at one position are computed into.
 #[derive(Clone)]
 pub(crate) struct PositionForces<'a> {
-    scene: &'a Scene,
+    scene: &'a PlaneScene,
     body_forces: FreeBodyForces,
     wrenches: Vec<AppliedWrench>,
     /// By load: the place among the wrenches of that on its second body, if it acts between two.
@@ -139,7 +139,7 @@ pub(crate) struct PositionForces<'a> {
 }
 
 impl<'a> PositionForces<'a> {
-    fn new(scene: &'a Scene, model: &Model) -> Result<Self, StudyError> {
+    fn new(scene: &'a PlaneScene, model: &Model) -> Result<Self, StudyError> {
         Ok(Self {
             body_forces: FreeBodyForces::new(model).map_err(|e| explain_model(scene, &e))?,
             scene,
@@ -253,7 +253,7 @@ fn needs_forces_on_bodies(quantity: Quantity) -> bool {
 /// Evaluates all quantities at one position after another.
 #[derive(Clone)]
 pub(crate) struct PositionEvaluator<'a> {
-    scene: &'a Scene,
+    scene: &'a PlaneScene,
     pub(crate) forces: ForceEvaluator<'a>,
     pub(crate) position: PositionForces<'a>,
     /// With several actuators, the unpruned mechanism: the trajectory ends where any of its groups cannot be assembled.
@@ -272,7 +272,7 @@ pub(crate) struct PositionEvaluator<'a> {
 
 impl<'a> PositionEvaluator<'a> {
     pub(crate) fn new(
-        scene: &'a Scene,
+        scene: &'a PlaneScene,
         whole_plan: &'a Plan,
         model: &'a Model,
         analysis: Analysis,

@@ -4,7 +4,7 @@ use crate::explain::{NamedScene as _, StudyError, labels, missing_section_label,
 use crate::number_format::count;
 use crate::trajectory::compute::{Analysis, SweepLimits, default_limits};
 use dwell_geometry::{ActuatorId, Plan};
-use dwell_scene::{CoordinateSweep, PrescribedMotion, Scene, SceneFile, SceneLocation};
+use dwell_scene::{CoordinateSweep, PlaneScene, PrescribedMotion, SceneFile, SceneLocation};
 
 /// What gives the coordinates that an analysis follows.
 pub(crate) struct FollowedScene<'a> {
@@ -23,7 +23,7 @@ pub(crate) struct FollowedScene<'a> {
 
 impl<'a> FollowedScene<'a> {
     /// Of a scene in the plane.
-    pub(crate) fn in_plane(scene: &'a Scene, plan: &Plan) -> Self {
+    pub(crate) fn in_plane(scene: &'a PlaneScene, plan: &Plan) -> Self {
         let actuators = 0..plan.actuators();
         let is_only = actuators.len() == 1;
         Self {

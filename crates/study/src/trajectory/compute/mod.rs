@@ -44,9 +44,8 @@ pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::CouplingMonitor;
 pub(crate) use peak_forces::{WantedForces, peak_analysis, peak_forces};
 pub(crate) use requested_columns::{RequestedColumns, is_requested};
-#[cfg(feature = "output")]
 pub(crate) use results::compute_trajectory_in;
-pub use results::{ComputedTrajectory, TrajectoryResults, compute_trajectory};
+pub use results::{ComputedTrajectory, TrajectoryResults};
 pub(crate) use results::{MotionBetweenRows, compute_along};
 pub(crate) use rounding_error::{BodyNumbers, LargestErrors, RoundingError};
 pub(crate) use row_evaluator::RowEvaluator;

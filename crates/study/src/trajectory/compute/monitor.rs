@@ -5,7 +5,7 @@ use crate::trajectory::compute::StopCause;
 use dwell_geometry::JointId;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_laws::Law;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// A coupling function, with its variable at the position before.
 #[derive(Clone)]
@@ -21,7 +21,7 @@ struct MonitoredCoupling<'a> {
 pub(crate) struct CouplingMonitor<'a>(Vec<MonitoredCoupling<'a>>);
 
 impl<'a> CouplingMonitor<'a> {
-    pub(crate) fn new(scene: &'a Scene) -> Self {
+    pub(crate) fn new(scene: &'a PlaneScene) -> Self {
         let mechanism = &scene.mechanism;
         let coupling = |(joint, law, variable)| {
             Some(MonitoredCoupling {

@@ -6,7 +6,7 @@ use crate::trajectory::compute::{
     Analysis, FollowedScene, ForceEvaluator, Point, Trajectory, highest_between,
 };
 use dwell_kinetostatics::{InverseDynamics, Model};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// Local maxima of a force about which its largest value is looked for between the positions.
 const REFINED: usize = 2;
@@ -21,7 +21,7 @@ pub(crate) struct WantedForces {
 }
 
 /// The analysis for peak forces: along the scene's motion or sweep, or statics over its range.
-pub(crate) fn peak_analysis(scene: &Scene) -> Option<Analysis> {
+pub(crate) fn peak_analysis(scene: &PlaneScene) -> Option<Analysis> {
     if scene.prescribed.is_some() || scene.sweep.is_some() {
         return Some(Analysis::Kinetostatics);
     }
@@ -35,7 +35,7 @@ pub(crate) fn peak_analysis(scene: &Scene) -> Option<Analysis> {
 /// # Errors
 /// [`StudyError::Scene`] where the scene defines no trajectory, or it ends early.
 pub(crate) fn peak_forces(
-    scene: &Scene,
+    scene: &PlaneScene,
     model: &Model,
     analysis: Analysis,
     wanted: &WantedForces,

@@ -7,12 +7,12 @@
 
 use crate::trajectory::compute::{Analysis, Column, Quantity};
 use dwell_geometry::{BodyId, JointId, Reaction, Vec2};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// The columns that an analysis of a scene yields.
 #[derive(Clone, Copy)]
 pub(crate) struct RequestedColumns<'a> {
-    scene: &'a Scene,
+    scene: &'a PlaneScene,
     /// The reactions of the model, to which the columns refer.
     reactions: &'a [Reaction],
     /// Whether there is a list at all.
@@ -20,7 +20,11 @@ pub(crate) struct RequestedColumns<'a> {
 }
 
 impl<'a> RequestedColumns<'a> {
-    pub(crate) fn new(scene: &'a Scene, reactions: &'a [Reaction], analysis: Analysis) -> Self {
+    pub(crate) fn new(
+        scene: &'a PlaneScene,
+        reactions: &'a [Reaction],
+        analysis: Analysis,
+    ) -> Self {
         let requests = &scene.requests;
         let lists_reactions = requests.lists_reactions && analysis != Analysis::Kinematics;
         Self {
@@ -98,7 +102,7 @@ impl<'a> RequestedColumns<'a> {
 }
 
 /// Whether a scene requests a column by name.
-pub(crate) fn is_requested(scene: &Scene, column: &Column) -> bool {
+pub(crate) fn is_requested(scene: &PlaneScene, column: &Column) -> bool {
     let names = scene.requests.variables.iter().flatten();
     names.into_iter().any(|n| column.matches(n))
 }

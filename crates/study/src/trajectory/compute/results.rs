@@ -15,7 +15,7 @@ use crate::trajectory::compute::{
 use dwell_findings::{self as findings, Table};
 use dwell_geometry::Plan;
 use dwell_kinetostatics::Model;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::f64::consts::TAU;
 use std::io;
 
@@ -62,7 +62,12 @@ pub struct TrajectoryResults {
 }
 
 impl TrajectoryResults {
-    pub(super) fn new(scene: &Scene, model: &Model, all: Vec<Column>, analysis: Analysis) -> Self {
+    pub(super) fn new(
+        scene: &PlaneScene,
+        model: &Model,
+        all: Vec<Column>,
+        analysis: Analysis,
+    ) -> Self {
         let requested = RequestedColumns::new(scene, model.reactions(), analysis);
         let is_kept = |c: &&Column| requested.are_with(c) || requested.draw(c);
         let columns: Vec<Column> = all.iter().filter(is_kept).cloned().collect();
@@ -241,7 +246,7 @@ fn unwrap_angle(last: &mut Option<[f64; 3]>, value: f64, speed: f64, t: f64) -> 
 
 /// All columns of an analysis along a trajectory, of the bodies that `model` places.
 pub(super) fn computed_columns(
-    scene: &Scene,
+    scene: &PlaneScene,
     model: &Model,
     trajectory: &Trajectory<'_>,
 ) -> Vec<Column> {
@@ -267,7 +272,7 @@ pub(super) fn computed_columns(
 
 /// What evaluates some columns along a trajectory, by chart; the trajectory ends where the whole mechanism, by its plan, does.
 pub(super) fn evaluators_of<'s>(
-    scene: &'s Scene,
+    scene: &'s PlaneScene,
     (whole, model): (&'s Plan, &'s Model),
     trajectory: &'s Trajectory<'_>,
     columns: &[Column],
@@ -405,25 +410,11 @@ impl ComputedTrajectory<'_> {
     }
 }
 
-/// Analyses a scene along its prescribed motion, its sweep, or the range of its only actuator, at `points` positions
-/// (two or more) if given.
-///
-/// # Errors
-/// [`StudyError`] when the mechanism cannot be assembled, the scene defines no actuator
-/// coordinates, a requested column does not exist, or the first position cannot be reached.
-pub fn compute_trajectory<'a>(
-    scene: &'a Scene,
-    analysis: Analysis,
-    points: Option<usize>,
-    progress: Progress<'_>,
-) -> Result<ComputedTrajectory<'a>, StudyError> {
-    compute_trajectory_in(RowStorage::Whole, scene, analysis, points, progress)
-}
-
-/// The same with the rows in memory, or where they are bounded.
+/// Analyses a scene in the plane along its prescribed motion, its sweep, or the range of its only actuator, with the rows in memory, or
+/// where they are bounded.
 pub(crate) fn compute_trajectory_in<'a>(
     storage: RowStorage,
-    scene: &'a Scene,
+    scene: &'a PlaneScene,
     analysis: Analysis,
     points: Option<usize>,
     progress: Progress<'_>,
@@ -445,7 +436,7 @@ pub(crate) fn compute_trajectory_in<'a>(
 /// [`StudyError`] where not even the first position can be reached.
 pub(crate) fn compute_along<'a>(
     storage: RowStorage,
-    scene: &Scene,
+    scene: &PlaneScene,
     full_model: &Model,
     (trajectory, between): (Trajectory<'a>, Option<MotionBetweenRows<'_>>),
     progress: Progress<'_>,

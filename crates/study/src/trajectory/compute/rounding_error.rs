@@ -6,7 +6,7 @@ use dwell_geometry::BodyId;
 use dwell_geometry::body_states::{BodyState, BodyStates};
 use dwell_kinetostatics::{InverseDynamics, Model, Workspace};
 use dwell_numerics::{DoubleDouble, Scalar};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// Number of positions that are evaluated again, along the whole trajectory.
 const POSITIONS: usize = 48;
@@ -116,7 +116,7 @@ pub(crate) struct RoundingError<'a> {
 
 impl<'a> RoundingError<'a> {
     /// For a trajectory of so many positions; none of a free motion.
-    pub(crate) fn new(scene: &Scene, model: &'a Model, of: (Analysis, usize)) -> Option<Self> {
+    pub(crate) fn new(scene: &PlaneScene, model: &'a Model, of: (Analysis, usize)) -> Option<Self> {
         let actuators = scene.mechanism.actuators.iter();
         let reactions = model.reactions().iter();
         let is_force = [

@@ -6,7 +6,7 @@ use crate::trajectory::compute::{
     ComputedTrajectory, RowEvaluator, Trajectory, TrajectoryResults, prune_model,
 };
 use dwell_kinetostatics::Model;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 
 /// The rows of a second computation, and the time of each, s.
 pub(crate) struct SecondRows {
@@ -18,7 +18,7 @@ impl SecondRows {
     /// Along a motion of a scene in the plane, up to where it can be evaluated; nothing else than its rows is computed. None where
     /// a column cannot be evaluated.
     pub(crate) fn in_plane(
-        scene: &Scene,
+        scene: &PlaneScene,
         full_model: &Model,
         trajectory: &Trajectory<'_>,
     ) -> Option<Self> {

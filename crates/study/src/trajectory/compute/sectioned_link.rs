@@ -2,7 +2,7 @@
 
 use dwell_findings::{Column, Table};
 use dwell_kinetostatics::{Distribution, LinkForces, Section};
-use dwell_scene::{Scene, SectionRequest as Request};
+use dwell_scene::{PlaneScene, SectionRequest as Request};
 
 /// Intervals along a link.
 const INTERVALS: usize = 100;
@@ -25,7 +25,7 @@ pub struct SectionedLink {
 }
 
 impl SectionedLink {
-    pub(crate) fn new(scene: &Scene, request: &Request) -> Self {
+    pub(crate) fn new(scene: &PlaneScene, request: &Request) -> Self {
         let (body, [from, to]) = (scene.mechanism.body_name(request.body), &request.names);
         Self {
             name: format!("{body} from {from} to {to}"),

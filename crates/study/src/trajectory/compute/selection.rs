@@ -6,14 +6,14 @@ use crate::models::{build_machine, compile_model, requested_reaction_bodies, wit
 use crate::trajectory::compute::{Column, all_columns, extra_columns, is_prefix_of};
 use dwell_geometry::{BodyId, JointId};
 use dwell_kinetostatics::Model;
-use dwell_scene::{Scene, SceneLocation, choices};
+use dwell_scene::{PlaneScene, SceneLocation, choices};
 
 /// Rejects requested names that select no column: for analyses that write none of them, so that a scene is right for all
 /// or for none.
 ///
 /// # Errors
 /// [`StudyError::Scene`] at the first of them.
-pub(crate) fn reject_unknown_variables(scene: &Scene) -> Result<(), StudyError> {
+pub(crate) fn reject_unknown_variables(scene: &PlaneScene) -> Result<(), StudyError> {
     if scene.requests.variables.is_some() {
         let model = compile_model(scene, &scene.mechanism.reactions())?;
         check_variables(scene, &model)?;
@@ -22,7 +22,7 @@ pub(crate) fn reject_unknown_variables(scene: &Scene) -> Result<(), StudyError> 
 }
 
 /// Every column that any analysis of a scene can write.
-fn columns_of_all_analyses(scene: &Scene, model: &Model) -> Result<Vec<Column>, StudyError> {
+fn columns_of_all_analyses(scene: &PlaneScene, model: &Model) -> Result<Vec<Column>, StudyError> {
     let loaded_scene = with_drive_loads(scene)?;
     let mut columns = all_columns(&loaded_scene, model, true);
     // Another analysis than `simulate` does not fail where the motion's machine cannot be built.
@@ -36,7 +36,7 @@ fn columns_of_all_analyses(scene: &Scene, model: &Model) -> Result<Vec<Column>, 
 ///
 /// # Errors
 /// [`StudyError::Scene`] at the first of them.
-pub(crate) fn check_variables(scene: &Scene, model: &Model) -> Result<(), StudyError> {
+pub(crate) fn check_variables(scene: &PlaneScene, model: &Model) -> Result<(), StudyError> {
     let Some(variables) = &scene.requests.variables else {
         return Ok(());
     };
@@ -57,7 +57,12 @@ pub(crate) fn check_variables(scene: &Scene, model: &Model) -> Result<(), StudyE
 }
 
 /// The error of a request for a statically indeterminate reaction.
-fn indeterminate_error(scene: &Scene, model: &Model, k: usize, name: &str) -> Option<StudyError> {
+fn indeterminate_error(
+    scene: &PlaneScene,
+    model: &Model,
+    k: usize,
+    name: &str,
+) -> Option<StudyError> {
     let mechanism = &scene.mechanism;
     let joint = name.split('.').next();
     let is_of_joint = |j: JointId| Some(&*mechanism.joints[j.0].name) == joint;
@@ -97,7 +102,7 @@ pub(crate) fn suggestion(name: &str, columns: &[Column]) -> String {
 
 /// The bodies that the requests of a scene need; `None` if no `variables` are named, so that every
 /// column is computed.
-pub(crate) fn requested_bodies(scene: &Scene, model: &Model) -> Option<Vec<BodyId>> {
+pub(crate) fn requested_bodies(scene: &PlaneScene, model: &Model) -> Option<Vec<BodyId>> {
     let requests = &scene.requests;
     let names = requests.variables.as_ref()?;
     let mut bodies: Vec<BodyId> = requests.paths.iter().map(|p| p.body).collect();
@@ -116,7 +121,7 @@ pub(crate) fn requested_bodies(scene: &Scene, model: &Model) -> Option<Vec<BodyI
 }
 
 /// The model without the groups that nothing needs.
-pub(crate) fn prune_model(scene: &Scene, model: &Model) -> Model {
+pub(crate) fn prune_model(scene: &PlaneScene, model: &Model) -> Model {
     match requested_bodies(scene, model) {
         None => model.clone(),
         Some(bodies) => model.clone().pruned_for(&bodies),

@@ -9,7 +9,7 @@ use crate::trajectory::compute::{
 };
 use dwell_geometry::{ActuatorId, Plan, Range};
 use dwell_kinetostatics::Model;
-use dwell_scene::{CoordinateSweep, MAX_ANGLE, PrescribedMotion, Scene, SceneLocation};
+use dwell_scene::{CoordinateSweep, MAX_ANGLE, PlaneScene, PrescribedMotion, SceneLocation};
 use std::f64::consts::TAU;
 
 /// Positions per step of progress.
@@ -242,7 +242,7 @@ impl<'a> Trajectory<'a> {
     }
 
     /// Where the scene defines it.
-    pub(crate) fn location(&self, scene: &Scene) -> SceneLocation {
+    pub(crate) fn location(&self, scene: &PlaneScene) -> SceneLocation {
         match &self.kind {
             TrajectoryKind::Prescribed(..) => SceneLocation::Prescribed,
             TrajectoryKind::Free(_) => SceneLocation::Motion,
@@ -409,7 +409,7 @@ pub(crate) fn range_to_draw([low, high]: [f64; 2], is_limit: [bool; 2]) -> Sweep
 }
 
 /// The default sweep over the range of the only actuator.
-pub(crate) fn default_limits(scene: &Scene, plan: &Plan) -> SweepLimits {
+pub(crate) fn default_limits(scene: &PlaneScene, plan: &Plan) -> SweepLimits {
     let start = plan.assembly_coordinates()[0];
     let half_stroke = DEFAULT_STROKE * scene.mechanism.size();
     match plan.range() {

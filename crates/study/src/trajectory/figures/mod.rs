@@ -15,7 +15,7 @@ use crate::explain::{NamedScene as _, StudyError};
 use crate::output::{MechanismDrawing, figure};
 use crate::trajectory::compute::{ComputedTrajectory, Quantity, TrajectoryResults};
 use dwell_report::{Animation, Axis, Drawing, Figure, Paint, Pen, Shape};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use std::ops::Deref;
 
 /// Maximum number of curves in a chart.
@@ -31,7 +31,7 @@ const WIDTH_PX: u32 = 640;
 
 /// What the figures of a trajectory of a scene in the plane share.
 pub(crate) struct FigureContext<'a> {
-    scene: &'a Scene,
+    scene: &'a PlaneScene,
     charts: ChartContext<'a>,
 }
 
@@ -48,7 +48,7 @@ impl<'a> Deref for FigureContext<'a> {
 /// # Errors
 /// [`StudyError::Scene`] where the span of the curves is not within the trajectory.
 pub(crate) fn trajectory_figures(
-    scene: &Scene,
+    scene: &PlaneScene,
     computed: &ComputedTrajectory<'_>,
     span: PictureSpan,
 ) -> Result<(Vec<Figure>, Option<String>), StudyError> {
@@ -77,7 +77,7 @@ pub(crate) fn trajectory_figures(
 /// # Errors
 /// None: it shows the whole trajectory.
 pub(crate) fn animation(
-    scene: &Scene,
+    scene: &PlaneScene,
     computed: &ComputedTrajectory<'_>,
 ) -> Result<Animation, StudyError> {
     let context = FigureContext::new(scene, computed, PictureSpan::default())?;
@@ -145,7 +145,7 @@ fn is_closed(body_poses: &[Vec<BodyPose>]) -> bool {
 
 impl<'a> FigureContext<'a> {
     fn new(
-        scene: &'a Scene,
+        scene: &'a PlaneScene,
         computed: &'a ComputedTrajectory<'_>,
         span: PictureSpan,
     ) -> Result<Self, StudyError> {
@@ -211,7 +211,7 @@ fn plane(title: String, shapes: Vec<Shape>) -> Drawing {
 
 impl TrajectoryResults {
     /// The bodies that are not modelled, because nothing needs them.
-    pub(crate) fn unmodelled_bodies(&self, scene: &Scene) -> Vec<String> {
+    pub(crate) fn unmodelled_bodies(&self, scene: &PlaneScene) -> Vec<String> {
         let bodies = scene.mechanism.bodies.iter().zip(&self.modelled);
         let unmodelled = bodies.filter(|(_, modelled)| !**modelled);
         unmodelled.map(|(body, _)| body.name.clone()).collect()

@@ -88,13 +88,13 @@ impl DrawnRows {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_scene::Scene;
+    use dwell_scene::PlaneScene;
 
-    fn scene() -> Scene {
+    fn scene() -> PlaneScene {
         let text = "[bodies.ground]\npoints = { A = [0, 0] }\n[bodies.crank]\npoints = { A = [0, 0] }\n\
                     [joints]\nA = { revolute = [\"ground.A\", \"crank.A\"] }\n[actuators]\n\
                     phi = { angle = [\"ground\", \"crank\"] }\n";
-        Scene::parse("crank.toml", text).expect("a scene")
+        PlaneScene::parse("crank.toml", text).expect("a scene")
     }
 
     fn drawn_rows(from: f64, to: f64, values: &[f64]) -> Result<DrawnRows, String> {

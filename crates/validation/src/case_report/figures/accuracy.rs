@@ -5,14 +5,14 @@ use crate::checked::states::CheckedStates;
 use crate::report_parts::{margin, margin_text, nearest};
 use dwell_findings::{Check, Finding};
 use dwell_report::{Axis, Cell, Chart, Figure, Grid, Group, Mark, Row, Series, Stroke};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::PreparedScene;
 use dwell_study::number_format::count;
 use dwell_study::output::{chart, figure};
 use dwell_verify::ErrorCurve;
 
 /// Difference, tolerance and margin of the finding of each check that is nearest to its tolerance, and of all that fail.
-pub(crate) fn margins(scene: &Scene, findings: &[Finding]) -> Figure {
+pub(crate) fn margins(scene: &PlaneScene, findings: &[Finding]) -> Figure {
     let rows = Check::ALL.into_iter().flat_map(|check| {
         let of_check = move || findings.iter().filter(move |f| f.check == check);
         let failed = of_check().filter(|f| !f.pass);
@@ -75,7 +75,7 @@ const MIN_DRAWN_ERROR: f64 = 1e-18;
 
 /// The errors of `f64` and `f32` along the motion that was checked.
 pub(crate) fn rounding(
-    scene: &Scene,
+    scene: &PlaneScene,
     checked: &CheckedStates,
     rounding: &[StateRounding],
 ) -> Figure {

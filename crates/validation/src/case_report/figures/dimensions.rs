@@ -4,7 +4,7 @@ use super::mechanism::drawing;
 use crate::case_report::dwell::RangePoses;
 use dwell_geometry::{BodyId, Vec2};
 use dwell_report::{Paint, Panel, Pen, Shape, TextPlacement};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::number_format::{digits, number};
 use dwell_study::output::MechanismDrawing;
 
@@ -17,7 +17,7 @@ const NEAR: f64 = 1e-3;
 
 /// The mechanism with the lengths of its links, the places of its fixed points and its centres of mass; nothing of a
 /// mechanism with more bodies than can be labelled.
-pub(super) fn dimensions(scene: &Scene, poses: &RangePoses, position: usize) -> Option<Panel> {
+pub(super) fn dimensions(scene: &PlaneScene, poses: &RangePoses, position: usize) -> Option<Panel> {
     let ground = scene.mechanism.ground;
     let bodies = scene.mechanism.bodies.len();
     if bodies > MAX_BODIES + 1 {
@@ -42,7 +42,7 @@ pub(super) fn dimensions(scene: &Scene, poses: &RangePoses, position: usize) -> 
 }
 
 struct DrawnDimensions<'a> {
-    scene: &'a Scene,
+    scene: &'a PlaneScene,
     poses: &'a RangePoses,
     position: usize,
 }

@@ -5,7 +5,7 @@ use crate::case_report::dwell::{Dwell, RangePoses, requested_dwell, unwrapped_an
 use dwell_geometry::Range;
 use dwell_kinetostatics::ReducedModel;
 use dwell_report::{Axis, Chart, Drawing, Figure, Mark, Paint, Panel, Pen, Series, Shape};
-use dwell_scene::{PathPoint, Scene};
+use dwell_scene::{PathPoint, PlaneScene};
 use dwell_study::number_format::count;
 use dwell_study::output::{MechanismDrawing, chart, coordinate_label, figure};
 use dwell_study::{PreparedScene, StudyError};
@@ -96,14 +96,14 @@ fn faded_positions(
 }
 
 /// The requested paths.
-pub(super) fn paths(scene: &Scene, poses: &RangePoses) -> Vec<Shape> {
+pub(super) fn paths(scene: &PlaneScene, poses: &RangePoses) -> Vec<Shape> {
     let pen = Pen::new(Paint::Ink, 2.0).lightness(0.55);
     let positions: Vec<usize> = (0..poses.body_poses.len()).collect();
     path_shapes(scene, poses, &positions, pen, "paths")
 }
 
 /// The part of each path that is passed during the dwell, which may pass the end of the revolution.
-fn dwell_paths(scene: &Scene, poses: &RangePoses, dwell: &Dwell) -> Vec<Shape> {
+fn dwell_paths(scene: &PlaneScene, poses: &RangePoses, dwell: &Dwell) -> Vec<Shape> {
     let pen = Pen::new(Paint::Ink, 5.0).lightness(0.1);
     let all = poses.q.iter().enumerate();
     let within = |offset: f64| {
@@ -117,7 +117,7 @@ fn dwell_paths(scene: &Scene, poses: &RangePoses, dwell: &Dwell) -> Vec<Shape> {
 }
 
 fn path_shapes(
-    scene: &Scene,
+    scene: &PlaneScene,
     poses: &RangePoses,
     positions: &[usize],
     pen: Pen,

@@ -3,7 +3,7 @@
 use crate::checked::history::History;
 use crate::checked::multibody::FreeMotionRun;
 use dwell_report::{Axis, Figure, Mark, Panel, Series, Stroke};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::output::{self, coordinate_label, symbol};
 use dwell_study::{PreparedScene, SolverSettings};
 
@@ -118,7 +118,7 @@ const MAX_STACKED: usize = 9;
 const MAX_POINTS: usize = 1500;
 
 /// The motion that was compared with the multibody equations.
-pub(crate) fn energies(scene: &Scene, run: &FreeMotionRun) -> Figure {
+pub(crate) fn energies(scene: &PlaneScene, run: &FreeMotionRun) -> Figure {
     let thin = run.steps.len().div_ceil(MAX_POINTS).max(1);
     let mut drawn_steps: Vec<usize> = (0..run.steps.len()).step_by(thin).collect();
     // A motion is shown to its end.

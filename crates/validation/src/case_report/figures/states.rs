@@ -5,7 +5,7 @@ use crate::case_report::dwell::RangePoses;
 use crate::checked::states::CheckedStates;
 use dwell_geometry::{Vec2, vec2};
 use dwell_report::{Axis, Figure, Series};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::bodies::BodyPose;
 use dwell_study::number_format::count;
 use dwell_study::output::{MechanismDrawing, chart, figure, symbol};
@@ -14,7 +14,7 @@ use dwell_study::output::{MechanismDrawing, chart, figure, symbol};
 const DRAWN_POSITIONS: usize = 5;
 
 /// The mechanism in several states, with the paths of its points.
-pub(crate) fn states_drawing(scene: &Scene, checked: &CheckedStates) -> Figure {
+pub(crate) fn states_drawing(scene: &PlaneScene, checked: &CheckedStates) -> Figure {
     let body_poses = checked.body_poses.iter().map(|bodies| {
         let body_pose = |&[x, y, angle]: &[f64; 3]| (vec2(x, y), Vec2::from_angle(angle));
         bodies.iter().map(body_pose).collect()
@@ -69,7 +69,7 @@ fn distinct_positions(body_poses: &[Vec<BodyPose>]) -> Vec<usize> {
 }
 
 /// The actuator forces along those states.
-pub(crate) fn actuator_forces(scene: &Scene, checked: &CheckedStates) -> Figure {
+pub(crate) fn actuator_forces(scene: &PlaneScene, checked: &CheckedStates) -> Figure {
     let drawn = &checked.actuator_forces;
     let panel = |(k, actuator): (usize, &dwell_geometry::Actuator)| {
         let unit = actuator.coordinate().force_unit();

@@ -5,7 +5,7 @@ use crate::cases::model_states::{ModelStates, StateRequest};
 use crate::cases::state_quantity::{KINDS, StateQuantity};
 use crate::error::ValidationError;
 use dwell_findings::{Check, Finding};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::number_format::count;
 use dwell_verify::FindingSpec;
 use dwell_verify::checks::{ComparedValue, compare_values};
@@ -33,7 +33,10 @@ struct ReferenceState {
 const STATE_KEYS: [&str; 4] = ["q", "q_dot", "q_ddot", "values"];
 
 /// The samples with values of a file or of a part of it, if there are any.
-pub(super) fn read_states(value: &Value, scene: &Scene) -> Result<Option<ReferenceStates>, String> {
+pub(super) fn read_states(
+    value: &Value,
+    scene: &PlaneScene,
+) -> Result<Option<ReferenceStates>, String> {
     let samples = list(value, "samples")?;
     if samples.is_empty() {
         return Ok(None);
@@ -50,7 +53,7 @@ pub(super) fn read_states(value: &Value, scene: &Scene) -> Result<Option<Referen
     }))
 }
 
-fn read_state(value: &Value, scene: &Scene) -> Result<ReferenceState, String> {
+fn read_state(value: &Value, scene: &PlaneScene) -> Result<ReferenceState, String> {
     check_keys(object(value, "it")?, &STATE_KEYS)?;
     let values = named_values(&value["values"])?;
     if values.is_empty() {
@@ -72,7 +75,7 @@ fn read_state(value: &Value, scene: &Scene) -> Result<ReferenceState, String> {
 }
 
 /// One number for each actuator.
-fn by_actuator(value: &Value, scene: &Scene) -> Result<Vec<f64>, String> {
+fn by_actuator(value: &Value, scene: &PlaneScene) -> Result<Vec<f64>, String> {
     let mut names = object(value, "it")?.keys();
     let actuators = &scene.mechanism.actuators;
     if let Some(name) = names.find(|k| actuators.iter().all(|a| a.name != **k)) {
@@ -83,7 +86,7 @@ fn by_actuator(value: &Value, scene: &Scene) -> Result<Vec<f64>, String> {
 
 impl ReferenceStates {
     /// The largest value of a unit in all samples.
-    fn scale(&self, scene: &Scene, unit: &str) -> f64 {
+    fn scale(&self, scene: &PlaneScene, unit: &str) -> f64 {
         let values = self.samples.iter().flat_map(|state| &state.values);
         let quantity = |name: &str| StateQuantity::find(scene, name);
         let of_unit =
@@ -94,7 +97,7 @@ impl ReferenceStates {
     /// One finding for each kind that is given.
     fn compare(
         &self,
-        scene: &Scene,
+        scene: &PlaneScene,
         model: &mut ModelStates<'_>,
         published: bool,
     ) -> Result<Vec<Finding>, ValidationError> {
@@ -188,7 +191,7 @@ impl Reference {
     /// As [`ModelStates::evaluate_at`].
     pub(crate) fn findings(
         &self,
-        scene: &Scene,
+        scene: &PlaneScene,
         model: &mut ModelStates<'_>,
     ) -> Result<Vec<Finding>, ValidationError> {
         let mut findings = Vec::new();

@@ -3,7 +3,7 @@
 
 use super::draw::RandomMachine;
 use dwell_dynamics::{Machine, MachineWorkspace};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::models::build_machine;
 
 /// Tolerance of the reference, and of the run that shows its error.
@@ -79,7 +79,7 @@ impl Reference {
     /// # Errors
     /// Where it cannot be followed, as text.
     pub(super) fn new(random: &RandomMachine, times: &[f64]) -> Result<Self, String> {
-        let scene = Scene::parse("machine.toml", &random.text).map_err(|e| e.to_string())?;
+        let scene = PlaneScene::parse("machine.toml", &random.text).map_err(|e| e.to_string())?;
         let spec = scene.motion.as_ref().ok_or("no motion")?;
         let components = scene.mechanism.reactions();
         let machine = build_machine(&scene, spec, &[]).map_err(|e| e.to_string())?;

@@ -4,8 +4,8 @@ use super::draw::RandomMachine;
 use super::reference::Reference;
 use crate::extremes::draws::Draws;
 use crate::extremes::in_scenes::column;
-use dwell_scene::Scene;
-use dwell_study::free_motion::compute::FreeMotion;
+use dwell_scene::PlaneScene;
+use dwell_study::FreeMotion;
 use dwell_study::{MotionSolver, StudyError, compute_free_motion, no_progress};
 use rayon::prelude::*;
 
@@ -77,7 +77,7 @@ fn run(random: &RandomMachine, accuracy: f64, reference: &Reference) -> MachineR
         accuracy,
         sample_interval: Some(random.span / ROWS as f64),
     };
-    let scene = Scene::parse("machine.toml", &random.text).map_err(StudyError::from);
+    let scene = PlaneScene::parse("machine.toml", &random.text).map_err(StudyError::from);
     let found = scene.and_then(|scene| compute_free_motion(&scene, &solver, &no_progress));
     match found {
         Ok(found) => compared(accuracy, &found, reference),

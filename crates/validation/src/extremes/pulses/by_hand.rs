@@ -3,7 +3,7 @@
 
 use super::subject::PulsedMotion;
 use dwell_dynamics::{Method, OdeState, Options, solve};
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::models::build_machine;
 
 /// Tolerance of the reference.
@@ -20,8 +20,8 @@ pub(super) fn restarted(
 ) -> Result<[f64; 2], String> {
     let (mut t, mut y) = (0.0, vec![0.0, motion.speed]);
     for (magnitude, end) in motion.pulse.pieces() {
-        let scene =
-            Scene::parse("piece.toml", &motion.scene(&magnitude)).map_err(|e| e.to_string())?;
+        let scene = PlaneScene::parse("piece.toml", &motion.scene(&magnitude))
+            .map_err(|e| e.to_string())?;
         let spec = scene.motion.as_ref().ok_or("no motion")?;
         let machine = build_machine(&scene, spec, &[]).map_err(|e| e.to_string())?;
         // The works begin at zero again: they do not act on the motion.

@@ -6,7 +6,7 @@ use super::subject::{INERTIA, PulseSubject, PulsedMotion};
 use crate::extremes::draws::Draws;
 use crate::extremes::in_scenes::column;
 use dwell_dynamics::Method;
-use dwell_scene::Scene;
+use dwell_scene::PlaneScene;
 use dwell_study::{MotionSolver, SolverSettings, compute_free_motion, no_progress};
 use rayon::prelude::*;
 
@@ -194,7 +194,7 @@ fn run(motion: &PulsedMotion, kind: RunKind) -> Result<UserResult, String> {
         }),
     };
     let text = motion.scene(&motion.pulse.expression());
-    let scene = Scene::parse("pulse.toml", &text).map_err(|e| e.to_string())?;
+    let scene = PlaneScene::parse("pulse.toml", &text).map_err(|e| e.to_string())?;
     let found = compute_free_motion(&scene, &solver, &no_progress).map_err(|e| e.to_string())?;
     let last = |name: &str| {
         let all = column(&found.computed.table, name)?;

@@ -1,0 +1,171 @@
+//! What differs between scenes in the plane and in space, for all analyses: everything above knows a scene by this trait alone.
+
+use crate::assembled::AskedScene;
+use crate::calibrate::CalibratedScene;
+use crate::explain::StudyError;
+use crate::export::ExportRequest;
+use crate::free_motion::compute::{FreeMotion, MotionSolver};
+use crate::progress::Progress;
+use crate::trajectory::compute::{Analysis, ComputedTrajectory};
+use crate::unit_runs::compute::UnitRunScene;
+use dwell_dynamics::Orbit;
+use dwell_export::{Export, SeveralFreedomsExport};
+use dwell_findings::{Finding, Record};
+use dwell_page::Page;
+use dwell_scene::Scene;
+use dwell_symbolic::ClosedForm;
+#[cfg(feature = "output")]
+use {
+    crate::output::Picture, crate::trajectory::figures::PictureSpan,
+    crate::trajectory::output::TrajectoryOutcome,
+};
+
+/// A page, and why its motion ended early, if it did.
+pub type PageAndStop = (Page, Option<StudyError>);
+
+/// A scene in the plane or in space.
+pub trait StudyScene: AskedScene + UnitRunScene + CalibratedScene {
+    /// What [`check`](crate::check()) prints; the numbers in it are recorded.
+    ///
+    /// # Errors
+    /// As of [`describe_scene`](crate::describe_scene).
+    fn description(&self, record: &mut Record) -> Result<String, StudyError>;
+
+    /// The scene with the reduced model of what it requests.
+    ///
+    /// # Errors
+    /// As of [`compute_reduction`](crate::compute_reduction).
+    fn prepared(&self) -> Result<Self::Prepared<'_>, StudyError>;
+
+    /// Pictures of the mechanism over its range, before and behind those of the reduced parameters.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] where a position cannot be reached.
+    #[cfg(feature = "output")]
+    fn range_pictures(_: &Self::Prepared<'_>) -> Result<Option<[Picture; 2]>, StudyError> {
+        Ok(None)
+    }
+
+    /// Whether it prescribes a motion or a sweep of its coordinates.
+    fn prescribes_positions(&self) -> bool;
+
+    /// The results of [`compute_trajectory`](crate::compute_trajectory).
+    ///
+    /// # Errors
+    /// As of that.
+    fn trajectory(
+        &self,
+        analysis: Analysis,
+        points: Option<usize>,
+        progress: Progress<'_>,
+    ) -> Result<ComputedTrajectory<'_>, StudyError>;
+
+    /// The results of [`trajectory_page`](crate::trajectory_page).
+    ///
+    /// # Errors
+    /// As of that.
+    fn trajectory_page(
+        &self,
+        analysis: Analysis,
+        points: Option<usize>,
+        progress: Progress<'_>,
+    ) -> Result<PageAndStop, StudyError>;
+
+    /// The results of [`analyse_trajectory_within`](crate::analyse_trajectory_within).
+    ///
+    /// # Errors
+    /// As of that.
+    #[cfg(feature = "output")]
+    fn trajectory_outcome(
+        &self,
+        analysis: Analysis,
+        points: Option<usize>,
+        span: PictureSpan,
+        progress: Progress<'_>,
+    ) -> Result<TrajectoryOutcome, StudyError>;
+
+    /// The results of [`compute_free_motion`](crate::compute_free_motion).
+    ///
+    /// # Errors
+    /// As of that.
+    fn simulated(
+        &self,
+        solver: &MotionSolver,
+        progress: Progress<'_>,
+    ) -> Result<FreeMotion, StudyError>;
+
+    /// The results of [`free_motion_page`](crate::free_motion_page).
+    ///
+    /// # Errors
+    /// As of that.
+    fn free_motion_page(
+        &self,
+        solver: &MotionSolver,
+        progress: Progress<'_>,
+    ) -> Result<PageAndStop, StudyError>;
+
+    /// The results of [`simulate_within`](crate::simulate_within).
+    ///
+    /// # Errors
+    /// As of that.
+    #[cfg(feature = "output")]
+    fn free_motion_outcome(
+        &self,
+        solver: &MotionSolver,
+        times: Option<&[f64]>,
+        span: PictureSpan,
+        progress: Progress<'_>,
+    ) -> Result<TrajectoryOutcome, StudyError>;
+
+    /// The results of [`compute_period`](crate::compute_period).
+    ///
+    /// # Errors
+    /// As of that.
+    fn orbit(&self) -> Result<Orbit, StudyError>;
+
+    /// The results of [`compute_closed_form`](crate::compute_closed_form).
+    ///
+    /// # Errors
+    /// As of that.
+    fn closed_form(&self, reaction: Option<&str>)
+    -> Result<(ClosedForm, Vec<Finding>), StudyError>;
+
+    /// What closed forms leave out.
+    #[cfg(feature = "output")]
+    fn closed_form_notes(&self, _: &ClosedForm) -> String {
+        String::new()
+    }
+
+    /// The results of [`compute_export`](crate::compute_export).
+    ///
+    /// # Errors
+    /// As of that.
+    fn fitted_export(&self, asked: &ExportRequest) -> Result<Export, StudyError>;
+
+    /// The results of [`compute_export_of_several_freedoms`](crate::compute_export_of_several_freedoms).
+    ///
+    /// # Errors
+    /// As of that; for another target than C.
+    fn several_freedoms(
+        &self,
+        is_c: bool,
+        asked: &ExportRequest,
+    ) -> Result<SeveralFreedomsExport, StudyError>;
+}
+
+/// What is done with a scene, in the plane or in space.
+pub trait SceneTask {
+    /// What it yields.
+    type Output;
+
+    /// Does it.
+    fn run<S: StudyScene>(self, scene: &S) -> Self::Output;
+}
+
+/// Does a task with a scene: here alone it matters whether that is in the plane or in space.
+pub fn with_dimension<T: SceneTask>(scene: &Scene, task: T) -> T::Output {
+    match scene {
+        Scene::Plane(scene) => task.run(&**scene),
+        Scene::Space(scene) => task.run(&**scene),
+    }
+}
