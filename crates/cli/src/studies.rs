@@ -1,6 +1,7 @@
 //! The commands that study one scene.
 
 use crate::options::Command;
+use dwell_dynamics::Method;
 use dwell_scene::Scene;
 use dwell_study::{Progress, Request, SolverSettings, StudyError, TrajectoryOutcome};
 use std::path::Path;
@@ -15,6 +16,16 @@ pub(crate) fn run(
     match request(command, out)? {
         Some(request) => dwell_study::run(scene, &request, progress),
         None => Ok(dwell_validation::work_precision(scene, progress)?.into()),
+    }
+}
+
+/// A method with one tolerance, relative and absolute.
+fn settings(method: Method, tolerance: f64) -> SolverSettings {
+    SolverSettings {
+        method,
+        rtol: tolerance,
+        atol: tolerance,
+        ..SolverSettings::default()
     }
 }
 
@@ -43,12 +54,7 @@ fn request<'a>(command: &'a Command, out: &'a Path) -> Result<Option<Request<'a>
             rtol,
             ..
         } => Request::Cycle {
-            settings: SolverSettings {
-                method: *method,
-                rtol: *rtol,
-                atol: *rtol,
-                ..SolverSettings::default()
-            },
+            settings: settings(*method, *rtol),
             fluctuation: *fluctuation,
         },
         Command::Equilibria { .. } => Request::Equilibria,
@@ -74,7 +80,10 @@ fn request<'a>(command: &'a Command, out: &'a Path) -> Result<Option<Request<'a>
         },
         Command::Sweep(given) => Request::Sweep(given.sweep(out)),
         Command::WorkPrecision { .. } => return Ok(None),
-        // The others are no studies of a scene, or their scenes are asked before.
-        _ => Request::Check,
+        Command::Check { .. } => Request::Check,
+        // Asked for before, or no studies of a scene.
+        Command::Kinematics(_) | Command::Statics(_) | Command::Kinetostatics(_) => Request::Check,
+        Command::Validate { .. } | Command::View { .. } => Request::Check,
+        Command::Schema | Command::Init { .. } => Request::Check,
     }))
 }

@@ -16,7 +16,7 @@ use std::fmt;
 use std::sync::Arc;
 
 /// What of a mechanism has a name, in the order of the scene.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Names {
     /// 2 in the plane, 3 in space.
     pub(crate) dimension: usize,

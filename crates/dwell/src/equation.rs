@@ -38,7 +38,7 @@ impl EquationOfMotion {
         self.0.initial_state()
     }
 
-    /// ẏ at time t, s. It allocates nothing.
+    /// ẏ at time t, s. In the plane it allocates nothing.
     ///
     /// # Errors
     /// [`Error::State`] for a wrong number of states; [`Error::Study`] where there is no pose or no inertia, or a load has no value.

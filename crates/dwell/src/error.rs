@@ -33,18 +33,18 @@ pub enum Error {
         /// The nearest name, or all of them.
         help: String,
     },
-    /// Another number of components than a vector has.
-    #[error("{asked} numbers asked of a vector, where {components} can be given")]
+    /// A vector that is taken as another number of components than it has.
+    #[error("a vector was taken as {asked} components, but it has {components}")]
     Components {
-        /// How many are asked for.
+        /// As how many it was taken.
         asked: usize,
-        /// How many there can be.
+        /// How many it has.
         components: &'static str,
     },
-    /// What exists in the plane alone.
-    #[error("{what}: this mechanism is in space ({instead})")]
+    /// A quantity that only planar mechanisms have.
+    #[error("this mechanism is in space, where there is no {what}: {instead}")]
     InSpace {
-        /// What was asked for.
+        /// The quantity.
         what: &'static str,
         /// What there is instead.
         instead: &'static str,
@@ -134,6 +134,15 @@ impl Error {
                 given: list.len(),
                 actuators,
             }),
+        }
+    }
+
+    /// A reaction that redundant constraints leave open.
+    pub(crate) fn shared_load(name: &str) -> Self {
+        Self::Unknown {
+            what: "statically determinate reaction",
+            name: name.to_owned(),
+            help: "redundant constraints share the load".to_owned(),
         }
     }
 

@@ -49,11 +49,11 @@ impl ExportTarget {
 impl Scene {
     /// The machine as code: the path and content of each file, as `dwell export` writes them. In cells every function of the coordinate is
     /// within `accuracy` of its largest value (1e-14 to 1e-2); exact code has that of rounding. A machine of several freedoms has exact code,
-    /// in C. Loops in space are closed by Newton's method: they have no exact code, and machines of several freedoms have none there.
+    /// in C. Mechanisms in space are exported in cells and with one degree of freedom only.
     ///
     /// # Errors
     /// [`Error::Study`] where the machine cannot be exported, with the reason and what to change: it has several freedoms and the target
-    /// is not C, or in space; it passes change points, or sticks. [`Error::Table`] for another accuracy.
+    /// is not C, or the mechanism is in space; it passes change points, or sticks. [`Error::Table`] for another accuracy.
     ///
     /// ```
     /// use dwell::ExportTarget;
@@ -112,7 +112,10 @@ impl SceneTask for ExportScene {
 
     fn run<S: StudyScene>(self, scene: &S) -> Self::Output {
         let Self { target, asked } = self;
-        if target.is_c() && scene.actuator(1).is_some() {
+        if scene.actuator(1).is_some() {
+            if !target.is_c() {
+                return Err(scene.several_freedoms_error().into());
+            }
             let export = compute_export_of_several_freedoms(scene, &asked)?;
             return Ok(texts(c_files_of_several_freedoms(&export).into()));
         }

@@ -61,7 +61,7 @@
 //! # Conventions
 //!
 //! SI everywhere: m, rad, kg, s, N. Right-handed plane, angles counter-clockwise. Points with three numbers make a mechanism one in space;
-//! a vector has as many components as it is [taken for](Kinematics). A reaction is the force or moment of the
+//! the type that a vector is assigned to says [how many components](Kinematics) it has. A reaction is the force or moment of the
 //! joint's first-named body on the second. Points are written `body.point`, reactions `joint.component`. Coordinates are those of
 //! the actuators, in their order. A [`Mechanism`] and a [`ReducedModel`] are constant and shared between threads.
 //!

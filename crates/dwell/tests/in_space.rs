@@ -144,12 +144,191 @@ fn what_a_vector_does_not_have_is_refused_by_name() {
     let at = rssr.positions(&[0.3]).unwrap();
     let text = |error: Error| error.to_string();
     let two = at.position::<2>("crank.B").map_err(text);
+    let said = "a vector was taken as 2 components, but it has 3".to_owned();
+    assert_eq!(two, Err(said.clone()));
     assert_eq!(
-        two,
-        Err("2 numbers asked of a vector, where 3 can be given".to_owned())
+        at.angular_velocity::<2>("crank").map_err(text),
+        Err(said.clone())
     );
+    // Also where there is nothing to compute.
+    assert_eq!(rssr.paths::<2>(["crank.B"], &[]).map_err(text), Err(said));
     let angle = at.angle("crank").map_err(text);
     assert!(angle.unwrap_err().contains("`axes` has its orientation"));
     let form = rssr.scene().closed_form(dwell::Language::C, None);
     assert!(form.unwrap_err().to_string().contains("in space"));
+    let slider = Scene::read("../../docs/slider.toml").unwrap();
+    let slider = slider.assemble().unwrap();
+    let at = slider.positions(&[0.3]).unwrap();
+    for error in [
+        at.position::<1>("crank.B").map(drop),
+        at.position::<4>("crank.B").map(drop),
+        at.angular_velocity::<2>("crank").map(drop),
+    ] {
+        assert!(matches!(error, Err(Error::Components { .. })));
+    }
+}
+
+/// Points of several coordinates follow one another as the coordinates do.
+#[test]
+fn paths_of_several_coordinates_are_the_positions() {
+    let governor = Scene::read("../../validation/spatial/governor.toml").unwrap();
+    let governor = governor.assemble().unwrap();
+    let start = governor.start();
+    let q: Vec<f64> = (0..4)
+        .flat_map(|k| [start[0] + 0.4 * f64::from(k), start[1]])
+        .collect();
+    let names: Vec<String> = governor
+        .points()
+        .into_iter()
+        .skip(1)
+        .filter_map(|(body, points)| Some(format!("{body}.{}", points.first()?)))
+        .collect();
+    let wanted = || names.iter().map(String::as_str);
+    let paths: Vec<[f64; 3]> = governor.paths(wanted(), &q).unwrap();
+    assert_eq!(paths.len(), 4 * names.len());
+    for (k, q) in q.chunks(2).enumerate() {
+        let at = governor.positions(q).unwrap();
+        for (i, name) in wanted().enumerate() {
+            assert_eq!(paths[k * names.len() + i], at.position(name).unwrap());
+        }
+    }
+}
+
+/// Parallel cranks: the third is redundant.
+#[test]
+fn what_redundant_constraints_share_is_left_out_or_refused() {
+    let cranks = Scene::read("../../validation/parallelogram-three-cranks/scene.toml").unwrap();
+    let cranks = cranks.assemble().unwrap();
+    let determined = cranks.determined_reactions();
+    let open: Vec<String> = cranks
+        .reactions()
+        .into_iter()
+        .filter(|r| !determined.contains(r))
+        .collect();
+    assert!(!open.is_empty());
+    let refused = cranks.reduced([&open[0][..]]).map(drop).unwrap_err();
+    assert!(
+        refused
+            .to_string()
+            .contains("redundant constraints share the load"),
+        "{refused}"
+    );
+    let all = cranks
+        .reduced(determined.iter().map(String::as_str))
+        .unwrap();
+    assert_eq!(all.reactions(), determined);
+    let unknown = cranks
+        .reduced(["nowhere"])
+        .map(drop)
+        .unwrap_err()
+        .to_string();
+    let joint = cranks.reactions()[0].split('.').next().unwrap().to_owned();
+    assert_eq!(
+        unknown.matches(&format!("`{joint}`")).count(),
+        1,
+        "{unknown}"
+    );
+    // The axes of a body in the plane turn about z.
+    let at = cranks.positions(&cranks.start()).unwrap();
+    let (body, _) = cranks.points()[1];
+    let [x, y, z] = at.axes(body).unwrap();
+    let angle = at.angle(body).unwrap();
+    assert!((x[0] - angle.cos()).abs() < 1e-15 && (x[1] - angle.sin()).abs() < 1e-15);
+    assert!(y == [-x[1], x[0], 0.0] && z == [0.0, 0.0, 1.0]);
+}
+
+/// Many coordinates at once have the values of one after the other, and the first that cannot be reached is named.
+#[test]
+fn a_batch_is_the_same_as_one_by_one() {
+    let rssr = rssr("if(q.velocity > 9, -2, -0.5)").unwrap();
+    let reduced = rssr.reduced(["B", "D.moment-z"]).unwrap();
+    let q: Vec<f64> = (0..60).map(|k| 0.1 * f64::from(k)).collect();
+    let batch = reduced.batch(&q).unwrap();
+    let [reactions, loads] = [reduced.reactions().len(), reduced.loads().len()];
+    for (k, &q) in q.iter().enumerate() {
+        let at = reduced.at(q).unwrap();
+        assert_eq!((batch.m[k], batch.half_dm[k]), (at.m, at.half_dm));
+        assert_eq!(batch.a[k * reactions..][..reactions], at.a);
+        assert_eq!(batch.w[k * loads..][..loads], at.w);
+        let c: Vec<f64> = at.c.into_iter().flatten().collect();
+        assert_eq!(batch.c[k * loads * reactions..][..loads * reactions], c);
+    }
+    // The linkage of Bricard has limits: the first coordinate beyond them is named.
+    let bricard = Scene::read("../../validation/spatial/bricard-a04.toml").unwrap();
+    let bricard = bricard.assemble().unwrap();
+    let (low, high) = bricard.limits().unwrap();
+    let beyond = |k: u32| low + (high - low) * (0.1 + 0.02 * f64::from(k));
+    let beyond: Vec<f64> = (0..60).map(beyond).collect();
+    let error = bricard.reduced([]).unwrap().batch(&beyond).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("3.74897 rad is outside its range"),
+        "{error}"
+    );
+}
+
+/// The function stays where a number of the scene changes, and an error names the load.
+#[test]
+fn a_function_survives_another_number_of_the_scene() {
+    let brake = Magnitude::function(&["q.velocity"], |s| -0.1 * s[0]);
+    let scene = rssr(brake.clone()).unwrap().scene().clone();
+    let heavier = scene
+        .with_value("crank.mass", 1.6)
+        .unwrap()
+        .assemble()
+        .unwrap();
+    let at = |m: &Mechanism| m.inverse_dynamics(0.0, &[0.3], &[5.0], &[0.0]).unwrap();
+    let without = rssr(0.0)
+        .unwrap()
+        .scene()
+        .with_value("crank.mass", 1.6)
+        .unwrap();
+    let without = without.assemble().unwrap();
+    let [loaded, free] = [&heavier, &without].map(|m| at(m).actuator_force("q").unwrap());
+    // The actuator carries the brake's torque.
+    assert!((loaded - free - 0.5).abs() < 1e-12);
+    let text = |error: Error| error.to_string();
+    let unknown = scene
+        .with_magnitude("break", &brake)
+        .map(drop)
+        .map_err(text);
+    assert!(unknown.unwrap_err().contains("there is no load `break`"));
+    let other = Magnitude::function(&["p.velocity"], |s| s[0]);
+    let other = scene
+        .with_magnitude("brake", &other)
+        .map(drop)
+        .map_err(text);
+    assert!(other.unwrap_err().contains("depends on `p.velocity`"));
+}
+
+/// The Jacobian is the difference of the rates.
+#[test]
+fn the_jacobian_is_the_slope_of_the_rates() {
+    let braked = rssr("-0.1*q.velocity").unwrap();
+    let mut equation = braked.equation_of_motion().unwrap();
+    // The coordinate, its velocity, and the work of the brake.
+    let y = [0.7, 4.0, 0.0];
+    let jacobian = equation.jacobian(0.0, &y).unwrap();
+    let step = 1e-6;
+    for column in 0..3 {
+        let mut at = |by: f64| {
+            let mut y = y;
+            y[column] += by;
+            equation.rates(0.0, &y).unwrap().to_vec()
+        };
+        let [above, below] = [at(step), at(-step)];
+        for row in 0..3 {
+            let slope = (above[row] - below[row]) / (2.0 * step);
+            let found = jacobian[3 * row + column];
+            assert!(
+                (found - slope).abs() < 1e-6 * (1.0 + slope.abs()),
+                "{row} {column}: {found} {slope}"
+            );
+        }
+    }
+    assert!(matches!(
+        equation.rates(0.0, &[1.0]),
+        Err(Error::State { .. })
+    ));
 }

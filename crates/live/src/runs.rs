@@ -28,7 +28,7 @@ impl SceneTask for Command {
             Self::Kinetostatics => along_motion(scene, Analysis::Kinetostatics),
             Self::Reduce => {
                 let reduction = compute_reduction(scene, None)?;
-                Ok((reduction_page(scene, &reduction), None))
+                Ok((reduction_page::<S>(&reduction)?, None))
             }
             Self::Simulate => {
                 let solver = MotionSolver::Settings(SolverSettings::default());

@@ -57,6 +57,8 @@ def test_a_mechanism_is_built_and_loaded_by_a_function():
     assert np.allclose(at.rotation("bob")[0], [np.cos(0.3), -np.sin(0.3), 0.0], rtol=0, atol=1e-15)
     with pytest.raises(dwell.DwellError, match="axes"):
         at.angle("bob")
+    with pytest.raises(AttributeError, match="dwell.read"):
+        dwell.space.Scene
 
 
 def test_points_move_along_their_paths():

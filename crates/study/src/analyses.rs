@@ -64,7 +64,7 @@ pub fn compute_trajectory<'a, S: StudyScene>(
 }
 
 /// The page of an analysis of a scene along its prescribed motion, its sweep, or the range of its only actuator: the rows of its table,
-/// peaks, and the mechanism in each row; and why the motion ended early, if it did. It prints what is to be known of the assembly.
+/// peaks, and the mechanism in each row; and why the motion ended early, if it did. In the plane it prints what is to be known of the assembly.
 ///
 /// Of very many rows it holds every so many-th, and says so.
 ///
@@ -165,6 +165,9 @@ pub fn compute_reduction<S: StudyScene>(
 
 /// The page of the reduced parameters of a scene.
 ///
+/// # Errors
+/// [`StudyError::Scene`] where a position cannot be reached.
+///
 /// ```
 /// # let text = r#"
 /// # bodies.ground.points = { O = [0, 0] }
@@ -174,16 +177,18 @@ pub fn compute_reduction<S: StudyScene>(
 /// # "#;
 /// let scene = dwell_scene::PlaneScene::parse("pendulum.toml", text)?;
 /// let reduction = dwell_study::compute_reduction(&scene, Some(5))?;
-/// let page = dwell_study::reduction_page(&scene, &reduction);
+/// let page = dwell_study::reduction_page::<dwell_scene::PlaneScene>(&reduction)?;
 /// // m = M r² everywhere.
 /// assert_eq!(page.columns[1].values, [0.5; 5]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn reduction_page<S: StudyScene>(scene: &S, reduction: &Reduction<S::Prepared<'_>>) -> Page {
+pub fn reduction_page<S: StudyScene>(
+    reduction: &Reduction<S::Prepared<'_>>,
+) -> Result<Page, StudyError> {
     let peak = peak_between_rows(&reduction.prepared, &reduction.curves);
     let mut page = page_of(reduction, &reduction.table(), peak);
-    page.drawing = scene.drawing_along(&page.columns[0].values);
-    page
+    page.drawing = S::drawing_of(&reduction.prepared, &page.columns[0].values)?;
+    Ok(page)
 }
 
 /// The reduced parameters of a scene over its range, at `points` positions (two or more) if given, and an interpolation
@@ -201,7 +206,7 @@ pub fn reduce<S: StudyScene>(
     let reduction = compute_reduction(scene, points)?;
     let mut outcome = reduction_outcome(&reduction)?;
     if let Some(run) = &mut outcome.run {
-        run.drawing = scene.drawing_along(&run.columns[0].values);
+        run.drawing = S::drawing_of(&reduction.prepared, &run.columns[0].values)?;
     }
     if let Some(request) = table {
         add_table(&reduction.prepared, &request, &mut outcome)?;
@@ -356,7 +361,7 @@ pub fn compute_export_of_several_freedoms<S: StudyScene>(
     scene: &S,
     asked: &ExportRequest,
 ) -> Result<SeveralFreedomsExport, StudyError> {
-    scene.several_freedoms(true, asked)
+    scene.several_freedoms(asked)
 }
 
 /// Exports the reduced model of a scene's machine, or the equations of motion of one with several actuators.
@@ -369,8 +374,11 @@ pub fn export<S: StudyScene>(
     target: ExportTarget,
     asked: &ExportRequest,
 ) -> Result<Outcome, StudyError> {
-    if scene.motion_start().coordinates.len() > 1 {
-        let export = scene.several_freedoms(target == ExportTarget::C, asked)?;
+    if scene.actuator(1).is_some() {
+        let export = match target {
+            ExportTarget::C => scene.several_freedoms(asked)?,
+            _ => return Err(scene.several_freedoms_error()),
+        };
         return Ok(several_freedoms_outcome(&export));
     }
     let table = || Ok(compute_reduction(scene, None)?.table());

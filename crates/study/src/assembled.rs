@@ -25,8 +25,11 @@ pub trait BodyStates: Debug + Send + Sync {
     fn angle(&self, body: usize) -> Option<f64>;
 }
 
-/// The states of all bodies, and by coordinate that has a name its value, rate and acceleration (rad or m, per s, per s²).
-pub type FoundStates = (Box<dyn BodyStates>, Vec<[f64; 3]>);
+/// A coordinate with its rate and acceleration (rad or m, per s, per s²), or why it cannot be evaluated.
+pub type CoordinateValue = Result<[f64; 3], &'static str>;
+
+/// The states of all bodies, and the coordinates in the order of their names.
+pub type FoundStates = (Box<dyn BodyStates>, Vec<CoordinateValue>);
 
 /// The model of a mechanism under its loads.
 #[derive(Debug)]

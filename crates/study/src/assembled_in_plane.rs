@@ -1,8 +1,8 @@
 //! An assembled mechanism in the plane.
 
 use crate::assembled::{AskedScene, AssembledModel, BodyStates, FoundStates, UnitModels};
-use crate::explain::{StudyError, missing_section_label, scene_error};
-use crate::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
+use crate::explain::StudyError;
+use crate::free_motion::compute::{FreeMotionProblem, MotionProblem as _, motion_to_simulate};
 use crate::models::{compile_model, loaded_model, reduced_model, with_loads};
 use dwell_dynamics::{DynamicsError, Machine};
 use dwell_geometry::body_states::{BodyStates as PlaneStates, CoordinateFunction};
@@ -37,14 +37,7 @@ impl AskedScene for PlaneScene {
     }
 
     fn motion_machine(&self) -> Result<(Machine, Vec<f64>), StudyError> {
-        let Some(spec) = &self.motion else {
-            return Err(scene_error(
-                self,
-                "the scene has no [motion]",
-                "add a motion",
-                missing_section_label("motion"),
-            ));
-        };
+        let spec = motion_to_simulate(self, self.motion.as_ref())?;
         let problem = FreeMotionProblem::new(self, self, spec)?;
         let start = problem.initial_state().y;
         Ok((problem.machine, start))
@@ -124,8 +117,8 @@ impl AskedScene for PlaneScene {
 fn found(scene: &PlaneScene, bodies: &PlaneStates) -> FoundStates {
     let functions = scene.all_coordinates();
     let functions = functions.map(|(_, c)| CoordinateFunction::find(&scene.mechanism, c));
-    let unknown = [f64::NAN; 3];
-    let value = |of: Option<CoordinateFunction>| of.map_or(unknown, |of| bodies.coordinate(of));
+    let missing = "no joint of the mechanism has it";
+    let value = |of: Option<CoordinateFunction>| Ok(bodies.coordinate(of.ok_or(missing)?));
     (Box::new(bodies.clone()), functions.map(value).collect())
 }
 

@@ -7,7 +7,7 @@ use crate::free_motion::compute::{
     FreeMotion, MotionSolver, compute_free_motion_at, orbit_in_plane,
 };
 use crate::models::PreparedScene;
-use crate::page::plane_page;
+use crate::page::{drawing_along, plane_page};
 use crate::progress::Progress;
 use crate::study_scene::{PageAndStop, StudyScene};
 use crate::symbolic::compute::closed_form_in_plane;
@@ -18,6 +18,7 @@ use crate::unit_runs::compute::UnitRunScene as _;
 use dwell_dynamics::Orbit;
 use dwell_export::{Export, SeveralFreedomsExport};
 use dwell_findings::{Finding, Record, RecordedEvent};
+use dwell_page::Drawing;
 use dwell_scene::PlaneScene;
 use dwell_symbolic::ClosedForm;
 #[cfg(feature = "output")]
@@ -36,6 +37,10 @@ impl StudyScene for PlaneScene {
     fn prepared(&self) -> Result<PreparedScene<'_>, StudyError> {
         reject_unknown_variables(self)?;
         self.prepared_without_loads()
+    }
+
+    fn drawing_of(prepared: &PreparedScene<'_>, q: &[f64]) -> Result<Option<Drawing>, StudyError> {
+        Ok(drawing_along(prepared.scene, q))
     }
 
     fn prescribes_positions(&self) -> bool {
@@ -160,15 +165,12 @@ impl StudyScene for PlaneScene {
         fit_in_plane(self, asked)
     }
 
-    fn several_freedoms(
-        &self,
-        is_c: bool,
-        asked: &ExportRequest,
-    ) -> Result<SeveralFreedomsExport, StudyError> {
-        match is_c {
-            true => several_freedoms_in_plane(self, asked),
-            false => Err(only_as_c(self)),
-        }
+    fn several_freedoms(&self, asked: &ExportRequest) -> Result<SeveralFreedomsExport, StudyError> {
+        several_freedoms_in_plane(self, asked)
+    }
+
+    fn several_freedoms_error(&self) -> StudyError {
+        only_as_c(self)
     }
 }
 

@@ -11,7 +11,7 @@ use crate::unit_runs::compute::UnitRunScene;
 use dwell_dynamics::Orbit;
 use dwell_export::{Export, SeveralFreedomsExport};
 use dwell_findings::{Finding, Record};
-use dwell_page::Page;
+use dwell_page::{Drawing, Page};
 use dwell_scene::Scene;
 use dwell_symbolic::ClosedForm;
 #[cfg(feature = "output")]
@@ -36,6 +36,12 @@ pub trait StudyScene: AskedScene + UnitRunScene + CalibratedScene {
     /// # Errors
     /// As of [`compute_reduction`](crate::compute_reduction).
     fn prepared(&self) -> Result<Self::Prepared<'_>, StudyError>;
+
+    /// The mechanism at values of its coordinate, rad or m.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] where a position cannot be reached.
+    fn drawing_of(prepared: &Self::Prepared<'_>, q: &[f64]) -> Result<Option<Drawing>, StudyError>;
 
     /// Pictures of the mechanism over its range, before and behind those of the reduced parameters.
     ///
@@ -130,6 +136,9 @@ pub trait StudyScene: AskedScene + UnitRunScene + CalibratedScene {
     fn closed_form(&self, reaction: Option<&str>)
     -> Result<(ClosedForm, Vec<Finding>), StudyError>;
 
+    /// Why several actuators are not exported to another target than C.
+    fn several_freedoms_error(&self) -> StudyError;
+
     /// What closed forms leave out.
     #[cfg(feature = "output")]
     fn closed_form_notes(&self, _: &ClosedForm) -> String {
@@ -145,12 +154,8 @@ pub trait StudyScene: AskedScene + UnitRunScene + CalibratedScene {
     /// The results of [`compute_export_of_several_freedoms`](crate::compute_export_of_several_freedoms).
     ///
     /// # Errors
-    /// As of that; for another target than C.
-    fn several_freedoms(
-        &self,
-        is_c: bool,
-        asked: &ExportRequest,
-    ) -> Result<SeveralFreedomsExport, StudyError>;
+    /// As of that.
+    fn several_freedoms(&self, asked: &ExportRequest) -> Result<SeveralFreedomsExport, StudyError>;
 }
 
 /// What is done with a scene, in the plane or in space.

@@ -94,7 +94,7 @@ impl MechanismBuilder {
         self.add("joints", name, joint.0)
     }
 
-    /// Adds a pin that both bodies have as a point of the joint's name: `pin("A", "ground", "crank")` joins `ground.A` and
+    /// Adds a pin in the plane that both bodies have as a point of the joint's name: `pin("A", "ground", "crank")` joins `ground.A` and
     /// `crank.A`.
     ///
     /// ```
@@ -349,7 +349,7 @@ impl BodyBuilder<'_> {
         self
     }
 
-    /// Makes it a bar of a length, m: one point at its origin, the other along its x axis.
+    /// Makes it a bar of a mechanism in the plane: one point at its origin, the other along its x axis, at a length, m.
     ///
     /// ```
     /// # let mut m = dwell::Mechanism::builder("");

@@ -2,13 +2,14 @@
 
 use crate::assembled::{NamedReaction, Names};
 use crate::error::Error;
-use dwell_study::assembled::{BodyStates, FoundStates};
+use dwell_study::assembled::{BodyStates, CoordinateValue, FoundStates};
 use std::sync::Arc;
 
 /// Positions, velocities and accelerations of all bodies, in the ground's frame.
 ///
-/// A vector has as many components as it is taken for. In the plane positions are `[x, y]`, or `[x, y, z]` with z = 0; what turns is `[z]`,
-/// or `[x, y, z]` with x = y = 0. In space all have three.
+/// The type that a vector is assigned to says how many components it has. In the plane positions, velocities and accelerations are
+/// `[x, y]`, or `[x, y, z]` with z = 0; angular velocities and accelerations are `[z]`, or `[x, y, z]` with x = y = 0. In space all have
+/// three components.
 ///
 /// ```
 /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -28,7 +29,7 @@ pub struct Kinematics {
     names: Arc<Names>,
     states: Arc<dyn BodyStates>,
     /// In the order of the names.
-    coordinates: Vec<[f64; 3]>,
+    coordinates: Vec<CoordinateValue>,
 }
 
 /// The components of a position, velocity or acceleration that are asked for.
@@ -41,7 +42,7 @@ pub(super) fn components<const N: usize>(
         _ => None,
     };
     let components = match dimension {
-        2 => "2, or 3 with z = 0,",
+        2 => "2, or 3 with z = 0",
         _ => "3",
     };
     let taken = given.and_then(|given| given.try_into().ok());
@@ -96,7 +97,7 @@ impl Kinematics {
     /// Velocity of a point `body.point`, m/s.
     ///
     /// # Errors
-    /// [`Error::Unknown`].
+    /// [`Error::Unknown`]; [`Error::Components`].
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -111,7 +112,7 @@ impl Kinematics {
     /// Acceleration of a point `body.point`, m/s².
     ///
     /// # Errors
-    /// [`Error::Unknown`].
+    /// [`Error::Unknown`]; [`Error::Components`].
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -136,7 +137,7 @@ impl Kinematics {
     pub fn angle(&self, body: &str) -> Result<f64, Error> {
         let angle = self.states.angle(self.names.body(body)?);
         angle.ok_or(Error::InSpace {
-            what: "one angle of a body",
+            what: "angle of a body",
             instead: "`axes` has its orientation",
         })
     }
@@ -205,7 +206,11 @@ impl Kinematics {
         let found = names.clone().position(|known| known == name);
         let found =
             found.ok_or_else(|| Error::unknown("coordinate", "coordinates", name, names))?;
-        Ok(self.coordinates[found])
+        self.coordinates[found].map_err(|reason| Error::Unknown {
+            what: "value of coordinate",
+            name: name.to_owned(),
+            help: reason.to_owned(),
+        })
     }
 
     /// The components of the position, velocity or acceleration of a point.
@@ -286,12 +291,8 @@ impl InverseDynamics {
     }
 
     fn determinate(&self, reaction: &NamedReaction, name: &str) -> Result<f64, Error> {
-        let place = reaction.place.ok_or_else(|| Error::Unknown {
-            what: "statically determinate reaction",
-            name: name.to_owned(),
-            help: "redundant constraints share the load".to_owned(),
-        });
-        Ok(self.result.reactions[place?])
+        let place = reaction.place.ok_or_else(|| Error::shared_load(name))?;
+        Ok(self.result.reactions[place])
     }
 
     /// The force, N, or torque, N·m, that an actuator must exert.

@@ -5,7 +5,8 @@ use super::kinematics::components;
 use crate::error::Error;
 
 impl Mechanism {
-    /// Where points `body.point` are at many positions, m, as `[x, y]` in the plane or `[x, y, z]`: by position, then by point. `q` has the coordinates of all actuators of
+    /// Where points `body.point` are at many positions, m, as `[x, y]` in the plane or `[x, y, z]`: by position, then by
+    /// point. `q` has the coordinates of all actuators of
     /// one position after another, rad or m. Only positions are computed, and all with one working memory.
     ///
     /// # Errors
@@ -34,8 +35,10 @@ impl Mechanism {
         }
         let points = points.into_iter().map(|name| self.names.point(name));
         let points = points.collect::<Result<Vec<_>, _>>()?;
-        let paths = self.assembled.paths(&points, q)?.into_iter();
         let dimension = self.names.dimension;
+        // A number of components that is not there is said before anything is computed.
+        components::<N>([0.0; 3], dimension)?;
+        let paths = self.assembled.paths(&points, q)?.into_iter();
         paths.map(|at| components(at, dimension)).collect()
     }
 }

@@ -1,19 +1,21 @@
 //! The reduced model of a mechanism with some of its reactions.
 
 use super::Mechanism;
+use crate::assembled::NamedReaction;
 use crate::error::Error;
 use crate::reduced::ReducedModel;
 
 impl Mechanism {
-    /// The reduced model with some reactions: joints (`A` for all its components) or components (`guide.normal`).
+    /// The reduced model with some reactions: joints (`A` for all its components that redundant constraints do not
+    /// leave open) or components (`guide.normal`).
     ///
     /// ```text
     /// m q̈ + ½m′ q̇² = Σ w F,    R = a q̈ + b q̇² + Σ c F
     /// ```
     ///
     /// # Errors
-    /// [`Error::Unknown`] for a reaction that the mechanism does not have, or that redundant constraints leave open; [`Error::Study`] unless it has exactly one
-    /// actuator.
+    /// [`Error::Unknown`] for a reaction that the mechanism does not have, or that redundant constraints leave open;
+    /// [`Error::Study`] unless it has exactly one actuator.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -35,13 +37,7 @@ impl Mechanism {
             let before = wanted.len();
             wanted.extend((0..all.len()).filter(is_meant));
             if wanted.len() == before {
-                let names = all.iter().filter(|reaction| reaction.place.is_some());
-                let names = names.flat_map(|reaction| [&reaction.name[..], &reaction.joint[..]]);
-                let what = match all.iter().any(|reaction| reaction.place.is_none()) {
-                    true => "statically determinate reaction",
-                    false => "reaction",
-                };
-                return Err(Error::unknown(what, "reactions", name, names));
+                return Err(unknown_reaction(all, name));
             }
         }
         let source = self.assembled.reduced(&wanted)?;
@@ -52,4 +48,18 @@ impl Mechanism {
             self.names.loads.clone(),
         ))
     }
+}
+
+/// Why no reaction is meant by a name.
+fn unknown_reaction(all: &[NamedReaction], name: &str) -> Error {
+    if all
+        .iter()
+        .any(|known| known.name == name || known.joint == name)
+    {
+        return Error::shared_load(name);
+    }
+    let mut joints: Vec<&str> = all.iter().map(|known| &known.joint[..]).collect();
+    joints.dedup();
+    let names = all.iter().map(|known| &known.name[..]).chain(joints);
+    Error::unknown("reaction", "reactions", name, names)
 }

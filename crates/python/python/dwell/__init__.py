@@ -72,6 +72,12 @@ __all__ = [
 ]
 
 
+def __getattr__(name: str) -> object:
+    if name == "space":
+        raise AttributeError("dwell.space is gone: dwell.Scene and dwell.read take mechanisms in space, too")
+    raise AttributeError(f"module 'dwell' has no attribute {name!r}")
+
+
 def read(path: str | os.PathLike[str]) -> Mechanism:
     """Reads a scene file and assembles its mechanism: ``Scene.read(path).assemble()``.
 

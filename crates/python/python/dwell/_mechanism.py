@@ -94,8 +94,18 @@ class Mechanism:
 
     @property
     def reactions(self) -> list[str]:
-        """Names of all reactions: ``joint.component``."""
+        """Names of the reactions: ``joint.component``. In space they are those that the scene requests."""
         return self._native.reactions
+
+    @property
+    def determined_reactions(self) -> list[str]:
+        """Those of them that redundant constraints do not leave open."""
+        return self._native.determined_reactions
+
+    @property
+    def dimension(self) -> int:
+        """How many numbers a point has: 2 in the plane, 3 in space."""
+        return self._native.dimension
 
     @property
     def limits(self) -> tuple[float, float] | None:

@@ -107,10 +107,7 @@ impl AskedScene for SpaceScene {
         plan.accelerations(q_ddot, &mut pose);
         let bodies = 0..self.mechanism.bodies.len();
         let bodies = bodies.map(|b| (plan.placement(&pose, b), plan.body_motion(&pose, b)));
-        let value = |of| match model.coordinate_function(of) {
-            Ok(of) => plan.coordinate(&pose, of),
-            Err(_) => [f64::NAN; 3],
-        };
+        let value = |of| Ok(plan.coordinate(&pose, model.coordinate_function(of)?));
         let coordinates = self.all_coordinates().map(|(_, c)| value(c)).collect();
         Ok((Box::new(SpaceStates(bodies.collect())), coordinates))
     }

@@ -5,6 +5,7 @@ use super::export::{fit_in_space, several_freedoms_error};
 use super::motion::{SimulatedMotion, SpaceMotionProblem};
 use super::prepared::PreparedSpaceScene;
 use super::trajectory::{JointReactions, computed_rows, space_page};
+use super::views::page_drawing;
 use crate::explain::StudyError;
 use crate::export::ExportRequest;
 use crate::free_motion::compute::{FreeMotion, MotionProblem as _, MotionSolver, named_events};
@@ -14,6 +15,7 @@ use crate::trajectory::compute::{Analysis, ComputedTrajectory};
 use dwell_dynamics::Orbit;
 use dwell_export::{Export, SeveralFreedomsExport};
 use dwell_findings::{Finding, Record};
+use dwell_page::Drawing;
 use dwell_scene::SpaceScene;
 use dwell_symbolic::ClosedForm;
 #[cfg(feature = "output")]
@@ -34,6 +36,14 @@ impl StudyScene for SpaceScene {
 
     fn prepared(&self) -> Result<PreparedSpaceScene<'_>, StudyError> {
         PreparedSpaceScene::new(self)
+    }
+
+    fn drawing_of(
+        prepared: &PreparedSpaceScene<'_>,
+        q: &[f64],
+    ) -> Result<Option<Drawing>, StudyError> {
+        let rows = prepared.placements(q)?;
+        Ok(Some(page_drawing(prepared.scene, rows, Vec::new())))
     }
 
     #[cfg(feature = "output")]
@@ -187,11 +197,11 @@ impl StudyScene for SpaceScene {
         fit_in_space(self, asked)
     }
 
-    fn several_freedoms(
-        &self,
-        _: bool,
-        _: &ExportRequest,
-    ) -> Result<SeveralFreedomsExport, StudyError> {
+    fn several_freedoms(&self, _: &ExportRequest) -> Result<SeveralFreedomsExport, StudyError> {
         Err(several_freedoms_error(self))
+    }
+
+    fn several_freedoms_error(&self) -> StudyError {
+        several_freedoms_error(self)
     }
 }

@@ -11,7 +11,6 @@ use dwell_geometry::JointId;
 use dwell_geometry::space::CoordinateFunction;
 use dwell_kinetostatics::TableDomain;
 use dwell_kinetostatics::space::{Axes, Component, Model as SpaceModel};
-use dwell_kinetostatics::table::TableModel;
 use dwell_scene::{FreeMotionSpec, MotionDuration, PlaneScene, SpaceScene};
 use dwell_study::explain::NamedScene;
 use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
@@ -72,7 +71,7 @@ impl CommandedMotion {
 }
 
 /// A scene whose motion is studied, in the plane or in space.
-pub trait StudiedScene: StudyScene<Model: TableModel> + Clone {
+pub trait StudiedScene: StudyScene {
     /// The scene with a motion: its own, or a free motion from the assembly.
     ///
     /// # Errors

@@ -12,7 +12,7 @@ use super::Keys;
 pub struct Actuator(pub(crate) Keys);
 
 impl Actuator {
-    /// The angle of the second body from the first, rad.
+    /// In the plane: the angle of the second body from the first, rad.
     ///
     /// ```
     /// let phi = dwell::Actuator::angle("ground", "crank");
@@ -48,7 +48,7 @@ impl Actuator {
         Self(Keys::new("length", [first, second]))
     }
 
-    /// The travel of a prismatic joint or a slot, m.
+    /// In the plane: the travel of a prismatic joint or a slot, m.
     ///
     /// ```
     /// let feed = dwell::Actuator::travel("guide");
@@ -67,7 +67,16 @@ impl Actuator {
 pub struct Coordinate(pub(crate) Keys);
 
 impl Coordinate {
-    /// The angle of the second body from the first, rad.
+    /// The angle of a joint in space, rad.
+    ///
+    /// ```
+    /// let swing = dwell::Coordinate::joint_angle("D");
+    /// ```
+    pub fn joint_angle(joint: &str) -> Self {
+        Self(Keys::new("angle", joint))
+    }
+
+    /// In the plane: the angle of the second body from the first, rad.
     ///
     /// ```
     /// let swing = dwell::Coordinate::angle("ground", "rocker");
