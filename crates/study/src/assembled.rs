@@ -31,6 +31,9 @@ pub type CoordinateValue = Result<[f64; 3], &'static str>;
 /// The states of all bodies, and the coordinates in the order of their names.
 pub type FoundStates = (Box<dyn BodyStates>, Vec<CoordinateValue>);
 
+/// Points of a body with their names, m in its frame.
+pub type NamedPoints<'a> = Vec<(&'a str, [f64; 3])>;
+
 /// The model of a mechanism under its loads.
 #[derive(Debug)]
 pub struct AssembledModel<S: MachineScene> {
@@ -94,7 +97,7 @@ pub trait AskedScene: MachineScene<Model: TableModel> + Clone + Send + Sync + 's
     fn motion_machine(&self) -> Result<(Machine<Self::Model>, Vec<f64>), StudyError>;
 
     /// Bodies with their points, m in the frame of the body.
-    fn named_points(&self) -> Vec<(&str, Vec<(&str, [f64; 3])>)>;
+    fn named_points(&self) -> Vec<(&str, NamedPoints<'_>)>;
 
     /// The names of the coordinates in their order: those of the actuators first.
     fn coordinate_names(&self) -> Vec<&str>;

@@ -1,6 +1,8 @@
 //! An assembled mechanism in the plane.
 
-use crate::assembled::{AskedScene, AssembledModel, BodyStates, FoundStates, UnitModels};
+use crate::assembled::{
+    AskedScene, AssembledModel, BodyStates, FoundStates, NamedPoints, UnitModels,
+};
 use crate::explain::StudyError;
 use crate::free_motion::compute::{FreeMotionProblem, MotionProblem as _, motion_to_simulate};
 use crate::models::{compile_model, loaded_model, reduced_model, with_loads};
@@ -43,7 +45,7 @@ impl AskedScene for PlaneScene {
         Ok((problem.machine, start))
     }
 
-    fn named_points(&self) -> Vec<(&str, Vec<(&str, [f64; 3])>)> {
+    fn named_points(&self) -> Vec<(&str, NamedPoints<'_>)> {
         let bodies = self.mechanism.bodies.iter().zip(&self.points);
         let named = bodies.map(|(body, points)| {
             let points = points.iter();

@@ -3,7 +3,9 @@
 use super::explain::{explain_load_error, with_loads};
 use super::motion::SpaceMotionProblem;
 use super::prepared::{PreparedSpaceScene, compile, sort_reactions};
-use crate::assembled::{AskedScene, AssembledModel, BodyStates, FoundStates, UnitModels};
+use crate::assembled::{
+    AskedScene, AssembledModel, BodyStates, FoundStates, NamedPoints, UnitModels,
+};
 use crate::explain::StudyError;
 use crate::free_motion::compute::MotionProblem as _;
 use dwell_dynamics::{DynamicsError, Machine};
@@ -48,7 +50,7 @@ impl AskedScene for SpaceScene {
         Ok((problem.machine, start))
     }
 
-    fn named_points(&self) -> Vec<(&str, Vec<(&str, [f64; 3])>)> {
+    fn named_points(&self) -> Vec<(&str, NamedPoints<'_>)> {
         let bodies = self.mechanism.bodies.iter().zip(&self.points);
         let named = bodies.map(|(body, points)| {
             let points = points.iter();
