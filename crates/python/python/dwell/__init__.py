@@ -34,6 +34,7 @@ installed.
 from __future__ import annotations
 
 import os
+from typing import TYPE_CHECKING
 
 from ._builder import Builder
 from ._closed_form import ClosedForm
@@ -72,10 +73,12 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> object:
-    if name == "space":
-        raise AttributeError("dwell.space is gone: dwell.Scene and dwell.read take mechanisms in space, too")
-    raise AttributeError(f"module 'dwell' has no attribute {name!r}")
+if not TYPE_CHECKING:
+
+    def __getattr__(name):
+        if name == "space":
+            raise AttributeError("dwell.space is gone: dwell.Scene and dwell.read take mechanisms in space, too")
+        raise AttributeError(f"module 'dwell' has no attribute {name!r}")
 
 
 def read(path: str | os.PathLike[str]) -> Mechanism:
