@@ -3,23 +3,21 @@
 use crate::coordinates::AnyCoordinate;
 use crate::error::SceneError;
 use crate::file::SceneFile;
-use crate::plane_scene::PlaneScene;
-use crate::space::SpaceScene;
 use crate::spans::SceneLocation;
 use crate::wording::choices;
 use dwell_kinetostatics::{Load, Magnitude, MagnitudeFunction, Signal};
 
 /// A function of signals by their names, and values of some of these at which it jumps or has a kink.
-struct NamedFunction<'f> {
-    load: &'f str,
-    signals: &'f [&'f str],
-    function: MagnitudeFunction,
-    breakpoints: &'f [(&'f str, &'f [f64])],
+pub(crate) struct NamedFunction<'f> {
+    pub(crate) load: &'f str,
+    pub(crate) signals: &'f [&'f str],
+    pub(crate) function: MagnitudeFunction,
+    pub(crate) breakpoints: &'f [(&'f str, &'f [f64])],
 }
 
 impl NamedFunction<'_> {
     /// Gives it to its load; `coordinates` have names.
-    fn set<'c, K, C: AnyCoordinate>(
+    pub(crate) fn set<'c, K, C: AnyCoordinate>(
         self,
         file: &SceneFile,
         coordinates: &(impl Iterator<Item = (&'c str, C)> + Clone),
@@ -89,55 +87,5 @@ pub(crate) fn keep_functions<K, C: AnyCoordinate>(loads: &mut [Load<K, C>], form
         if let Magnitude::Function(..) = former.magnitude {
             load.magnitude.clone_from(&former.magnitude);
         }
-    }
-}
-
-impl PlaneScene {
-    /// The same scene with the magnitude of a load computed by a function: as of [`Scene::with_load_function`](crate::Scene::with_load_function).
-    ///
-    /// # Errors
-    /// [`SceneError`] where there is no such load or no such signal, or a breakpoint is of another signal or not finite.
-    pub fn with_load_function(
-        mut self,
-        load: &str,
-        signals: &[&str],
-        function: MagnitudeFunction,
-        breakpoints: &[(&str, &[f64])],
-    ) -> Result<Self, SceneError> {
-        let mut loads = std::mem::take(&mut self.loads);
-        let named = NamedFunction {
-            load,
-            signals,
-            function,
-            breakpoints,
-        };
-        named.set(&self.file, &self.all_coordinates(), &mut loads)?;
-        self.loads = loads;
-        Ok(self)
-    }
-}
-
-impl SpaceScene {
-    /// The same scene with the magnitude of a load computed by a function: as of [`Scene::with_load_function`](crate::Scene::with_load_function).
-    ///
-    /// # Errors
-    /// [`SceneError`] where there is no such load or no such signal, or a breakpoint is of another signal or not finite.
-    pub fn with_load_function(
-        mut self,
-        load: &str,
-        signals: &[&str],
-        function: MagnitudeFunction,
-        breakpoints: &[(&str, &[f64])],
-    ) -> Result<Self, SceneError> {
-        let mut loads = std::mem::take(&mut self.loads);
-        let named = NamedFunction {
-            load,
-            signals,
-            function,
-            breakpoints,
-        };
-        named.set(&self.file, &self.all_coordinates(), &mut loads)?;
-        self.loads = loads;
-        Ok(self)
     }
 }

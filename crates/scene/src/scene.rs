@@ -2,6 +2,7 @@
 
 use crate::error::{SceneError, Source};
 use crate::file::SceneFile;
+use crate::load_functions::NamedFunction;
 use crate::plane_scene::PlaneScene;
 use crate::read::{name_of_file, named_text, text_of_file, text_of_stream};
 use crate::space::{SpaceScene, is_in_space};
@@ -85,29 +86,38 @@ impl Scene {
         })
     }
 
-    /// The same scene with the magnitude of the load `name` computed by `function` from `signals`: `t`, a coordinate
+    /// The same scene with the magnitude of a load computed by `function` from `signals`: `t`, a coordinate
     /// such as `phi` (rad or m), or its velocity `phi.velocity`, in SI. The magnitude in the file is dropped. At the breakpoints, values of
     /// signals by their names, the function jumps or has a kink.
     ///
     /// # Errors
     /// [`SceneError`] where there is no such load or no such signal, or a breakpoint is of another signal or not finite.
     pub fn with_load_function(
-        self,
-        name: &str,
+        mut self,
+        load: &str,
         signals: &[&str],
         function: MagnitudeFunction,
         breakpoints: &[(&str, &[f64])],
     ) -> Result<Self, SceneError> {
-        Ok(match self {
+        let named = NamedFunction {
+            load,
+            signals,
+            function,
+            breakpoints,
+        };
+        match &mut self {
             Self::Plane(scene) => {
-                let scene = scene.with_load_function(name, signals, function, breakpoints)?;
-                scene.into()
+                let mut loads = std::mem::take(&mut scene.loads);
+                named.set(&scene.file, &scene.all_coordinates(), &mut loads)?;
+                scene.loads = loads;
             }
             Self::Space(scene) => {
-                let scene = scene.with_load_function(name, signals, function, breakpoints)?;
-                scene.into()
+                let mut loads = std::mem::take(&mut scene.loads);
+                named.set(&scene.file, &scene.all_coordinates(), &mut loads)?;
+                scene.loads = loads;
             }
-        })
+        }
+        Ok(self)
     }
 }
 
