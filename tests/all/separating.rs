@@ -89,8 +89,8 @@ fn a_wrong_separating_force_is_found() {
             failed(&findings).join(" ")
         };
         for fault in [
-            |w: &mut dwell_verify::BodyWrench| w.force = w.force * 0.0,
-            |w: &mut dwell_verify::BodyWrench| w.force = w.force * 2.0,
+            |w: &mut dwell_verify::BodyWrench| w.force = w.force.scaled(0.0),
+            |w: &mut dwell_verify::BodyWrench| w.force = w.force.scaled(2.0),
             |w: &mut dwell_verify::BodyWrench| w.force = -w.force,
         ] {
             let found = find(fault);

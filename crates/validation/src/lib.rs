@@ -42,5 +42,5 @@ pub use checked::multibody::{FreeMotionRun, free_motion_run};
 pub use checked::states::{CheckedStates, check_case};
 pub use error::ValidationError;
 pub use overview::{CaseResult, ValidatedCase, ValidationRun, index};
-pub use spatial::{ClaimsIn, ReferencePoses, SpaceClaims, validate_in_space};
+pub use spatial::{ClaimsIn, ReferencePoses, SpaceClaims, SpaceSubject, validate_in_space};
 pub use work_precision::work_precision;

@@ -1,7 +1,7 @@
 //! Closing the dense rows by Newton's method, with any imposed values.
 //!
 //! With R the scale of the rows (1 for lengths, the size for angles) and C that of the coordinates
-//! (1 for x and y, 1/size for θ), every system solved is the dimensionless one
+//! (1 for positions, 1/size for angles), every system solved is the dimensionless one
 //!
 //! ```text
 //! (R J C) (C⁻¹ s) = R r                                      (1)
@@ -12,7 +12,10 @@
 use crate::dense::DenseMechanism;
 use crate::error::{DenseError, Result};
 use crate::lu::Lu;
+use crate::pose::{Columns, Pose, Twist};
+use crate::rows::row::Since;
 use faer::Mat;
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 /// Newton steps allowed. Quadratic convergence from anything near needs four or five.
@@ -33,68 +36,110 @@ const MAX_FOLLOW_STEPS: usize = 2000;
 /// A closed configuration: coordinates that meet the imposed values, and the factors there.
 #[derive(Debug, Clone)]
 pub struct Configuration {
-    /// Dense coordinates, three per moving body, in the moved frames.
-    pub(crate) x: Vec<f64>,
+    /// The moved frames of all bodies, from the moved origin of the ground.
+    pub(crate) poses: Vec<Pose>,
     /// The value each row was closed at: zero for a closed joint, q for an actuator.
     pub(crate) row_values: Vec<f64>,
     pub(crate) lu: Lu,
 }
 
+impl Configuration {
+    /// What rows of velocities are counted from.
+    fn since(&self) -> Since<'_> {
+        Since {
+            poses: &self.poses,
+            row_values: &self.row_values,
+        }
+    }
+}
+
 impl DenseMechanism {
-    /// Closes every row at its imposed value, starting from the coordinates `guess`.
-    pub fn close(&self, guess: &[f64], row_values: &[f64]) -> Result<Configuration> {
-        if guess.len() != self.rows.columns() || row_values.len() != self.rows.len() {
+    /// Closes every row at its imposed value, starting from the moved frames `guess`. The teeth of gears in space mesh as there.
+    ///
+    /// # Errors
+    /// [`DenseError`] where the rows are dependent, or do not close.
+    pub fn close(&self, guess: &[Pose], row_values: &[f64]) -> Result<Configuration> {
+        let poses = guess;
+        self.close_since(Since { poses, row_values }, guess, row_values)
+    }
+
+    /// The same with the rows of velocities counted since a configuration.
+    pub(crate) fn close_since(
+        &self,
+        since: Since<'_>,
+        guess: &[Pose],
+        row_values: &[f64],
+    ) -> Result<Configuration> {
+        if guess.len() != self.bodies.len() || row_values.len() != self.rows.len() {
             return Err(DenseError::InvalidPoses);
         }
         let not_closed = |steps, last_step| Err(DenseError::NotClosed { steps, last_step });
-        let mut x = guess.to_vec();
+        let mut poses = guess.to_vec();
         let mut residual = vec![0.0; self.rows.len()];
         let mut previous = f64::INFINITY;
         for step in 1..=MAX_NEWTON_STEPS {
-            let lu = self.factor(&x)?;
-            self.rows.residual(&x, row_values, &mut residual);
-            let correction = self.solve(&lu, &residual);
+            let lu = self.factor(&poses)?;
+            self.rows.residual(&poses, since, row_values, &mut residual);
+            let mut correction = self.solve(&lu, &residual);
             let norm = self.scaled_norm(&correction);
             if norm.is_nan() || norm >= MAX_NEWTON_STEP {
                 return not_closed(step, norm);
             }
-            x.iter_mut().zip(&correction).for_each(|(x, s)| *x -= s);
+            correction.iter_mut().for_each(|c| *c = -*c);
+            poses = self.moved(&poses, &correction);
             if norm < CONVERGED_STEP || (norm < STALLED_STEP && norm > 0.5 * previous) {
-                self.rows.residual(&x, row_values, &mut residual);
+                self.rows.residual(&poses, since, row_values, &mut residual);
                 let open = self.largest_residual(&residual, &self.independent_rows);
                 if open.is_nan() || open > MAX_RESIDUAL {
                     return not_closed(step, norm);
                 }
-                let (lu, row_values) = (self.factor(&x)?, row_values.to_vec());
-                return Ok(Configuration { x, row_values, lu });
+                let (lu, row_values) = (self.factor(&poses)?, row_values.to_vec());
+                return Ok(Configuration {
+                    poses,
+                    row_values,
+                    lu,
+                });
             }
             previous = norm;
         }
         not_closed(MAX_NEWTON_STEPS, previous)
     }
 
-    /// Closes the frames `poses` of all bodies at the coordinates `q` of the actuators; and how far that moves them,
+    /// Poses moved by a step of all coordinates.
+    pub(crate) fn moved(&self, poses: &[Pose], step: &[f64]) -> Vec<Pose> {
+        let both = self.bodies.iter().zip(poses);
+        both.map(|(body, pose)| body.columns.moved(pose, step))
+            .collect()
+    }
+
+    /// Closes the poses of all bodies at the coordinates `q` of the actuators; and how far that moves them,
     /// relative to the largest coordinate in them.
-    pub(crate) fn close_at(&self, poses: &[[f64; 3]], q: &[f64]) -> Result<(Configuration, f64)> {
-        let coordinates = self.coordinates(poses)?;
+    pub(crate) fn close_at(&self, poses: &[Pose], q: &[f64]) -> Result<(Configuration, f64)> {
+        let guess = self.moved_frames(poses)?;
         let mut row_values = vec![0.0; self.rows.len()];
         row_values[self.actuator_row()..].copy_from_slice(q);
-        let closed = self.close(&coordinates, &row_values)?;
-        let moved = coordinates.iter().zip(&closed.x).map(|(s, x)| s - x);
-        let distances = poses.iter().map(|p| p[0].hypot(p[1]));
+        let closed = self.close(&guess, &row_values)?;
+        let distances = poses.iter().map(|pose| pose.position.norm());
         let largest = distances.fold(self.size(), f64::max);
-        let norm = self.scaled_norm(&moved.collect::<Vec<_>>());
+        let norm = self.norm_of(self.steps(&guess, &closed.poses));
         Ok((closed, norm * self.size() / largest))
+    }
+
+    /// By body: the step that leads from some poses to others.
+    fn steps(&self, from: &[Pose], to: &[Pose]) -> impl Iterator<Item = Twist> {
+        let both = self.bodies.iter().zip(from.iter().zip(to));
+        both.map(|(body, (from, to))| body.columns.step(from, to))
     }
 
     /// How far two configurations are apart, whole revolutions of a body not counted, rad or sizes.
     pub(crate) fn distance(&self, one: &Configuration, other: &Configuration) -> f64 {
-        let both = one.x.iter().zip(&other.x);
-        let mut difference: Vec<f64> = both.map(|(a, b)| a - b).collect();
-        for angle in difference.iter_mut().skip(2).step_by(3) {
-            *angle -= TAU * (*angle / TAU).round();
-        }
-        self.scaled_norm(&difference)
+        let steps = self.steps(&other.poses, &one.poses).zip(&self.bodies);
+        self.norm_of(steps.map(|(mut step, body)| {
+            if let Columns::Plane(_) = body.columns {
+                step.angular.z -= TAU * (step.angular.z / TAU).round();
+            }
+            step
+        }))
     }
 
     /// Closes the rows at other values on the branch of `from`, starting from `initial_guess`.
@@ -105,10 +150,10 @@ impl DenseMechanism {
     pub fn close_on_branch(
         &self,
         from: &Configuration,
-        initial_guess: &[f64],
+        initial_guess: &[Pose],
         row_values: &[f64],
     ) -> Result<Configuration> {
-        let configuration = self.close(initial_guess, row_values)?;
+        let configuration = self.close_since(from.since(), initial_guess, row_values)?;
         if configuration.lu.positive() == from.lu.positive() {
             Ok(configuration)
         } else {
@@ -126,8 +171,8 @@ impl DenseMechanism {
         value: f64,
     ) -> Result<Configuration> {
         let increment = value - from.row_values[row];
-        let moved = from.x.iter().zip(direction);
-        let initial_guess: Vec<_> = moved.map(|(x, u)| x + u * increment).collect();
+        let step: Vec<f64> = direction.iter().map(|u| u * increment).collect();
+        let initial_guess = self.moved(&from.poses, &step);
         let mut row_values = from.row_values.clone();
         row_values[row] = value;
         self.close_on_branch(from, &initial_guess, &row_values)
@@ -141,18 +186,11 @@ impl DenseMechanism {
         row: usize,
         to: f64,
     ) -> Result<Configuration> {
-        if self.rows.len() == self.rows.columns() {
-            return self.follow(from, row, to);
+        let best = self.at(&from.poses)?;
+        match best {
+            Cow::Borrowed(same) => same.follow(from, row, to),
+            Cow::Owned(best) => best.follow(&best.close(&from.poses, &from.row_values)?, row, to),
         }
-        let independent_rows = self.select_independent_rows(&from.x);
-        if independent_rows.len() != self.rows.columns() {
-            return Err(DenseError::Singular(0.0));
-        }
-        let best = Self {
-            independent_rows,
-            ..self.clone()
-        };
-        best.follow(&best.close(&from.x, &from.row_values)?, row, to)
     }
 
     /// Follows the branch continuously until `row` has the value `to`, in steps short enough for
@@ -191,8 +229,11 @@ impl DenseMechanism {
     /// How fast the rows' imposed value moves the mechanism: the largest |ω|, or |v| per size, of
     /// any body at the velocities `u`.
     pub fn scaled_norm(&self, u: &[f64]) -> f64 {
-        let bodies = u.chunks_exact(3);
-        max_abs(bodies.flat_map(|b| [b[0].hypot(b[1]) / self.size, b[2]]))
+        self.norm_of(self.bodies.iter().map(|body| body.columns.twist(u)))
+    }
+
+    fn norm_of(&self, twists: impl Iterator<Item = Twist>) -> f64 {
+        max_abs(twists.flat_map(|t| [t.linear.norm() / self.size, t.angular.norm()]))
     }
 
     /// The velocities of all coordinates when `row` opens, or the actuator moves, at unit rate and all
@@ -225,8 +266,7 @@ impl DenseMechanism {
     /// The accelerations of all coordinates when they move at `x_dot` and row values accelerate
     /// at `rates`: J ẍ = rates − Φ̇ₓ ẋ.
     pub fn acceleration(&self, at: &Configuration, x_dot: &[f64], rates: &[f64]) -> Vec<f64> {
-        let mut right = vec![0.0; self.rows.len()];
-        self.rows.velocity_product(&at.x, x_dot, &mut right);
+        let mut right = self.rows.velocity_products(&at.poses, x_dot);
         for (r, rate) in right.iter_mut().zip(rates) {
             *r = rate - *r;
         }
@@ -244,7 +284,8 @@ impl DenseMechanism {
     /// [`DenseError::RedundantRowsOpen`] with the largest residual.
     pub(crate) fn check_redundant_rows(&self, at: &Configuration) -> Result<()> {
         let mut residual = vec![0.0; self.rows.len()];
-        self.rows.residual(&at.x, &at.row_values, &mut residual);
+        self.rows
+            .residual(&at.poses, at.since(), &at.row_values, &mut residual);
         let all: Vec<usize> = (0..residual.len()).collect();
         match self.largest_residual(&residual, &all) {
             open if open <= MAX_RESIDUAL => Ok(()),
@@ -252,32 +293,27 @@ impl DenseMechanism {
         }
     }
 
-    pub(crate) fn column_scale(&self, column: usize) -> f64 {
-        if column % 3 == 2 {
-            1.0 / self.size
-        } else {
-            1.0
-        }
-    }
-
-    /// ∂Φ/∂x of all rows, row after row.
-    pub(crate) fn jacobian(&self, x: &[f64]) -> Vec<f64> {
-        let mut jacobian = vec![0.0; self.rows.len() * self.rows.columns()];
-        self.rows.jacobian(x, &mut jacobian);
-        jacobian
-    }
-
-    /// R J C of eq. (1) at the coordinates `x`.
-    pub(crate) fn scaled_jacobian(&self, x: &[f64]) -> Mat<f64> {
+    /// R J C of eq. (1) at these poses.
+    pub(crate) fn scaled_jacobian(&self, poses: &[Pose]) -> Mat<f64> {
         let (rows, columns) = (self.rows.len(), self.rows.columns());
-        let jacobian = self.jacobian(x);
+        let jacobian = self.rows.jacobian(poses);
         Mat::from_fn(rows, columns, |i, j| {
             jacobian[i * columns + j] * self.row_scale[i] * self.column_scale(j)
         })
     }
 
-    fn factor(&self, x: &[f64]) -> Result<Lu> {
-        Lu::new(self.independent_part(&self.scaled_jacobian(x))).map_err(DenseError::Singular)
+    fn factor(&self, poses: &[Pose]) -> Result<Lu> {
+        Lu::new(self.independent_part(&self.scaled_jacobian(poses))).map_err(DenseError::Singular)
+    }
+
+    /// The sign of the determinant of the rows that are solved; none where they are dependent, or in space some of those that repeat each
+    /// other, which may become dependent elsewhere.
+    pub(crate) fn orientation(&self, poses: &[Pose]) -> Option<bool> {
+        let in_space = matches!(self.whole(), Columns::Space(_));
+        if in_space && self.rows.len() != self.rows.columns() {
+            return None;
+        }
+        Some(self.factor(poses).ok()?.positive())
     }
 
     /// The rows that are solved.
@@ -290,7 +326,7 @@ impl DenseMechanism {
     /// The multipliers of all rows under which the forces `q` of the coordinates are made up:
     /// Jᵀ λ = q, by factors of the transposed matrix. Those of rows that are not solved are zero.
     pub(crate) fn multipliers(&self, at: &Configuration, q: &[f64]) -> Result<Vec<f64>> {
-        let rows = self.independent_part(&self.scaled_jacobian(&at.x));
+        let rows = self.independent_part(&self.scaled_jacobian(&at.poses));
         let lu = Lu::new(rows.transpose().to_owned());
         let lu = lu.map_err(DenseError::Singular)?;
         let mut right = Mat::from_fn(q.len(), 1, |c, _| q[c] * self.column_scale(c));

@@ -7,8 +7,8 @@ use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
 use crate::error::{DenseError, Result};
 use crate::inertias::Inertias;
+use crate::pose::Pose;
 use crate::subject::{Subject, SubjectError};
-use dwell_geometry::{Component, Reaction};
 use dwell_kinetostatics::Coefficients;
 use rayon::iter::Either;
 use rayon::prelude::*;
@@ -71,8 +71,6 @@ pub struct CheckContext<'a> {
     pub scales: Scales,
     /// Bodies whose share in m changes over the positions.
     pub varying_bodies: Vec<usize>,
-    /// All reactions, in order.
-    pub reactions: Vec<Reaction>,
 }
 
 /// Where a whole unit is zero: b against a (both are per 1/s²), forces against moments per size.
@@ -105,9 +103,8 @@ impl<'a> CheckContext<'a> {
         };
         let closed = case.positions.par_iter().map(close);
         let (positions, not_closed): (Vec<_>, Vec<_>) = closed.partition_map(either);
-        let reactions = mechanism.reactions();
         let varying_bodies = varying_bodies(&dense, &positions);
-        let scales = scales(&dense, &positions, &varying_bodies, &reactions);
+        let scales = scales(&dense, &positions, &varying_bodies);
         Ok(Self {
             case,
             subject,
@@ -116,24 +113,26 @@ impl<'a> CheckContext<'a> {
             not_closed,
             scales,
             varying_bodies,
-            reactions,
         })
     }
 
     /// `phi = 1.3 rad`.
     pub(crate) fn location(&self, q: f64) -> String {
-        let name = &self.case.mechanism.actuators[0].name;
+        let name = &self.dense.actuator_names()[0];
         format!("{name} = {q:.6} {}", self.unit())
     }
 
     /// Unit of the coordinate.
     pub(crate) fn unit(&self) -> &'static str {
-        self.dense.actuator_coordinate().unit()
+        match self.dense.is_angle_driven() {
+            true => "rad",
+            false => "m",
+        }
     }
 
     /// `phi = 1.3 rad, slide.normal`.
     pub(crate) fn reaction_location(&self, q: f64, reaction: usize) -> String {
-        let name = self.case.mechanism.reaction_name(self.reactions[reaction]);
+        let name = &self.dense.row_names[reaction];
         format!("{}, {name}", self.location(q))
     }
 
@@ -148,7 +147,7 @@ impl<'a> CheckContext<'a> {
 
     /// Scales of the a and the b of a reaction.
     pub(crate) fn coefficient_scales(&self, reaction: usize) -> [f64; 2] {
-        let unit = unit_index(self.reactions[reaction]);
+        let unit = usize::from(self.dense.angular[reaction]);
         [self.scales.a[unit], self.scales.b[unit]]
     }
 
@@ -203,7 +202,8 @@ pub(crate) fn either<T, E>(result: Result<T, E>) -> Either<T, E> {
 
 impl CheckedPosition {
     fn new(dense: &DenseMechanism, poses: &[[f64; 3]], q: f64) -> Result<Self> {
-        let (configuration, closing_correction) = dense.close_at(poses, &[q])?;
+        let poses: Vec<Pose> = poses.iter().map(|pose| Pose::from(*pose)).collect();
+        let (configuration, closing_correction) = dense.close_at(&poses, &[q])?;
         let unit_velocities = dense.unit_velocities(&configuration);
         let reference = dense.coefficients(&configuration, &unit_velocities);
         let flat = |c: &Coefficients| [&[c.m, c.half_dm][..], &c.a, &c.b].concat();
@@ -216,7 +216,7 @@ impl CheckedPosition {
         Ok(Self {
             q,
             closing_correction,
-            condition_number: dense.condition_number(&configuration.x),
+            condition_number: dense.condition_number(&configuration.poses),
             configuration,
             unit_velocities,
             reference,
@@ -270,11 +270,6 @@ impl CheckedPosition {
     }
 }
 
-/// 0 for a force, 1 for a moment.
-fn unit_index(reaction: Reaction) -> usize {
-    usize::from(reaction.component == Component::Moment)
-}
-
 /// Bodies whose share in m is not the same at all positions.
 fn varying_bodies(dense: &DenseMechanism, positions: &[CheckedPosition]) -> Vec<usize> {
     let varies = |&body: &usize| {
@@ -285,19 +280,14 @@ fn varying_bodies(dense: &DenseMechanism, positions: &[CheckedPosition]) -> Vec<
     (0..dense.bodies.len()).filter(varies).collect()
 }
 
-fn scales(
-    dense: &DenseMechanism,
-    positions: &[CheckedPosition],
-    varying: &[usize],
-    reactions: &[Reaction],
-) -> Scales {
+fn scales(dense: &DenseMechanism, positions: &[CheckedPosition], varying: &[usize]) -> Scales {
     let mut s = Scales::default();
     for position in positions {
         s.m = s.m.max(position.reference.m);
         s.m_varying = s.m_varying.max(position.inertia_share(dense, varying));
         s.half_dm = s.half_dm.max(position.reference.half_dm.abs());
-        for (k, &reaction) in reactions.iter().enumerate() {
-            let kind = unit_index(reaction);
+        for (k, &is_moment) in dense.angular[..dense.actuator_row()].iter().enumerate() {
+            let kind = usize::from(is_moment);
             s.a[kind] = s.a[kind].max(position.reference.a[k].abs());
             s.b[kind] = s.b[kind].max(position.reference.b[k].abs());
         }
@@ -305,7 +295,7 @@ fn scales(
     let varying_or_all = if s.m_varying > 0.0 { s.m_varying } else { s.m };
     s.half_dm = s.half_dm.max(B_MIN_SHARE * varying_or_all);
     // τ is a moment, or a force if the coordinate is a length; the other unit has a floor.
-    let (tau, other, arm) = match dense.actuator_coordinate().is_angle() {
+    let (tau, other, arm) = match dense.is_angle_driven() {
         true => (1, 0, dense.size()),
         false => (0, 1, 1.0 / dense.size()),
     };

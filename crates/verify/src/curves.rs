@@ -52,8 +52,7 @@ pub fn reaction_curve(
     reaction: usize,
 ) -> Option<ErrorCurve> {
     let (dense, row) = (&context.dense, context.dense.actuator_row());
-    let name = *context.reactions.get(reaction)?;
-    let name = context.case.mechanism.reaction_name(name);
+    let name = dense.row_names[..row].get(reaction)?;
     let coefficients = context.subject.coefficients(position.q).ok()?;
     let reference = *coefficients.b.get(reaction)?;
     let [_, scale] = context.coefficient_scales(reaction);

@@ -6,54 +6,90 @@
 //! exactly; otherwise a mechanism a kilometre from the origin would be checked by
 //! differences of rounded large numbers.
 
+use crate::description::action::Action;
+use crate::description::{
+    DescribedBody, DescribedJoint, DescribedReaction, DescribedRow, Description,
+};
 use crate::error::{DenseError, Result};
 use crate::inertias::{Inertias, at_angle};
-use dwell_geometry::constraint_rows::ConstraintRows;
-use dwell_geometry::{ActuatorKind, BodyId, Coordinate, JointKind, Mechanism, Vec2, vec2};
-use dwell_kinetostatics::Mass;
+use crate::pose::{Columns, Pose, Twist, centripetal};
+use crate::rows::Rows;
+use dwell_geometry::Mechanism;
+use dwell_geometry::space::{IdleBody, Mechanism as SpaceMechanism, Vec3, vec3};
+use dwell_kinetostatics::space::Mass as SpaceMass;
 use dwell_numerics::PiecewiseQuintic;
 
 /// A body in its moved frame.
 #[derive(Debug, Clone)]
 pub(crate) struct DenseBody {
-    /// First of its three columns; `None` for the ground.
-    pub(crate) column: Option<usize>,
+    pub(crate) name: String,
+    pub(crate) columns: Columns,
     /// Mass properties about the moved frame.
-    pub(crate) mass: Mass,
-    /// A moment of inertia over the body's angle besides.
-    pub(crate) varying: Option<PiecewiseQuintic>,
+    pub(crate) mass: SpaceMass,
+    /// A moment of inertia about z over the body's angle besides.
+    varying: Option<PiecewiseQuintic>,
     /// The moved origin in the body's own frame.
-    pub(crate) shift: Vec2,
+    pub(crate) shift: Vec3,
 }
 
 impl DenseBody {
-    /// Its moment of inertia about its centre of mass at an angle, kg m².
-    pub(crate) fn angular_inertia(&self, angle: f64) -> f64 {
-        self.mass.inertia + at_angle(self.varying.as_ref(), angle)[0]
+    /// I ω of its tensor and of the varying moment of inertia, kg m²/s.
+    pub(crate) fn angular_momentum(&self, pose: &Pose, omega: Vec3) -> Vec3 {
+        let mut momentum = self.constant_momentum(pose, omega);
+        if self.varying.is_some() {
+            momentum.z += at_angle(self.varying.as_ref(), pose.angle)[0] * omega.z;
+        }
+        momentum
     }
 
-    /// I α of its constant moment of inertia and I α + ½ I′ ω² of the varying one, N·m.
-    pub(crate) fn inertia_moment(&self, angle: f64, omega: f64, alpha: f64) -> f64 {
-        self.mass.inertia * alpha + self.varying_moment(angle, omega, alpha)
+    /// I ω of its tensor alone.
+    pub(crate) fn constant_momentum(&self, pose: &Pose, omega: Vec3) -> Vec3 {
+        let rotation = &pose.rotation;
+        rotation.apply(self.mass.angular_momentum(rotation.apply_inverse(omega)))
+    }
+
+    /// I α + ω × I ω, N·m, and I α + ½ I′ ω² of the varying moment of inertia.
+    pub(crate) fn inertia_moment(&self, pose: &Pose, omega: Vec3, alpha: Vec3) -> Vec3 {
+        self.constant_momentum(pose, alpha)
+            + omega.cross(self.constant_momentum(pose, omega))
+            + self.varying_moment(pose.angle, omega.z, alpha.z)
     }
 
     /// I α + ½ I′ ω² of the varying moment of inertia alone, N·m: the rate of no momentum of the body's own.
-    pub(crate) fn varying_moment(&self, angle: f64, omega: f64, alpha: f64) -> f64 {
-        let [inertia, half_slope] = at_angle(self.varying.as_ref(), angle);
-        inertia * alpha + half_slope * omega * omega
+    pub(crate) fn varying_moment(&self, angle: f64, omega: f64, alpha: f64) -> Vec3 {
+        match &self.varying {
+            None => Vec3::ZERO,
+            varying => {
+                let [inertia, half_slope] = at_angle(varying.as_ref(), angle);
+                vec3(0.0, 0.0, inertia * alpha + half_slope * omega * omega)
+            }
+        }
+    }
+
+    /// The varying moment of inertia at an angle, kg m².
+    pub(crate) fn varying_inertia(&self, angle: f64) -> f64 {
+        at_angle(self.varying.as_ref(), angle)[0]
     }
 }
 
 /// The mechanism, its masses and its rows, all dense, in moved frames.
 ///
-/// Where a method takes a row or a body it is an index into the mechanism's reactions, followed by
-/// the actuators, or into its bodies; speeds have as many numbers as there are coordinates.
+/// Where a method takes a row or a body it is an index into the rows of the joints, followed by
+/// the actuators', or into its bodies; speeds have as many numbers as there are coordinates.
 #[derive(Debug, Clone)]
 pub struct DenseMechanism {
-    pub(crate) mechanism: Mechanism,
-    pub(crate) rows: ConstraintRows,
+    pub(crate) ground: usize,
+    pub(crate) rows: Rows,
     pub(crate) bodies: Vec<DenseBody>,
+    pub(crate) joints: Vec<DescribedJoint>,
+    pub(crate) reactions: Vec<DescribedReaction>,
+    pub(crate) actuators: Vec<Action>,
+    /// By row: its name, and whether it is an angle.
+    pub(crate) row_names: Vec<String>,
+    pub(crate) angular: Vec<bool>,
+    pub(crate) counts_revolutions: bool,
     pub(crate) row_scale: Vec<f64>,
+    pub(crate) column_scales: Vec<f64>,
     pub(crate) size: f64,
     /// The rows that are solved: as many as coordinates. What the others say follows from them.
     pub(crate) independent_rows: Vec<usize>,
@@ -62,7 +98,10 @@ pub struct DenseMechanism {
 }
 
 impl DenseMechanism {
-    /// Moves the frames and writes the rows, as many as there are coordinates.
+    /// Moves the frames of a planar mechanism and writes the rows, as many as there are coordinates.
+    ///
+    /// # Errors
+    /// [`DenseError`] where a reference, an axis or the number of rows or masses is wrong.
     pub fn new<'m>(mechanism: &Mechanism, inertias: impl Into<Inertias<'m>>) -> Result<Self> {
         let dense = Self::without_rank_check(mechanism, inertias)?;
         let (rows, columns) = (dense.rows.len(), dense.rows.columns());
@@ -78,56 +117,68 @@ impl DenseMechanism {
         mechanism: &Mechanism,
         inertias: impl Into<Inertias<'m>>,
     ) -> Result<Self> {
-        Self::with_origins(mechanism, inertias.into(), |_, mean| mean)
+        let description = Description::in_plane(mechanism, inertias.into())?;
+        Ok(Self::of(description, |_, mean| mean))
     }
 
-    /// The same with the origin of each body at another point of it than the mean of its attachments.
-    pub(crate) fn with_origins(
-        mechanism: &Mechanism,
-        inertias: Inertias<'_>,
-        origin: impl Fn(usize, Vec2) -> Vec2,
+    /// A mechanism in space, with the bodies whose rotation about the line of their balls is nobody's, whatever the number of rows.
+    ///
+    /// # Errors
+    /// [`DenseError`] where there is not one mass for each body.
+    pub(crate) fn in_space(
+        mechanism: &SpaceMechanism,
+        masses: &[SpaceMass],
+        idle: &[IdleBody],
     ) -> Result<Self> {
-        let (size, masses) = (mechanism.size(), inertias.masses);
-        let mut mechanism = mechanism.clone();
-        // References first: what follows indexes by them.
-        let columns = ConstraintRows::new(&mechanism)?;
-        if masses.len() != mechanism.bodies.len() {
-            return Err(DenseError::Masses {
-                masses: masses.len(),
-                bodies: mechanism.bodies.len(),
-            });
-        }
-        check_axes(&mechanism)?;
-        let means = attachment_means(&mut mechanism).into_iter().enumerate();
-        let shifts: Vec<Vec2> = means.map(|(b, mean)| origin(b, mean)).collect();
-        for_each_attachment(&mut mechanism, |body, point| *point -= shifts[body]);
-        let body = |(b, (mass, shift)): (usize, (&Mass, Vec2))| {
-            let mut mass = *mass;
-            // The centre of nothing does not matter; far away it would cost digits.
-            mass.center = match mass.mass {
-                0.0 => Vec2::ZERO,
-                _ => mass.center - shift,
-            };
-            let column = columns.column(BodyId(b));
-            DenseBody {
-                column,
-                mass,
-                varying: inertias.varying_of(b).filter(|_| column.is_some()),
-                shift,
-            }
-        };
-        let bodies = masses.iter().zip(shifts).enumerate().map(body).collect();
-        let rows = ConstraintRows::new(&mechanism)?;
-        let scale = |&angular: &bool| if angular { size } else { 1.0 };
-        Ok(Self {
-            mechanism,
+        let description = Description::in_space(mechanism, masses, idle)?;
+        Ok(Self::of(description, |_, mean| mean))
+    }
+
+    /// The rows of a description, with the origin of each body at some point of it, by the mean of its attachments.
+    pub(crate) fn of(mut description: Description, origin: impl Fn(usize, Vec3) -> Vec3) -> Self {
+        let means = description.attachment_means().into_iter().enumerate();
+        let shifts: Vec<Vec3> = means.map(|(b, mean)| origin(b, mean)).collect();
+        description.shift(&shifts);
+        let Description {
+            ground,
             bodies,
-            row_scale: rows.angular().iter().map(scale).collect(),
-            size,
-            independent_rows: (0..rows.len()).collect(),
-            determinate: vec![true; rows.len()],
+            joints,
             rows,
-        })
+            reactions,
+            actuators,
+            size,
+            counts_revolutions,
+            ..
+        } = description;
+        let both = bodies.into_iter().zip(shifts);
+        let bodies: Vec<DenseBody> = both.map(|(body, shift)| shifted(body, shift)).collect();
+        let angular: Vec<bool> = rows.iter().map(|row| row.is_angle).collect();
+        let scale = |&angular: &bool| if angular { size } else { 1.0 };
+        let columns: Vec<Columns> = bodies.iter().map(|body| body.columns).collect();
+        let of_columns = columns.iter().flat_map(|body| {
+            let parts = body.components(Vec3::ZERO, Vec3::ZERO);
+            parts.map(|(_, is_angle)| if is_angle { 1.0 / size } else { 1.0 })
+        });
+        let count = rows.len();
+        let unzip = |row: DescribedRow| (row.row, row.name);
+        let column_scales = of_columns.collect();
+        let (rows, row_names): (Vec<_>, Vec<_>) = rows.into_iter().map(unzip).unzip();
+        Self {
+            ground,
+            rows: Rows::new(rows, columns),
+            bodies,
+            joints,
+            reactions,
+            actuators,
+            row_names,
+            row_scale: angular.iter().map(scale).collect(),
+            angular,
+            counts_revolutions,
+            column_scales,
+            size,
+            independent_rows: (0..count).collect(),
+            determinate: vec![true; count],
+        }
     }
 
     /// The size of the mechanism, m: what a radian is compared with.
@@ -135,65 +186,125 @@ impl DenseMechanism {
         self.size
     }
 
-    /// Index of the first actuator's row; the rows before it are the reactions.
+    /// Index of the first actuator's row; the rows before it are those of the joints.
     pub fn actuator_row(&self) -> usize {
-        self.rows.len() - self.mechanism.actuators.len()
+        self.rows.len() - self.actuators.len()
     }
 
-    /// The bodies that move, each with its index and the first of its columns.
-    pub(crate) fn moving_bodies(&self) -> impl Iterator<Item = (usize, &DenseBody, usize)> {
+    /// What makes a velocity of one in a column of the scaled matrix: 1 of a length, 1/size of an angle.
+    pub(crate) fn column_scale(&self, column: usize) -> f64 {
+        self.column_scales[column]
+    }
+
+    /// The bodies that move, each with its index.
+    pub(crate) fn moving_bodies(&self) -> impl Iterator<Item = (usize, &DenseBody)> {
         let bodies = self.bodies.iter().enumerate();
-        bodies.filter_map(|(b, body)| Some((b, body, body.column?)))
+        bodies.filter(|(_, body)| !body.columns.is_fixed())
     }
 
-    /// The coordinate of the only actuator.
-    pub(crate) fn actuator_coordinate(&self) -> Coordinate {
-        self.mechanism.actuators[0].coordinate()
+    /// The names of the actuators.
+    pub(crate) fn actuator_names(&self) -> &[String] {
+        &self.row_names[self.actuator_row()..]
     }
 
-    /// Dense coordinates out of the frames of all bodies.
-    pub fn coordinates(&self, poses: &[[f64; 3]]) -> Result<Vec<f64>> {
-        if poses.len() != self.bodies.len() || poses.iter().flatten().any(|v| !v.is_finite()) {
+    /// Whether the first actuator drives an angle.
+    pub(crate) fn is_angle_driven(&self) -> bool {
+        self.angular[self.actuator_row()]
+    }
+
+    /// The components of forces and moments on the whole: those of a body that moves as most freely as any.
+    pub(crate) fn whole(&self) -> Columns {
+        let in_space = |body: &DenseBody| matches!(body.columns, Columns::Space(_));
+        match self.bodies.iter().any(in_space) {
+            true => Columns::Space(0),
+            false => Columns::Plane(0),
+        }
+    }
+
+    /// The poses of the moved frames, from the moved origin of the ground, out of those of all bodies.
+    ///
+    /// # Errors
+    /// [`DenseError::InvalidPoses`] where they are not as many as bodies, or not finite.
+    pub(crate) fn moved_frames(&self, poses: &[Pose]) -> Result<Vec<Pose>> {
+        if poses.len() != self.bodies.len() || poses.iter().any(|pose| !pose.is_finite()) {
             return Err(DenseError::InvalidPoses);
         }
-        let ground = self.bodies[self.mechanism.ground].shift;
-        let mut x = vec![0.0; self.rows.columns()];
-        for (b, body, c) in self.moving_bodies() {
-            let [at_x, at_y, angle] = poses[b];
-            let arm = body.shift.rotate(Vec2::from_angle(angle));
-            x[c] = (at_x - ground.x) + arm.x;
-            x[c + 1] = (at_y - ground.y) + arm.y;
-            x[c + 2] = angle;
-        }
-        Ok(x)
+        let ground = self.bodies[self.ground].shift;
+        let both = self.bodies.iter().zip(poses);
+        let moved = both.map(|(body, pose)| match body.columns {
+            // The ground stands where it is.
+            Columns::Fixed => Pose::default(),
+            _ => Pose {
+                position: (pose.position - ground) + pose.rotation.apply(body.shift),
+                ..*pose
+            },
+        });
+        Ok(moved.collect())
     }
 
-    /// Dense velocities out of the frames of all bodies and their rates.
-    pub(crate) fn velocities(&self, poses: &[[f64; 3]], rates: &[[f64; 3]]) -> Vec<f64> {
+    /// Poses of the moved frames of a planar mechanism out of the frames [x, y, θ] of all bodies.
+    ///
+    /// # Errors
+    /// As of any poses.
+    pub fn frames(&self, poses: &[[f64; 3]]) -> Result<Vec<Pose>> {
+        let poses: Vec<Pose> = poses.iter().map(|pose| Pose::from(*pose)).collect();
+        self.moved_frames(&poses)
+    }
+
+    /// Dense velocities out of the poses of all bodies and their rates.
+    pub(crate) fn velocities(&self, poses: &[Pose], rates: &[Twist]) -> Vec<f64> {
         let mut x_dot = vec![0.0; self.rows.columns()];
-        for (b, body, c) in self.moving_bodies() {
-            let arm = body.shift.rotate(Vec2::from_angle(poses[b][2]));
-            let [vx, vy, omega] = rates[b];
-            let v = vec2(vx, vy) + arm.perp() * omega;
-            x_dot[c..c + 3].copy_from_slice(&[v.x, v.y, omega]);
+        for (b, body) in self.moving_bodies() {
+            let arm = poses[b].rotation.apply(body.shift);
+            let linear = rates[b].at(arm);
+            set(&mut x_dot, body.columns, linear, rates[b].angular);
         }
         x_dot
     }
 
-    /// Largest over smallest singular value of the scaled rows at the coordinates `x`; 1 where there is none.
-    pub(crate) fn condition_number(&self, x: &[f64]) -> f64 {
-        let values = self.scaled_jacobian(x).singular_values();
+    /// Dense accelerations out of the poses of all bodies, their rates and the rates of these.
+    pub(crate) fn accelerations(&self, poses: &[Pose], [first, second]: [&[Twist]; 2]) -> Vec<f64> {
+        let mut x_ddot = vec![0.0; self.rows.columns()];
+        for (b, body) in self.moving_bodies() {
+            let arm = poses[b].rotation.apply(body.shift);
+            let omega = first[b].angular;
+            let linear = second[b].at(arm) + centripetal(omega, arm);
+            set(&mut x_ddot, body.columns, linear, second[b].angular);
+        }
+        x_ddot
+    }
+
+    /// Largest over smallest singular value of the scaled rows at these poses; 1 where there is none.
+    pub(crate) fn condition_number(&self, poses: &[Pose]) -> f64 {
+        let values = self.scaled_jacobian(poses).singular_values();
         match values.unwrap_or_default()[..] {
             [largest, .., smallest] if smallest > 0.0 => largest / smallest,
             _ => 1.0,
         }
     }
+}
 
-    /// Where a point of the moved frame is, from the ground's moved origin.
-    pub(crate) fn frame_point(&self, body: &DenseBody, x: &[f64], point: Vec2) -> Vec2 {
-        body.column.map_or(point, |c| {
-            vec2(x[c], x[c + 1]) + point.rotate(Vec2::from_angle(x[c + 2]))
-        })
+/// A body with its mass about the moved frame.
+fn shifted(body: DescribedBody, shift: Vec3) -> DenseBody {
+    let mut mass = body.mass;
+    // The centre of nothing does not matter; far away it would cost digits.
+    mass.center = match mass.mass {
+        0.0 => Vec3::ZERO,
+        _ => mass.center - shift,
+    };
+    DenseBody {
+        name: body.name,
+        columns: body.columns,
+        mass,
+        varying: body.varying,
+        shift,
+    }
+}
+
+fn set(to: &mut [f64], columns: Columns, linear: Vec3, angular: Vec3) {
+    let components = columns.components(linear, angular);
+    for (to, (part, _)) in to[columns.range()].iter_mut().zip(components) {
+        *to = part;
     }
 }
 
@@ -207,79 +318,8 @@ pub(crate) fn add_scaled(to: &mut [f64], factor: f64, more: &[f64]) {
 /// configuration with the frames `poses` of all bodies, m and rad: largest over smallest singular value. It
 /// says how many roundings a result may be off by. 1 where there is none.
 pub fn condition_number(mechanism: &Mechanism, poses: &[[f64; 3]]) -> f64 {
-    let masses = vec![Mass::default(); mechanism.bodies.len()];
+    let masses = vec![dwell_kinetostatics::Mass::default(); mechanism.bodies.len()];
     let dense = DenseMechanism::without_rank_check(mechanism, &masses);
-    let at = |dense: DenseMechanism| Ok(dense.condition_number(&dense.coordinates(poses)?));
+    let at = |dense: DenseMechanism| Ok(dense.condition_number(&dense.frames(poses)?));
     dense.and_then(at).unwrap_or(1.0)
-}
-
-/// Any other length than one would scale a reaction silently.
-fn check_axes(mechanism: &Mechanism) -> Result<()> {
-    for (joint, described) in mechanism.joints.iter().enumerate() {
-        let axes = match described.kind {
-            JointKind::Prismatic { axes } => axes,
-            JointKind::Slot { axis }
-            | JointKind::Rack { axis, .. }
-            | JointKind::Rolling { axis, .. } => [axis; 2],
-            JointKind::Revolute
-            | JointKind::Weld { .. }
-            | JointKind::Gear { .. }
-            | JointKind::Distance { .. }
-            | JointKind::Coupling(_) => continue,
-        };
-        for length in axes.map(Vec2::norm) {
-            if length.is_nan() || (length - 1.0).abs() > 1e-12 {
-                return Err(DenseError::AxisNotUnit { joint, length });
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Every point of the mechanism that is given in a body's frame, with the body.
-pub(crate) fn for_each_attachment(mechanism: &mut Mechanism, mut f: impl FnMut(usize, &mut Vec2)) {
-    let mut pair = |bodies: [BodyId; 2], points: &mut [Vec2; 2]| {
-        for (body, point) in bodies.into_iter().zip(points) {
-            f(body.0, point);
-        }
-    };
-    for joint in &mut mechanism.joints {
-        match joint.kind {
-            // A coupling is between coordinates: the points of its joint have no meaning.
-            JointKind::Coupling(_) => {}
-            JointKind::Revolute
-            | JointKind::Prismatic { .. }
-            | JointKind::Slot { .. }
-            | JointKind::Weld { .. }
-            | JointKind::Gear { .. }
-            | JointKind::Rack { .. }
-            | JointKind::Rolling { .. }
-            | JointKind::Distance { .. } => pair(joint.bodies, &mut joint.points),
-        }
-    }
-    for relation in &mut mechanism.couplings {
-        for coordinate in [&mut relation.dependent, &mut relation.independent] {
-            if let Coordinate::Length { bodies, points } = coordinate
-                && bodies.iter().all(|b| b.0 < mechanism.bodies.len())
-            {
-                pair(*bodies, points);
-            }
-        }
-    }
-    for actuator in &mut mechanism.actuators {
-        if let ActuatorKind::Length(points) = &mut actuator.kind {
-            pair(actuator.bodies, points);
-        }
-    }
-}
-
-/// The mean of each body's attachments in its own frame.
-fn attachment_means(mechanism: &mut Mechanism) -> Vec<Vec2> {
-    let mut sums = vec![(Vec2::ZERO, 0_u32); mechanism.bodies.len()];
-    for_each_attachment(mechanism, |body, point| {
-        sums[body].0 += *point;
-        sums[body].1 += 1;
-    });
-    let mean = |(sum, count)| sum * (1.0 / f64::from(u32::max(count, 1)));
-    sums.into_iter().map(mean).collect()
 }

@@ -27,15 +27,11 @@ pub fn load_wrenches(
     };
     let couple = |on: [BodyId; 2], couple: f64| {
         let exist = on.iter().all(|body| body.0 < bodies.len());
-        exist.then(|| BodyWrench::pair(on, Vec2::ZERO, Vec2::ZERO, couple).into())
+        exist.then(|| pair(on, Vec2::ZERO, Vec2::ZERO, couple))
     };
     let force_at = |body: BodyId, point: Vec2, force: Vec2| {
-        Some(BodyWrench {
-            body,
-            force,
-            point: motion.point(body, point)?,
-            couple: 0.0,
-        })
+        let point = motion.point(body, point)?;
+        Some(BodyWrench::in_plane(body, force, point, 0.0))
     };
     // Both bodies at their own points: the force is along the line between these.
     let pull = |bodies: [BodyId; 2], points: [Vec2; 2], on_second: Vec2| {
@@ -154,19 +150,31 @@ fn separating_wrenches(mesh: Mesh, force: f64, motion: &BodyMotion<'_>) -> Optio
             (center - from_line, from_line * (1.0 / from_line.norm()))
         }
     };
-    Some(BodyWrench::pair(mesh.bodies, away * force, at, 0.0).into())
+    Some(pair(mesh.bodies, away * force, at, 0.0))
 }
 
 /// A force along a guide: it acts on both bodies at the second's point.
 fn guide_wrenches(guide: Guide, force: f64, motion: &BodyMotion<'_>) -> Option<Vec<BodyWrench>> {
     let on_second = motion.direction(guide.bodies[0], guide.axis)? * force;
     let at = motion.point(guide.bodies[1], guide.points[1])?;
-    Some(BodyWrench::pair(guide.bodies, on_second, at, 0.0).into())
+    Some(pair(guide.bodies, on_second, at, 0.0))
+}
+
+/// A force at a point and a couple on the second body, and their opposites on the first.
+fn pair(bodies: [BodyId; 2], force: Vec2, point: Vec2, couple: f64) -> Vec<BodyWrench> {
+    let signed = [-1.0, 1.0].into_iter().zip(bodies);
+    signed
+        .map(|(sign, body)| BodyWrench::in_plane(body, force * sign, point, couple * sign))
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::description::plane::lifted;
+    use crate::pose::{Pose, Twist};
+    use crate::wrenches::NetWrench;
+    use dwell_geometry::space::{Vec3, Wrench};
     use dwell_geometry::vec2;
 
     const BODIES: [[f64; 3]; 3] = [[0.0; 3], [1.0, 2.0, 0.5], [-0.5, 0.3, 4.0]];
@@ -186,10 +194,8 @@ mod tests {
     /// Power of the acts with the speeds.
     fn power(wrenches: &[BodyWrench]) -> f64 {
         let of = |wrench: &BodyWrench| {
-            let [x, y, _] = BODIES[wrench.body.0];
-            let [vx, vy, omega] = VELOCITIES[wrench.body.0];
-            let v = vec2(vx, vy) + (wrench.point - vec2(x, y)).perp() * omega;
-            wrench.force.dot(v) + wrench.couple * omega
+            let origin = Pose::from(BODIES[wrench.body.0]).position;
+            Twist::from(VELOCITIES[wrench.body.0]).power(&wrench.about(origin))
         };
         wrenches.iter().map(of).sum()
     }
@@ -285,7 +291,7 @@ mod tests {
             body_fixed: true,
         };
         let got = wrenches(force, &BODIES)[0].force;
-        let want = Vec2::from_angle(0.5).perp() * 3.0;
+        let want = lifted(Vec2::from_angle(0.5).perp() * 3.0);
         assert!((got - want).norm() < 1e-15);
     }
 
@@ -321,12 +327,8 @@ mod tests {
             }),
         ] {
             let wrenches = wrenches(kind, &BODIES);
-            let force = wrenches.iter().fold(Vec2::ZERO, |sum, a| sum + a.force);
-            let moment: f64 = wrenches
-                .iter()
-                .map(|a| a.point.cross(a.force) + a.couple)
-                .sum();
-            assert!(force.norm() < 1e-14 && moment.abs() < 1e-14, "{kind:?}");
+            let Wrench { force, moment } = NetWrench::of(wrenches.iter(), Vec3::ZERO).sum;
+            assert!(force.norm() < 1e-14 && moment.norm() < 1e-14, "{kind:?}");
         }
         let far = LoadKind::Torque {
             bodies: [BodyId(0), BodyId(3)],

@@ -13,6 +13,7 @@
 
 use crate::dense::DenseMechanism;
 use crate::error::{DenseError, Result};
+use crate::pose::Pose;
 use dwell_geometry::{BodyId, Mechanism};
 use dwell_kinetostatics::Mass;
 use faer::MatRef;
@@ -73,8 +74,7 @@ pub struct Ranks {
 pub fn rank(mechanism: &Mechanism, poses: &[[f64; 3]]) -> Result<Ranks> {
     let masses = vec![Mass::default(); mechanism.bodies.len()];
     let dense = DenseMechanism::without_rank_check(mechanism, &masses)?;
-    let x = dense.coordinates(poses)?;
-    let all = dense.scaled_jacobian(&x);
+    let all = dense.scaled_jacobian(&dense.frames(poses)?);
     if !all.is_all_finite() {
         // Two points in one place have no direction.
         return Err(DenseError::Singular(f64::NAN));
@@ -84,6 +84,14 @@ pub fn rank(mechanism: &Mechanism, poses: &[[f64; 3]]) -> Result<Ranks> {
         joints: rank_of(&dense, joints)?,
         with_actuators: rank_of(&dense, all.as_ref())?,
     })
+}
+
+impl DenseMechanism {
+    /// The rows of joints and actuators that depend on others at these poses of the moved frames.
+    pub(crate) fn dependent_rows(&self, frames: &[Pose]) -> Result<Vec<usize>> {
+        let all = self.scaled_jacobian(frames);
+        Ok(rank_of(self, all.as_ref())?.dependent_rows)
+    }
 }
 
 fn rank_of(dense: &DenseMechanism, matrix: MatRef<'_, f64>) -> Result<Rank> {
@@ -100,8 +108,7 @@ fn rank_of(dense: &DenseMechanism, matrix: MatRef<'_, f64>) -> Result<Rank> {
         let row = |i| (rank..vectors.ncols()).map(|j| square(i, j)).sum::<f64>();
         rows.map(row).sum::<f64>() > NULL_SPACE_PART * NULL_SPACE_PART
     };
-    let moves = |c: usize| in_null_space(svd.V(), c..c + 3);
-    let movable = |&b: &usize| dense.bodies[b].column.is_some_and(moves);
+    let movable = |&b: &usize| in_null_space(svd.V(), dense.bodies[b].columns.range());
     let dependent = |&k: &usize| in_null_space(svd.U(), k..k + 1);
     let bodies = 0..dense.bodies.len();
     Ok(Rank {

@@ -1,10 +1,13 @@
 //! Mechanisms whose joints repeat each other: which rows are solved, and which multipliers are determined.
 
 use crate::dense::DenseMechanism;
+use crate::description::DescribedJoint;
 use crate::error::{DenseError, Result};
 use crate::inertias::Inertias;
-use crate::rank::rank;
+use crate::pose::Pose;
 use dwell_geometry::Mechanism;
+use dwell_geometry::space::Wrench;
+use std::borrow::Cow;
 
 /// A row of which less than this remains beside the others depends on them: as for singular values.
 const INDEPENDENCE_TOLERANCE: f64 = 1e-9;
@@ -17,26 +20,47 @@ impl DenseMechanism {
         inertias: impl Into<Inertias<'m>>,
         poses: &[[f64; 3]],
     ) -> Result<Self> {
-        let mut dense = Self::without_rank_check(mechanism, inertias)?;
-        let (rows, columns) = (dense.rows.len(), dense.rows.columns());
-        let x = dense.coordinates(poses)?;
+        let dense = Self::without_rank_check(mechanism, inertias)?;
+        let start = dense.frames(poses)?;
+        dense.assembled(&start)
+    }
+
+    /// The same as it is assembled with the moved frames in these poses.
+    pub(crate) fn assembled(mut self, start: &[Pose]) -> Result<Self> {
+        let (rows, columns) = (self.rows.len(), self.rows.columns());
         if rows != columns {
-            dense.independent_rows = dense.select_independent_rows(&x);
-            if dense.independent_rows.len() != columns {
+            self.independent_rows = self.select_independent_rows(start);
+            if self.independent_rows.len() != columns {
                 return Err(DenseError::NotSquare { rows, columns });
             }
-            for row in rank(mechanism, poses)?.with_actuators.dependent_rows {
-                dense.determinate[row] = false;
+            for row in self.dependent_rows(start)? {
+                self.determinate[row] = false;
             }
         }
-        dense.rows.mesh(&x);
-        Ok(dense)
+        self.rows.mesh(start);
+        Ok(self)
+    }
+
+    /// The same with the rows that are farthest from dependent at these poses: any others may be dependent there.
+    pub(crate) fn at(&self, poses: &[Pose]) -> Result<Cow<'_, Self>> {
+        let columns = self.rows.columns();
+        if self.rows.len() == columns {
+            return Ok(Cow::Borrowed(self));
+        }
+        let independent_rows = self.select_independent_rows(poses);
+        if independent_rows.len() != columns {
+            return Err(DenseError::Singular(0.0));
+        }
+        Ok(Cow::Owned(Self {
+            independent_rows,
+            ..self.clone()
+        }))
     }
 
     /// The rows that are solved where rows repeat each other, the actuators' among them.
-    pub(crate) fn select_independent_rows(&self, x: &[f64]) -> Vec<usize> {
+    pub(crate) fn select_independent_rows(&self, poses: &[Pose]) -> Vec<usize> {
         let all: Vec<usize> = (0..self.rows.len()).collect();
-        self.independent_rows_of(&all, self.actuator_row(), x)
+        self.independent_rows_of(&all, self.actuator_row(), poses)
     }
 
     /// Those of some rows of which none is made up of the others: by Gram and Schmidt, first those from `preferred` on,
@@ -45,9 +69,9 @@ impl DenseMechanism {
         &self,
         candidates: &[usize],
         preferred: usize,
-        x: &[f64],
+        poses: &[Pose],
     ) -> Vec<usize> {
-        let matrix = self.scaled_jacobian(x);
+        let matrix = self.scaled_jacobian(poses);
         let row = |&i: &usize| (i, (0..matrix.ncols()).map(|j| matrix[(i, j)]).collect());
         let mut remaining: Vec<(usize, Vec<f64>)> = candidates.iter().map(row).collect();
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -75,5 +99,71 @@ impl DenseMechanism {
         }
         independent.sort_unstable();
         independent
+    }
+
+    /// The multipliers of joints' rows that balance without any force, each of length one where moments are divided by the size: none where
+    /// no row repeats others, or no joint has its reactions by components.
+    pub(crate) fn self_stresses(&self, poses: &[Pose]) -> Vec<Vec<f64>> {
+        let by_components = self.joints.iter().any(|joint| joint.is_wrench);
+        if self.rows.len() == self.rows.columns() || !by_components {
+            return Vec::new();
+        }
+        let matrix = self.scaled_jacobian(poses);
+        let Ok(svd) = matrix.svd() else {
+            return Vec::new();
+        };
+        let rank = self.rows.columns();
+        let stress = |k: usize| {
+            let parts = svd.U().col(k).iter().zip(&self.row_scale);
+            parts.map(|(part, scale)| part * scale).collect()
+        };
+        (rank..self.rows.len()).map(stress).collect()
+    }
+
+    /// Force and moment of multipliers of a joint's rows on its second body, about its point there, by components.
+    pub(crate) fn joint_wrench(
+        &self,
+        joint: &DescribedJoint,
+        poses: &[Pose],
+        multipliers: &[f64],
+    ) -> [f64; 6] {
+        self.joint_sum(joint, poses, |row, part| multipliers[row] * part)
+    }
+
+    /// At most so much of each component, by bounds of the multipliers.
+    pub(crate) fn joint_wrench_bound(
+        &self,
+        joint: &DescribedJoint,
+        poses: &[Pose],
+        bounds: &[f64],
+    ) -> [f64; 6] {
+        self.joint_sum(joint, poses, |row, part| (bounds[row] * part).abs())
+    }
+
+    fn joint_sum(
+        &self,
+        joint: &DescribedJoint,
+        poses: &[Pose],
+        part_of: impl Fn(usize, f64) -> f64,
+    ) -> [f64; 6] {
+        let mut sum = [0.0; 6];
+        let (second, point) = joint.at(poses);
+        for row in joint.rows.clone() {
+            self.rows
+                .row(row)
+                .each_gradient(poses, |body, factor, gradient| {
+                    if body != second {
+                        return;
+                    }
+                    let Wrench { force, moment } = gradient;
+                    let arm = point - poses[body].position;
+                    let moment = moment - arm.cross(force);
+                    let parts = [force.x, force.y, force.z, moment.x, moment.y, moment.z];
+                    for (sum, part) in sum.iter_mut().zip(parts) {
+                        *sum += part_of(row, factor * part);
+                    }
+                });
+        }
+        sum
     }
 }

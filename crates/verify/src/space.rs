@@ -1,49 +1,37 @@
-//! The dense equations of a mechanism in space, in other coordinates than a plan's: velocity and angular velocity of each body,
+//! A mechanism in space: its states, claimed or solved by the dense equations in body coordinates,
 //!
 //! ```text
 //! J ẋ = D q̇,     J ẍ = D q̈ − J̇ẋ,     Jᵀ [λ; τ] = M ẍ + h − f,     x = [r; θ] of each body              (1)
 //! ```
 //!
-//! by singular values of the whole, so that redundant constraints and idle rotations are seen as what they are. The rows are
-//! products of directions and distances, for directions u, w fixed in the first and second body and d from its point to that of
-//! the second,
-//!
-//! ```text
-//! e·d = 0,    u·d = 0,    u·w = 0,    (d·d − L²)/2L = 0,    u·d − h θ = 0                                   (2)
-//! ```
-//!
-//! and, of gear pairs, velocities of the wheels at the pitch point.
+//! by singular values of the whole, so that redundant constraints and idle rotations are seen as what they are.
 
-mod balances;
 mod branch;
-mod closing;
-mod differences;
 mod energy;
 mod forces;
 mod friction;
-mod rows;
+mod joints;
 mod state;
 
-pub use balances::joint_actions;
 pub use branch::check_branch_in_space;
 pub use energy::{kinetic_energy, potential_energy};
 pub use friction::{sliding_in_space, with_friction_in_space};
-pub use rows::{closure_error, mesh_error};
-pub use state::{SpaceCase, SpaceState, SpaceSubject, check_states_in_space};
+pub use joints::{closure_error, mesh_error};
+pub use state::{SpaceCase, SpaceState, check_states_in_space};
 
+use crate::dense::DenseMechanism;
 use crate::error::{DenseError, Result};
-use dwell_geometry::JointId;
-use dwell_geometry::space::{
-    ActuatorKind, BodyMotion, Joint, Mechanism, Placement, Vec3, Wrench, vec3,
-};
+use crate::pose::{Columns, Pose, centripetal};
+use crate::wrenches::BodyWrench;
+use dwell_geometry::space::{BodyMotion, Mechanism, Placement, Vec3, Wrench};
 use dwell_kinetostatics::space::{LoadKind, Mass};
 use faer::Mat;
 use faer::linalg::solvers::Svd;
-use rows::{Bodies, Gradient, Row, couple};
-use std::borrow::Cow;
 
 /// Singular values this small against the largest are zero.
 const RANK_TOLERANCE: f64 = 1e-9;
+/// A part of a self-stress of length one from which on a component is not determined.
+const STRESS: f64 = 1e-7;
 
 /// Motion, forces and ranks at a pose.
 #[derive(Debug, Clone)]
@@ -74,18 +62,20 @@ impl DenseSpace {
         mechanism: &Mechanism,
         masses: &[Mass],
         placements: &[Placement],
-        [q_dot, q_ddot]: [&[f64]; 2],
+        rates: [&[f64]; 2],
         loads: &[(LoadKind, f64)],
     ) -> Result<Self> {
-        let pose = DensePose::new(mechanism, placements)?;
-        Ok(pose.solve(masses, [q_dot, q_ddot], loads))
+        Ok(DensePose::new(mechanism, masses, placements)?.solve(rates, loads))
     }
 }
 
 /// The equations (1) of a pose with their singular values: for any motion there, and any loads.
 pub struct DensePose<'a> {
     mechanism: &'a Mechanism,
-    placements: Cow<'a, [Placement]>,
+    masses: &'a [Mass],
+    placements: &'a [Placement],
+    dense: DenseMechanism,
+    poses: Vec<Pose>,
     system: System,
 }
 
@@ -94,241 +84,115 @@ impl<'a> DensePose<'a> {
     ///
     /// # Errors
     /// [`DenseError`] where they have no singular values.
-    pub fn new(mechanism: &'a Mechanism, placements: &'a [Placement]) -> Result<Self> {
-        Self::at(mechanism, Cow::Borrowed(placements))
-    }
-
-    fn at(mechanism: &'a Mechanism, placements: Cow<'a, [Placement]>) -> Result<Self> {
+    pub fn new(
+        mechanism: &'a Mechanism,
+        masses: &'a [Mass],
+        placements: &'a [Placement],
+    ) -> Result<Self> {
+        let dense = DenseMechanism::in_space(mechanism, masses, &[])?;
+        let poses = dense.moved_frames(&state::poses(placements))?;
         Ok(Self {
-            system: System::new(&Bodies::at_rest(mechanism, &placements))?,
+            system: System::new(&dense, &poses)?,
             mechanism,
+            masses,
             placements,
+            dense,
+            poses,
         })
     }
 
     /// The velocities of all bodies at speeds of the actuators.
     pub fn velocities(&self, q_dot: &[f64]) -> Vec<BodyMotion> {
-        self.moving(q_dot).0.motions
-    }
-
-    /// The bodies with their velocities, and what is not met.
-    fn moving(&self, q_dot: &[f64]) -> (Bodies<'_>, f64) {
-        let mut bodies = Bodies::at_rest(self.mechanism, &self.placements);
-        let (velocity, residual) = self.system.solve(q_dot, &vec![0.0; self.system.rows]);
-        bodies.set(&velocity, |motion| {
-            (&mut motion.velocity, &mut motion.angular_velocity)
-        });
-        (bodies, residual)
-    }
-
-    /// Motion and forces at speeds and accelerations of the actuators, under loads with their magnitudes.
-    pub fn solve(
-        &self,
-        masses: &[Mass],
-        [q_dot, q_ddot]: [&[f64]; 2],
-        loads: &[(LoadKind, f64)],
-    ) -> DenseSpace {
-        let (mechanism, system) = (self.mechanism, &self.system);
-        let (mut bodies, first) = self.moving(q_dot);
-        let (acceleration, second) = system.solve(q_ddot, &bodies.biases());
-        bodies.set(&acceleration, |motion| {
-            (&mut motion.acceleration, &mut motion.angular_acceleration)
-        });
-        let required = bodies.required(masses, loads);
-        let (multipliers, third) = system.multipliers(&required);
-        let (reactions, determined) = bodies.reactions(system, &multipliers);
-        DenseSpace {
-            actuator_actions: multipliers[system.constraints..][..mechanism.actuators.len()]
-                .to_vec(),
-            idle_freedoms: system.idle,
-            redundant_count: system.redundant_count(),
-            residuals: [first, second, third],
-            motions: bodies.motions,
-            reactions,
-            determined,
-        }
-    }
-}
-
-/// J with the rows of the actuators and of idle rotations, and its singular values.
-struct System {
-    matrix: Mat<f64>,
-    svd: Svd<f64>,
-    rank: usize,
-    /// Rows of the joints, and of everything.
-    constraints: usize,
-    rows: usize,
-    idle: usize,
-    /// By joint: its rows.
-    of_joint: Vec<std::ops::Range<usize>>,
-    /// By row of a joint: its gradient by the second body.
-    on_second: Vec<Gradient>,
-}
-
-impl System {
-    fn new(bodies: &Bodies<'_>) -> Result<Self> {
-        let (rows, of_joint) = bodies.all_rows();
-        let constraints = of_joint.last().map_or(0, |r| r.end);
-        let columns = 6 * bodies.placements.len();
-        let mut matrix = Mat::zeros(rows.len() + 6, columns);
-        for (i, row) in rows.iter().enumerate() {
-            for (body, gradient) in row.bodies.into_iter().zip(row.gradients) {
-                add(&mut matrix, i, body, gradient);
-            }
-        }
-        // The ground does not move.
-        for k in 0..6 {
-            matrix[(rows.len() + k, 6 * bodies.mechanism.ground + k)] = 1.0;
-        }
-        let svd = singular_values(&matrix)?;
-        let idle = columns - rank(&svd);
-        // An idle rotation stands still: the body that turns in it does not turn about its line.
-        let (fixed, first) = (matrix.nrows(), matrix);
-        let mut matrix = Mat::zeros(fixed + idle, columns);
-        matrix.as_mut().subrows_mut(0, fixed).copy_from(&first);
-        for k in 0..idle {
-            let null = svd.V().col(columns - 1 - k);
-            let turning = |b: usize| vec3(null[6 * b + 3], null[6 * b + 4], null[6 * b + 5]);
-            let size = |b: &usize| turning(*b).norm();
-            let all = 0..bodies.placements.len();
-            if let Some(body) = all.max_by(|a, b| size(a).total_cmp(&size(b))) {
-                add(&mut matrix, fixed + k, body, couple(turning(body)));
-            }
-        }
-        let svd = singular_values(&matrix)?;
-        let on_second = rows[..constraints].iter().map(|row| row.gradients[1]);
-        Ok(Self {
-            rank: rank(&svd),
-            rows: matrix.nrows(),
-            matrix,
-            svd,
-            constraints,
-            idle,
-            of_joint,
-            on_second: on_second.collect(),
-        })
-    }
-
-    /// The constraints that are too many.
-    fn redundant_count(&self) -> usize {
-        self.rows - self.rank
-    }
-
-    /// Right-hand sides of the rows, less those.
-    fn opposite(&self, of_rows: &[f64]) -> Mat<f64> {
-        Mat::from_fn(self.rows, 1, |i, _| of_rows.get(i).map_or(0.0, |row| -row))
+        let x_dot = self.rates(q_dot, &vec![0.0; self.dense.rows.len()]).0;
+        self.motions([&x_dot, &vec![0.0; x_dot.len()]])
     }
 
     /// ẋ or ẍ from the rates of the actuators and J̇ẋ, and what is not met.
-    fn solve(&self, rates: &[f64], biases: &[f64]) -> (Vec<f64>, f64) {
-        let mut right = self.opposite(biases);
-        for (k, rate) in rates.iter().enumerate() {
-            right[(self.constraints + k, 0)] += rate;
+    fn rates(&self, of_actuators: &[f64], biases: &[f64]) -> (Vec<f64>, f64) {
+        let mut right: Vec<f64> = biases.iter().map(|bias| -bias).collect();
+        let actuators = &mut right[self.dense.actuator_row()..];
+        actuators
+            .iter_mut()
+            .zip(of_actuators)
+            .for_each(|(row, rate)| *row += rate);
+        let (scaled, residual) = self.system.solve(&self.dense, &right);
+        let x = scaled.iter().enumerate();
+        (
+            x.map(|(c, x)| x * self.dense.column_scale(c)).collect(),
+            residual,
+        )
+    }
+
+    /// The motions of the frames as they are given, of those of the moved frames.
+    fn motions(&self, [x_dot, x_ddot]: [&[f64]; 2]) -> Vec<BodyMotion> {
+        let bodies = self.dense.bodies.iter().zip(&self.poses);
+        let motion = bodies.map(|(body, pose)| {
+            let [first, second] = [x_dot, x_ddot].map(|x| body.columns.twist(x));
+            let (arm, w) = (-pose.rotation.apply(body.shift), first.angular);
+            match body.columns {
+                Columns::Fixed => BodyMotion::default(),
+                _ => BodyMotion {
+                    velocity: first.at(arm),
+                    angular_velocity: w,
+                    acceleration: second.at(arm) + centripetal(w, arm),
+                    angular_acceleration: second.angular,
+                },
+            }
+        });
+        motion.collect()
+    }
+
+    /// Motion and forces at speeds and accelerations of the actuators, under loads with their magnitudes.
+    pub fn solve(&self, [q_dot, q_ddot]: [&[f64]; 2], loads: &[(LoadKind, f64)]) -> DenseSpace {
+        let (dense, system) = (&self.dense, &self.system);
+        let (x_dot, first) = self.rates(q_dot, &vec![0.0; dense.rows.len()]);
+        let biases = dense.rows.velocity_products(&self.poses, &x_dot);
+        let (x_ddot, second) = self.rates(q_ddot, &biases);
+        let motions = self.motions([&x_dot, &x_ddot]);
+        let inertia = dense.inertia_wrenches(&self.poses, [&x_dot, &x_ddot]);
+        let bodies = (self.mechanism, self.masses, self.placements);
+        let loads: Vec<BodyWrench> = forces::load_wrenches(bodies, &motions, loads);
+        let loads = dense.shifted_wrenches(&loads);
+        let mut required = vec![0.0; dense.rows.columns()];
+        dense.add_wrenches(
+            &self.poses,
+            inertia.iter().chain(&loads),
+            -1.0,
+            &mut required,
+        );
+        let (multipliers, third) = system.multipliers(dense, &required);
+        let stresses: Vec<Vec<f64>> = system.stresses(dense).collect();
+        let of_joints = |multipliers: &[f64]| -> Vec<[f64; 6]> {
+            let joints = dense.joints.iter();
+            let wrench = joints.map(|joint| dense.joint_wrench(joint, &self.poses, multipliers));
+            wrench.collect()
+        };
+        let stresses: Vec<Vec<[f64; 6]>> =
+            stresses.iter().map(|stress| of_joints(stress)).collect();
+        let is_determined = |j: usize, k: usize| {
+            let arm = if k < 3 { 1.0 } else { 1.0 / dense.size() };
+            stresses
+                .iter()
+                .all(|stress| (stress[j][k] * arm).abs() < STRESS)
+        };
+        let determined = |j: usize| std::array::from_fn(|k| is_determined(j, k));
+        DenseSpace {
+            actuator_actions: multipliers[dense.actuator_row()..][..dense.actuators.len()].to_vec(),
+            idle_freedoms: system.idle,
+            redundant_count: system.matrix.nrows() - system.rank,
+            residuals: [first, second, third],
+            motions,
+            reactions: of_joints(&multipliers).into_iter().map(wrench).collect(),
+            determined: (0..dense.joints.len()).map(determined).collect(),
         }
-        let x = self.pseudo_inverse(&right, false);
-        let residual = &self.matrix * &x - &right;
-        (column(&x), relative(&residual, &right))
-    }
-
-    /// The smallest motion of all bodies that makes up for residuals of the joints and actuators.
-    fn step(&self, residuals: &[f64]) -> Vec<f64> {
-        column(&self.pseudo_inverse(&self.opposite(residuals), false))
-    }
-
-    /// The multipliers of what the bodies require, and what is not balanced.
-    fn multipliers(&self, required: &[Wrench]) -> (Vec<f64>, f64) {
-        let parts: Vec<[f64; 6]> = required.iter().map(parts).collect();
-        let right = Mat::from_fn(self.matrix.ncols(), 1, |i, _| parts[i / 6][i % 6]);
-        let multipliers = self.pseudo_inverse(&right, true);
-        let residual = self.matrix.transpose() * &multipliers - &right;
-        (column(&multipliers), relative(&residual, &right))
-    }
-
-    /// The smallest solution of least squares, of J or of its transpose.
-    fn pseudo_inverse(&self, right: &Mat<f64>, transposed: bool) -> Mat<f64> {
-        let (u, v) = (self.svd.U(), self.svd.V());
-        let (from, to) = if transposed { (v, u) } else { (u, v) };
-        let (part, values) = (from.transpose() * right, self.svd.S().column_vector());
-        let mut scaled = Mat::zeros(to.ncols(), 1);
-        for k in 0..self.rank {
-            scaled[(k, 0)] = part[(k, 0)] / values[k];
-        }
-        to * &scaled
     }
 }
 
-impl Bodies<'_> {
-    /// The rows of all joints and then of the actuators, and by joint its rows.
-    fn all_rows(&self) -> (Vec<Row>, Vec<std::ops::Range<usize>>) {
-        let mut rows = Vec::new();
-        let mut of_joint = Vec::new();
-        for (j, joint) in self.mechanism.joints.iter().enumerate() {
-            let start = rows.len();
-            // A driven distance holds nothing by itself.
-            let driven = ActuatorKind::Length(JointId(j));
-            if self.mechanism.actuators.iter().all(|a| a.kind != driven) {
-                rows.extend(self.rows(joint));
-            }
-            of_joint.push(start..rows.len());
-        }
-        for actuator in &self.mechanism.actuators {
-            let joint = &self.mechanism.joints[actuator.kind.joint().0];
-            let u = self.arm(joint.side_body(0).0, joint.sides[0].axis);
-            rows.push(match actuator.kind {
-                ActuatorKind::Angle(_) => self.angle(joint, u),
-                ActuatorKind::Travel(_) => self.in_plane(joint, u),
-                ActuatorKind::Length(_) => self.distance(joint),
-            });
-        }
-        (rows, of_joint)
-    }
-
-    /// J̇ẋ of all rows.
-    fn biases(&self) -> Vec<f64> {
-        let (rows, _) = self.all_rows();
-        rows.iter().map(|row| row.bias).collect()
-    }
-
-    /// Sets velocities or accelerations.
-    fn set(&mut self, x: &[f64], of: impl Fn(&mut BodyMotion) -> (&mut Vec3, &mut Vec3)) {
-        for (motion, x) in self.motions.iter_mut().zip(x.chunks(6)) {
-            let (linear, angular) = of(motion);
-            (*linear, *angular) = (vec3(x[0], x[1], x[2]), vec3(x[3], x[4], x[5]));
-        }
-    }
-
-    /// The reactions of multipliers, and which components no self-stress changes.
-    fn reactions(&self, system: &System, multipliers: &[f64]) -> (Vec<Wrench>, Vec<[bool; 6]>) {
-        let mut reactions = self.wrenches(system, multipliers);
-        let mut determined = vec![[true; 6]; reactions.len()];
-        for k in system.rank..system.rows {
-            let stress: Vec<f64> = system.svd.U().col(k).iter().copied().collect();
-            for (determined, wrench) in determined.iter_mut().zip(self.wrenches(system, &stress)) {
-                for (determined, part) in determined.iter_mut().zip(parts(&wrench)) {
-                    *determined &= part.abs() < 1e-7;
-                }
-            }
-        }
-        // The ground's own rows hold nothing: its joints' reactions are those of the other bodies.
-        reactions.truncate(self.mechanism.joints.len());
-        (reactions, determined)
-    }
-
-    /// By joint: force and moment of multipliers on the second body, about its point there.
-    fn wrenches(&self, system: &System, multipliers: &[f64]) -> Vec<Wrench> {
-        let joints = self.mechanism.joints.iter().zip(&system.of_joint);
-        let of_joint = |(joint, rows): (&Joint, &std::ops::Range<usize>)| {
-            let mut wrench = Wrench::default();
-            for i in rows.clone() {
-                wrench.force += system.on_second[i].force.scaled(multipliers[i]);
-                wrench.moment += system.on_second[i].moment.scaled(multipliers[i]);
-            }
-            let at = self.point(joint.side_body(1).0, joint.sides[1].point);
-            let arm = at - self.placements[joint.bodies[1].0].position;
-            wrench.moment -= arm.cross(wrench.force);
-            wrench
-        };
-        joints.map(of_joint).collect()
+fn wrench([x, y, z, a, b, c]: [f64; 6]) -> Wrench {
+    use dwell_geometry::space::vec3;
+    Wrench {
+        force: vec3(x, y, z),
+        moment: vec3(a, b, c),
     }
 }
 
@@ -340,9 +204,116 @@ fn parts(wrench: &Wrench) -> [f64; 6] {
     [f.x, f.y, f.z, m.x, m.y, m.z]
 }
 
-fn add(matrix: &mut Mat<f64>, row: usize, body: usize, gradient: Gradient) {
-    for (k, value) in parts(&gradient).into_iter().enumerate() {
-        matrix[(row, 6 * body + k)] += value;
+/// By joint: what its first body does to the second, the actuators' actions included, as a point of the ground with force and couple there.
+/// It acts in the opposite sense on the first.
+pub fn joint_actions(
+    mechanism: &Mechanism,
+    placements: &[Placement],
+    reactions: &[Wrench],
+    tau: &[f64],
+) -> Vec<(Vec3, Wrench)> {
+    use dwell_geometry::space::ActuatorKind;
+    let of_joint = |(j, reaction): (usize, &Wrench)| {
+        let joint = &mechanism.joints[j];
+        let side = |k: usize, v: Vec3| placements[joint.side_body(k).0].rotation.apply(v);
+        let point =
+            |k: usize| placements[joint.side_body(k).0].position + side(k, joint.sides[k].point);
+        let (at, mut wrench) = (point(1), *reaction);
+        let actuators = mechanism.actuators.iter().zip(tau);
+        for (actuator, tau) in actuators.filter(|(a, _)| a.kind.joint().0 == j) {
+            let axis = side(0, joint.sides[0].axis);
+            match actuator.kind {
+                ActuatorKind::Angle(_) => wrench.moment += axis.scaled(*tau),
+                ActuatorKind::Travel(_) => wrench.force += axis.scaled(*tau),
+                ActuatorKind::Length(_) => {
+                    let along = at - point(0);
+                    wrench.force += along.scaled(tau / along.norm());
+                }
+            }
+        }
+        (at, wrench)
+    };
+    reactions.iter().enumerate().map(of_joint).collect()
+}
+
+/// R J C with rows that hold idle rotations, and its singular values.
+struct System {
+    matrix: Mat<f64>,
+    svd: Svd<f64>,
+    rank: usize,
+    idle: usize,
+}
+
+impl System {
+    fn new(dense: &DenseMechanism, poses: &[Pose]) -> Result<Self> {
+        let first = dense.scaled_jacobian(poses);
+        let (rows, columns) = first.shape();
+        let svd = singular_values(&first)?;
+        let idle = columns - rank(&svd).min(columns);
+        // An idle rotation stands still: the body that turns in it does not turn about its line.
+        let mut matrix = Mat::zeros(rows + idle, columns);
+        matrix.as_mut().subrows_mut(0, rows).copy_from(&first);
+        for k in 0..idle {
+            let null: Vec<f64> = svd.V().col(columns - 1 - k).iter().copied().collect();
+            let turning = |body: &Columns| body.twist(&null).angular.norm();
+            let bodies = dense.bodies.iter().map(|body| body.columns);
+            if let Some(body) = bodies.max_by(|a, b| turning(a).total_cmp(&turning(b))) {
+                let moment = body.twist(&null).angular;
+                let row = crate::rows::terms::couple(moment);
+                let mut line = vec![0.0; columns];
+                body.add(&row, 1.0, &mut line);
+                (0..columns).for_each(|c| matrix[(rows + k, c)] = line[c]);
+            }
+        }
+        let svd = singular_values(&matrix)?;
+        Ok(Self {
+            rank: rank(&svd),
+            matrix,
+            svd,
+            idle,
+        })
+    }
+
+    /// The smallest solution of the scaled rows, and what is not met relative to the largest part.
+    fn solve(&self, dense: &DenseMechanism, right: &[f64]) -> (Vec<f64>, f64) {
+        let scaled = |i: usize| right.get(i).map_or(0.0, |r| r * dense.row_scale[i]);
+        let right = Mat::from_fn(self.matrix.nrows(), 1, |i, _| scaled(i));
+        let x = self.pseudo_inverse(&right, false);
+        let residual = &self.matrix * &x - &right;
+        (column(&x), relative(&residual, &right))
+    }
+
+    /// The multipliers of what the bodies require, and what is not balanced.
+    fn multipliers(&self, dense: &DenseMechanism, required: &[f64]) -> (Vec<f64>, f64) {
+        let scaled = |c: usize| required[c] * dense.column_scale(c);
+        let right = Mat::from_fn(required.len(), 1, |c, _| scaled(c));
+        let multipliers = self.pseudo_inverse(&right, true);
+        let residual = self.matrix.transpose() * &multipliers - &right;
+        let of_rows = column(&multipliers).into_iter().zip(&dense.row_scale);
+        let unscaled = of_rows
+            .map(|(multiplier, scale)| multiplier * scale)
+            .collect();
+        (unscaled, relative(&residual, &right))
+    }
+
+    /// Multipliers that hold nothing.
+    fn stresses(&self, dense: &DenseMechanism) -> impl Iterator<Item = Vec<f64>> {
+        (self.rank..self.matrix.nrows()).map(move |k| {
+            let stress = self.svd.U().col(k).iter().zip(&dense.row_scale);
+            stress.map(|(part, scale)| part * scale).collect()
+        })
+    }
+
+    /// The smallest solution of least squares, of the matrix or of its transpose.
+    fn pseudo_inverse(&self, right: &Mat<f64>, transposed: bool) -> Mat<f64> {
+        let (u, v) = (self.svd.U(), self.svd.V());
+        let (from, to) = if transposed { (v, u) } else { (u, v) };
+        let (part, values) = (from.transpose() * right, self.svd.S().column_vector());
+        let mut scaled = Mat::zeros(to.ncols(), 1);
+        for k in 0..self.rank {
+            scaled[(k, 0)] = part[(k, 0)] / values[k];
+        }
+        to * &scaled
     }
 }
 

@@ -25,14 +25,15 @@ pub use energies::check_energies;
 use crate::comparison::{ComparisonSet, FindingSpec, LargestDifference};
 use crate::context::either;
 use crate::dense::DenseMechanism;
-use crate::differences::NO_ESTIMATE;
+use crate::description::DescribedJoint;
 use crate::error::DenseError;
 use crate::inertias::Inertias;
+use crate::pose::{Pose, Twist};
 use crate::wrenches::BodyWrench;
 use dense_state::{DenseState, check_counts};
 use dwell_findings::{Check, Finding};
-use dwell_geometry::{Component, Mechanism};
-use dwell_kinetostatics::Mass;
+use dwell_geometry::Mechanism;
+use dwell_geometry::space::Wrench;
 use rayon::prelude::*;
 use std::fmt::Display;
 
@@ -62,6 +63,50 @@ pub struct ClaimedState {
     pub load_wrenches: Vec<BodyWrench>,
 }
 
+/// A claimed state in the plane or in space, its poses, rates and forces in space.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Claim {
+    /// Which state it is, for messages.
+    pub(crate) name: String,
+    /// Coordinates, speeds and accelerations of the actuators.
+    pub(crate) q: Vec<f64>,
+    pub(crate) q_dot: Vec<f64>,
+    pub(crate) q_ddot: Vec<f64>,
+    /// By body.
+    pub(crate) poses: Vec<Pose>,
+    pub(crate) velocities: Vec<Twist>,
+    pub(crate) accelerations: Vec<Twist>,
+    pub(crate) reactions: Vec<f64>,
+    pub(crate) tau: Vec<f64>,
+    pub(crate) load_wrenches: Vec<BodyWrench>,
+    /// The power of all loads, W, if it is claimed.
+    pub(crate) load_power: Option<f64>,
+}
+
+impl From<&ClaimedState> for Claim {
+    fn from(state: &ClaimedState) -> Self {
+        let twists = |all: &[[f64; 3]]| all.iter().map(|rates| (*rates).into()).collect();
+        Self {
+            name: format!("t = {} s", state.t),
+            q: state.q.clone(),
+            q_dot: state.q_dot.clone(),
+            q_ddot: state.q_ddot.clone(),
+            poses: state.poses.iter().map(|pose| (*pose).into()).collect(),
+            velocities: twists(&state.velocities),
+            accelerations: twists(&state.accelerations),
+            reactions: state.reactions.clone(),
+            tau: state.tau.clone(),
+            load_wrenches: state.load_wrenches.clone(),
+            load_power: None,
+        }
+    }
+}
+
+/// Claims of states in the plane.
+fn claims(states: &[ClaimedState]) -> Vec<Claim> {
+    states.iter().map(Claim::from).collect()
+}
+
 /// Checks claimed states of one mechanism, each by itself, with scales from all of them. Gears
 /// mesh as they stand in `assembly_poses`, the frames of all bodies in the assembled configuration.
 ///
@@ -74,17 +119,17 @@ pub fn check_states<'m>(
     states: &[ClaimedState],
 ) -> Vec<Finding> {
     match DenseMechanism::with_meshed_gears(mechanism, inertias, assembly_poses) {
-        Ok(dense) => StateChecker::new(&dense, states).findings(),
+        Ok(dense) => StateChecker::new(&dense, &claims(states)).findings(),
         Err(error) => vec![not_dense(&POSES, &error)],
     }
 }
 
-fn not_dense(spec: &FindingSpec<'_>, error: &DenseError) -> Finding {
+pub(crate) fn not_dense(spec: &FindingSpec<'_>, error: &DenseError) -> Finding {
     let failed = LargestDifference::failed(error.to_string());
     spec.finding("0 states".to_owned(), failed)
 }
 
-const POSES: FindingSpec<'_> = FindingSpec {
+pub(crate) const POSES: FindingSpec<'_> = FindingSpec {
     key: "state-poses",
     check: Check::ConstraintClosure,
     comparison: "the poses with the nearest ones that meet every dense row at the coordinates",
@@ -143,6 +188,12 @@ const POWER: FindingSpec<'_> = FindingSpec {
     scale: "the sum of |force| |velocity| of the state",
     ..NEWTON_EULER
 };
+const IDEAL_JOINTS: FindingSpec<'_> = FindingSpec {
+    key: "state-joint-power",
+    comparison: "the power of each joint's reaction at unit speed of each actuator, of the dense velocities, with none",
+    scale: "the largest force at the largest speed of a body",
+    ..POWER
+};
 const MOMENTUM: FindingSpec<'_> = FindingSpec {
     key: "state-momentum",
     check: Check::Momentum,
@@ -151,7 +202,7 @@ const MOMENTUM: FindingSpec<'_> = FindingSpec {
     ..NEWTON_EULER
 };
 
-struct StateChecker<'a> {
+pub(crate) struct StateChecker<'a> {
     dense: &'a DenseMechanism,
     dense_states: Vec<DenseState<'a>>,
     failures: Vec<String>,
@@ -159,13 +210,13 @@ struct StateChecker<'a> {
 }
 
 impl<'a> StateChecker<'a> {
-    fn new(dense: &'a DenseMechanism, states: &'a [ClaimedState]) -> Self {
-        let of = |state: &'a ClaimedState| {
-            let described = |why: &dyn Display| format!("t = {} s: {why}", state.t);
+    pub(crate) fn new(dense: &'a DenseMechanism, states: &'a [Claim]) -> Self {
+        let of = |(index, state): (usize, &'a Claim)| {
+            let described = |why: &dyn Display| format!("{}: {why}", state.name);
             check_counts(dense, state).map_err(|why| described(&why))?;
-            DenseState::new(dense, state).map_err(|error| described(&error))
+            DenseState::new(dense, (index, state)).map_err(|error| described(&error))
         };
-        let (dense_states, failures) = states.par_iter().map(of).partition_map(either);
+        let (dense_states, failures) = states.par_iter().enumerate().map(of).partition_map(either);
         Self {
             dense,
             dense_states,
@@ -174,12 +225,14 @@ impl<'a> StateChecker<'a> {
         }
     }
 
-    fn findings(&self) -> Vec<Finding> {
+    pub(crate) fn findings(&self) -> Vec<Finding> {
         let mut findings = vec![self.poses(), self.branch()];
         findings.extend(self.motions());
         findings.push(self.reactions());
         findings.extend(self.newton_euler());
-        findings.extend([self.power(), self.momentum()]);
+        findings.push(self.power());
+        findings.extend(self.ideal_joints());
+        findings.push(self.momentum());
         findings
     }
 
@@ -191,20 +244,19 @@ impl<'a> StateChecker<'a> {
         spec.finding(format!("{} states", self.state_count), worst)
     }
 
-    /// By row, the actuators' after the reactions': what makes a force of its multiplier, and its name.
-    fn rows(&self) -> Vec<(f64, String)> {
-        let mechanism = &self.dense.mechanism;
-        let arm = |moment: bool| if moment { 1.0 / self.dense.size() } else { 1.0 };
-        let reactions = mechanism.reactions().into_iter();
-        let reactions = reactions.map(|r| {
-            (
-                arm(r.component == Component::Moment),
-                mechanism.reaction_name(r),
-            )
-        });
-        let actuators = mechanism.actuators.iter();
-        let actuators = actuators.map(|a| (arm(a.coordinate().is_angle()), a.name.clone()));
-        reactions.chain(actuators).collect()
+    /// By row, the actuators' after the joints': what makes a force of its multiplier, and its name.
+    fn rows(&self) -> Vec<(f64, &str)> {
+        let (angular, names) = (self.dense.angular.iter(), self.dense.row_names.iter());
+        let arm = |is_angle: bool| {
+            if is_angle {
+                1.0 / self.dense.size()
+            } else {
+                1.0
+            }
+        };
+        let rows = angular.zip(names);
+        rows.map(|(is_angle, name)| (arm(*is_angle), name.as_str()))
+            .collect()
     }
 
     /// One comparison in each state, by its own scale.
@@ -228,9 +280,11 @@ impl<'a> StateChecker<'a> {
     }
 
     fn branch(&self) -> Finding {
-        let positive = |m: &DenseState<'_>| m.configuration.lu.positive();
-        let first = self.dense_states.first().map(positive);
-        let is_other = |m: &DenseState<'_>| first != Some(positive(m));
+        // By the same rows in all states; where these are dependent, or rows in space repeat each other, the sign decides nothing: such a
+        // branch is continued instead.
+        let positive = |m: &DenseState<'_>| self.dense.orientation(&m.configuration.poses);
+        let first = self.dense_states.iter().find_map(positive);
+        let is_other = |m: &DenseState<'_>| positive(m).is_some_and(|sign| first != Some(sign));
         self.one_each(&BRANCH, "", |m| [f64::from(is_other(m)), 1.0, 0.0])
     }
 
@@ -242,17 +296,16 @@ impl<'a> StateChecker<'a> {
             let [speed, acceleration] =
                 [&m.solution.x_dot, &m.solution.x_ddot].map(|x| m.dense.scaled_norm(x) * size);
             let acceleration = acceleration.max(speed * speed / size);
-            for (body, _, column) in self.dense.moving_bodies() {
-                let name = &self.dense.mechanism.bodies[body].name;
-                for c in column..column + 3 {
-                    let arm = if c == column + 2 { size } else { 1.0 };
+            for (_, body) in self.dense.moving_bodies() {
+                for c in body.columns.range() {
+                    let arm = 1.0 / m.dense.column_scale(c);
                     let difference = (m.claimed_dot[c] - m.solution.x_dot[c]) * arm;
                     let numbers = [difference, speed, m.bounds.x_dot[c] * arm];
-                    m.compare(&mut first, numbers, "m/s", name);
+                    m.compare(&mut first, numbers, "m/s", &body.name);
                     let difference = (m.claimed_ddot[c] - m.solution.x_ddot[c]) * arm;
                     let error = m.bounds.x_ddot[c] * arm;
                     let numbers = [difference, acceleration, error];
-                    m.compare(&mut second, numbers, "m/s2", name);
+                    m.compare(&mut second, numbers, "m/s2", &body.name);
                 }
             }
         }
@@ -263,21 +316,23 @@ impl<'a> StateChecker<'a> {
     }
 
     fn reactions(&self) -> Finding {
-        let rows = self.rows();
         let mut comparisons = ComparisonSet::default();
         for m in &self.dense_states {
-            let claimed = m.state.reactions.iter().chain(&m.state.tau);
             let largest_force = m.largest_force();
-            for (k, (claimed, (arm, name))) in claimed.zip(&rows).enumerate() {
-                // Of a reaction that is not determined, (4) checks what it does with the others.
-                if !self.dense.determinate[k] {
-                    continue;
-                }
-                let dense = m.solution.multipliers[k] * arm;
-                let error = m.bounds.multipliers[k] * arm;
-                let scale = largest_force.max(dense.abs());
-                let numbers = [claimed * arm - dense, scale, error];
-                m.compare(&mut comparisons, numbers, "N", name);
+            // Of a reaction that is not determined, (4) checks what it does with the others.
+            for reaction in m.dense_reactions().into_iter().filter(|r| r.is_determined) {
+                let arm = if reaction.is_moment {
+                    1.0 / self.dense.size()
+                } else {
+                    1.0
+                };
+                let dense = reaction.value * arm;
+                let numbers = [
+                    reaction.claimed * arm - dense,
+                    largest_force.max(dense.abs()),
+                    reaction.error * arm,
+                ];
+                m.compare(&mut comparisons, numbers, "N", &reaction.name);
             }
         }
         self.finding(&REACTIONS, comparisons)
@@ -286,34 +341,20 @@ impl<'a> StateChecker<'a> {
     /// Check 8, by claimed accelerations and by positions alone.
     fn newton_euler(&self) -> [Finding; 2] {
         let [mut claimed, mut differenced] = [(); 2].map(|()| ComparisonSet::default());
-        let size = self.dense.size();
         let states = self.dense_states.par_iter();
         let from_positions: Vec<_> = states.map(DenseState::second_differences).collect();
         for (m, second) in self.dense_states.iter().zip(from_positions) {
-            for (i, (body, ..)) in self.dense.moving_bodies().enumerate() {
-                let name = &self.dense.mechanism.bodies[body].name;
-                let net = m.net_wrench(body);
-                let Mass { mass, inertia, .. } = self.dense.bodies[body].mass;
-                for (c, exact) in m.inertia_forces(body).into_iter().enumerate() {
-                    let (arm, inertia) = match c {
-                        2 => (1.0 / size, inertia),
-                        _ => (1.0, mass),
-                    };
-                    let terms = net.terms[c] * arm;
-                    let error = m.pose_rounding_bound * terms;
-                    let scale = terms + exact.abs() * arm;
-                    let numbers = [(net.sum[c] - exact) * arm, scale, error];
-                    m.compare(&mut claimed, numbers, "N", name);
-                    let varying = if c == 2 {
-                        m.varying_inertia(body)
-                    } else {
-                        [0.0; 2]
-                    };
-                    let factor = (inertia + varying[0]) * arm;
-                    let second = second.get(3 * i + c).copied().unwrap_or(NO_ESTIMATE);
-                    let difference = (net.sum[c] - varying[1]) * arm - factor * second.value;
-                    let numbers = [difference, scale, error + factor * second.error];
-                    m.compare(&mut differenced, numbers, "N", name);
+            for (b, body) in self.dense.moving_bodies() {
+                let exact = m.momentum_rate(b);
+                let rate = m.rate_by_differences(b, second.of(b));
+                let errors = m.error_by_differences(b, second.errors(b));
+                let of_motion = m.balance(b, exact, exact, Wrench::default());
+                let of_positions = m.balance(b, rate, exact, errors);
+                for numbers in of_motion {
+                    m.compare(&mut claimed, numbers, "N", &body.name);
+                }
+                for numbers in of_positions {
+                    m.compare(&mut differenced, numbers, "N", &body.name);
                 }
             }
         }
@@ -324,18 +365,40 @@ impl<'a> StateChecker<'a> {
     }
 
     fn power(&self) -> Finding {
-        self.one_each(&POWER, "W", |m| {
-            let (difference, terms) = m.power_balance();
-            [difference, terms, m.relative_rounding_bound() * terms]
-        })
+        let mut comparisons = ComparisonSet::with_individual_scales();
+        for m in &self.dense_states {
+            let [difference, of_loads, terms] = m.power_balance();
+            let error = m.relative_rounding_bound() * terms;
+            m.compare(&mut comparisons, [difference, terms, error], "W", "");
+            if let Some(claimed) = m.state.load_power {
+                let numbers = [claimed - of_loads, terms, error];
+                m.compare(&mut comparisons, numbers, "W", "loads");
+            }
+        }
+        self.finding(&POWER, comparisons)
+    }
+
+    /// What a joint leaves free it does not hold; none where all reactions are multipliers of rows.
+    fn ideal_joints(&self) -> Option<Finding> {
+        let mut comparisons = ComparisonSet::with_individual_scales();
+        let is_wrench = |joint: &&DescribedJoint| joint.is_wrench;
+        for joint in self.dense.joints.iter().filter(is_wrench) {
+            for m in &self.dense_states {
+                for numbers in m.joint_powers(joint) {
+                    m.compare(&mut comparisons, numbers, "W", &joint.name);
+                }
+            }
+        }
+        let any = self.dense.joints.iter().any(|joint| joint.is_wrench);
+        any.then(|| self.finding(&IDEAL_JOINTS, comparisons))
     }
 
     fn momentum(&self) -> Finding {
         let mut comparisons = ComparisonSet::with_individual_scales();
         for m in &self.dense_states {
-            for (difference, terms, what) in m.momentum_balance() {
+            for [difference, terms] in m.momentum_balance() {
                 let numbers = [difference, terms, m.relative_rounding_bound() * terms];
-                m.compare(&mut comparisons, numbers, "N", what);
+                m.compare(&mut comparisons, numbers, "N", "");
             }
         }
         self.finding(&MOMENTUM, comparisons)

@@ -189,7 +189,8 @@ fn check_reduced_model(
         let positions = context.positions.iter();
         if let Some(position) = positions.max_by(|a, b| slope(a).total_cmp(&slope(b))) {
             let requested = scene.requests.reactions.first();
-            let k = requested.and_then(|w| context.reactions.iter().position(|r| r == w));
+            let reactions = scene.mechanism.reactions();
+            let k = requested.and_then(|w| reactions.iter().position(|r| r == w));
             curves.extend(half_dm_curve(&context, position));
             curves.extend(k.and_then(|k| reaction_curve(&context, position, k)));
         }

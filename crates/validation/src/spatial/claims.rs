@@ -1,5 +1,6 @@
 //! What a model in space says of itself, evaluated in any kind of number, for the checks of states.
 
+use super::reference_poses::SpaceSubject;
 use dwell_geometry::space::{
     BodyMotion, Frame, Joint, JointKind, Placement, Pose, Rotation, Vec3, Wrench, vec3,
 };
@@ -12,9 +13,7 @@ use dwell_numerics::Scalar;
 use dwell_scene::SpaceScene;
 use dwell_study::{StudyError, model_with_loads};
 use dwell_verify::SubjectError;
-use dwell_verify::space::{
-    SpaceCase, SpaceState, SpaceSubject, sliding_in_space, with_friction_in_space,
-};
+use dwell_verify::space::{SpaceCase, SpaceState, sliding_in_space, with_friction_in_space};
 use std::marker::PhantomData;
 
 /// Components of a joint's reaction in one kind of axes.

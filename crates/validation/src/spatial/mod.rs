@@ -21,5 +21,5 @@ mod stopped_motion;
 mod written;
 
 pub use claims::{ClaimsIn, SpaceClaims};
-pub use reference_poses::ReferencePoses;
+pub use reference_poses::{ReferencePoses, SpaceSubject};
 pub use report::validate_in_space;

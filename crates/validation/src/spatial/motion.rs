@@ -220,11 +220,10 @@ impl Dense {
         let magnitudes = claims.magnitudes(t, [q, q_dot]).ok()?;
         let kinds = claims.model().loads().iter().map(|load| load.kind);
         let loads: Vec<(LoadKind, f64)> = kinds.zip(magnitudes).collect();
-        let pose = DensePose::new(case.mechanism, &placements).ok()?;
+        let pose = DensePose::new(case.mechanism, case.masses, &placements).ok()?;
         let at_rest = vec![0.0; n];
         let actions = |q_ddot: &[f64], loads: &[(LoadKind, f64)], q_dot: &[f64]| {
-            let done = pose.solve(case.masses, [q_dot, q_ddot], loads);
-            done.actuator_actions
+            pose.solve([q_dot, q_ddot], loads).actuator_actions
         };
         let rest = actions(&at_rest, &loads, q_dot);
         let column = |j: usize| {

@@ -7,8 +7,8 @@ use crate::written::poses::rows::largest;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::{Placement, Vec3};
 use dwell_scene::SpaceScene;
-use dwell_verify::FindingSpec;
-use dwell_verify::space::{SpaceCase, SpaceSubject};
+use dwell_verify::space::SpaceCase;
+use dwell_verify::{FindingSpec, SubjectError};
 use std::path::Path;
 
 const PLACEMENTS: FindingSpec<'_> = FindingSpec {
@@ -28,6 +28,21 @@ const INERTIAS: FindingSpec<'_> = FindingSpec {
     tolerance: 1e-12,
     tolerance_reason: "rounding, amplified by the condition of the equations",
 };
+
+/// What is compared with a reference. A question must have the same answer whatever was asked before.
+pub trait SpaceSubject {
+    /// Where the bodies are at coordinates, rad or m.
+    ///
+    /// # Errors
+    /// [`SubjectError`] where there is no pose.
+    fn placements(&self, q: &[f64]) -> Result<Vec<Placement>, SubjectError>;
+
+    /// The generalised inertias at coordinates, row by row.
+    ///
+    /// # Errors
+    /// [`SubjectError`] where there is no pose.
+    fn inertias(&self, q: &[f64]) -> Result<Vec<f64>, SubjectError>;
+}
 
 /// A position of a reference.
 #[derive(Debug)]

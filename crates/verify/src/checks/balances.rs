@@ -28,11 +28,13 @@ use super::row_step;
 use crate::comparison::{ComparisonSet, FindingSpec, LargestDifference};
 use crate::constraint_closing::Configuration;
 use crate::context::{CheckContext, CheckedPosition, FORCE_MIN_SHARE};
+use crate::dense::DenseBody;
 use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives};
+use crate::pose::{Columns, Pose, Twist};
 use crate::subject::SubjectError;
 use crate::wrenches::{BodyWrench, NetWrench};
 use dwell_findings::{Check, Finding};
-use dwell_geometry::Vec2;
+use dwell_geometry::space::{Vec3, Wrench, vec3};
 use dwell_laws::Polynomial;
 use rayon::prelude::*;
 
@@ -129,7 +131,7 @@ pub(crate) fn balances(context: &CheckContext<'_>) -> Vec<Finding> {
 fn location(context: &CheckContext<'_>, q: f64, motion: [f64; 2], body: Option<usize>) -> String {
     let [q_dot, q_ddot] = motion;
     let (location, unit) = (context.location(q), context.unit());
-    let body = body.map(|body| format!(", {}", context.case.mechanism.bodies[body].name));
+    let body = body.map(|body| format!(", {}", context.dense.bodies[body].name));
     let body = body.unwrap_or_default();
     format!("{location}, {q_dot} {unit}/s, {q_ddot} {unit}/s2{body}")
 }
@@ -144,7 +146,7 @@ fn balances_in_motion(
     let subject = context.subject;
     let subject = subject.inverse_dynamics(position.q, q_dot, q_ddot)?;
     let at = &position.configuration;
-    let wrenches = dense.joint_wrenches(at, &subject.reactions, &[subject.tau]);
+    let wrenches = dense.joint_wrenches(&at.poses, &subject.reactions, &[subject.tau]);
     let law = Polynomial::motion(position.q, q_dot, q_ddot);
     // The time it takes to go one step of q: |q̇| t + ½ |q̈| t² = h.
     let h = row_step(context, position.unit_velocity());
@@ -164,29 +166,22 @@ fn balances_in_motion(
     let mut balances = vec![(0, None, power)];
     let pose_rounding = position.pose_rounding();
     let second = dense.second_differences(at, step, pose_rounding, |t, q| q[0] = law.eval(t)[0]);
+    let x_dot: Vec<f64> = position.unit_velocity().iter().map(|u| u * q_dot).collect();
     let momentum = rate(&|at, x_dot| dense.momentum(at, x_dot).to_vec());
-    let mut momentum: [Extrapolated; 3] = std::array::from_fn(|c| component(&momentum, c));
-    let angles = second_angles(context, position, q_dot, &second);
-    for (body, &[angle, omega, alpha]) in dense.bodies.iter().zip(&angles) {
-        momentum[2].value += body.varying_moment(angle, omega, alpha);
+    let mut momentum: [Extrapolated; 6] = std::array::from_fn(|c| component(&momentum, c));
+    for (b, body) in dense.moving_bodies() {
+        let omega = body.columns.twist(&x_dot).angular.z;
+        let alpha = second.of(b).angular.z;
+        momentum[5].value += body.varying_moment(at.poses[b].angle, omega, alpha).z;
     }
-    let (net, errors) = momentum_balance(context, &wrenches, momentum);
-    balances.extend(components(1, None, net, errors));
-    for (i, (body, ..)) in dense.moving_bodies().enumerate() {
-        let second = [0, 1, 2].map(|c| component(&second, 3 * i + c));
-        let (net, errors) =
-            body_balance(context, position, &wrenches, (body, angles[body]), second);
-        balances.extend(components(3, Some(body), net, errors));
+    balances.extend(momentum_balance(context, &wrenches, momentum));
+    for (b, body) in dense.moving_bodies() {
+        let pose = &at.poses[b];
+        let omega = body.columns.twist(&x_dot).angular;
+        let balance = body_balance((body, pose, omega), (second.of(b), second.errors(b)));
+        balances.extend(balance.with(&wrenches, b, body.center(pose)));
     }
     Ok(balances)
-}
-
-/// A balance of forces and moments: findings `first` and the next.
-fn components(first: usize, body: Option<usize>, net: NetWrench, error: [f64; 3]) -> [Balance; 3] {
-    [0, 1, 2].map(|c| {
-        let numbers = [net.sum[c], net.terms[c], error[c]];
-        (first + usize::from(c == 2), body, numbers)
-    })
 }
 
 /// The mechanism at time `t` of a motion through a position, with its velocities.
@@ -208,59 +203,85 @@ fn state_at(
 fn momentum_balance(
     context: &CheckContext<'_>,
     wrenches: &[BodyWrench],
-    rate: [Extrapolated; 3],
-) -> (NetWrench, [f64; 3]) {
-    let force = rate[0].value.abs().max(rate[1].value.abs());
-    let mut net = NetWrench {
-        sum: [0.0; 3],
-        terms: [force, force, rate[2].value.abs()],
-    };
-    let ground = context.case.mechanism.ground;
-    for wrench in wrenches.iter().filter(|wrench| wrench.body.0 == ground) {
-        net.add(wrench, Vec2::ZERO);
-    }
+    rate: [Extrapolated; 6],
+) -> impl Iterator<Item = Balance> {
+    let [x, y, z, a, b, c] = rate.map(|rate| rate.value);
+    let (force, moment) = (vec3(x, y, z), vec3(a, b, c));
+    let ground = context.dense.ground;
+    let on_ground = wrenches.iter().filter(|wrench| wrench.body.0 == ground);
+    let mut net = NetWrench::of(on_ground, Vec3::ZERO);
     // The ground's action on the mechanism is opposite to what acts on the ground.
-    net.sum = std::array::from_fn(|c| -net.sum[c] - rate[c].value);
-    (net, rate.map(|rate| rate.error))
+    net.sum.force = -net.sum.force - force;
+    net.sum.moment = -net.sum.moment - moment;
+    net.terms[0] += force.norm();
+    net.terms[1] += moment.norm();
+    let errors = rate.map(|rate| rate.error);
+    let columns = context.dense.whole();
+    components(1, None, columns, net, errors)
 }
 
-/// By body: angle, angular velocity and, differenced twice, angular acceleration; zero of the ground.
-fn second_angles(
-    context: &CheckContext<'_>,
-    position: &CheckedPosition,
-    q_dot: f64,
-    second: &[Extrapolated],
-) -> Vec<[f64; 3]> {
-    let mut accelerations = second.iter().skip(2).step_by(3);
-    let of = |column: Option<usize>| {
-        let angle = column? + 2;
-        let alpha = accelerations.next().map_or(f64::NAN, |second| second.value);
-        let omega = position.unit_velocity()[angle] * q_dot;
-        Some([position.configuration.x[angle], omega, alpha])
-    };
-    let columns = context.dense.bodies.iter().map(|body| body.column);
-    columns.map(of).map(Option::unwrap_or_default).collect()
-}
-
-/// (4) and (5) of a body with the second derivatives of its centre of mass and angle, and their errors.
+/// (4) and (5) of a body with the second derivatives of its centre of mass and rotation, and their errors.
 fn body_balance(
-    context: &CheckContext<'_>,
-    position: &CheckedPosition,
-    wrenches: &[BodyWrench],
-    (body, [angle, omega, _]): (usize, [f64; 3]),
-    second: [Extrapolated; 3],
-) -> (NetWrench, [f64; 3]) {
-    let of = &context.dense.bodies[body];
-    let inertias = [of.mass.mass, of.mass.mass, of.angular_inertia(angle)];
-    let mut rate: [f64; 3] = std::array::from_fn(|c| inertias[c] * second[c].value);
-    rate[2] += of.varying_moment(angle, omega, 0.0);
-    let mut net = NetWrench {
-        sum: rate.map(|rate| -rate),
-        terms: rate.map(f64::abs),
+    (body, pose, omega): (&DenseBody, &Pose, Vec3),
+    (second, errors): (Twist, Twist),
+) -> BodyBalance {
+    let rate = Wrench {
+        force: second.linear.scaled(body.mass.mass),
+        moment: body.inertia_moment(pose, omega, second.angular),
     };
-    let center = context.dense.center(of, &position.configuration);
-    for wrench in wrenches.iter().filter(|wrench| wrench.body.0 == body) {
-        net.add(wrench, center);
+    let moment_error = body.angular_momentum(pose, errors.angular);
+    let force_error = errors.linear.scaled(body.mass.mass);
+    BodyBalance {
+        columns: body.columns,
+        rate,
+        errors: [
+            force_error.x,
+            force_error.y,
+            force_error.z,
+            moment_error.x,
+            moment_error.y,
+            moment_error.z,
+        ],
     }
-    (net, std::array::from_fn(|c| inertias[c] * second[c].error))
+}
+
+/// The rate of the momenta of a body, with its errors.
+struct BodyBalance {
+    columns: Columns,
+    rate: Wrench,
+    errors: [f64; 6],
+}
+
+impl BodyBalance {
+    /// With what acts on the body, about its centre of mass.
+    fn with(
+        self,
+        wrenches: &[BodyWrench],
+        body: usize,
+        center: Vec3,
+    ) -> impl Iterator<Item = Balance> {
+        let acting = wrenches.iter().filter(|wrench| wrench.body.0 == body);
+        let mut net = NetWrench::of(acting, center);
+        net.sum.force -= self.rate.force;
+        net.sum.moment -= self.rate.moment;
+        net.terms[0] += self.rate.force.norm();
+        net.terms[1] += self.rate.moment.norm();
+        components(3, Some(body), self.columns, net, self.errors)
+    }
+}
+
+/// A balance of forces and moments: findings `first` and the next.
+fn components(
+    first: usize,
+    body: Option<usize>,
+    columns: Columns,
+    net: NetWrench,
+    [x, y, z, a, b, c]: [f64; 6],
+) -> impl Iterator<Item = Balance> {
+    let sums = columns.components(net.sum.force, net.sum.moment);
+    let errors = columns.components(vec3(x, y, z), vec3(a, b, c));
+    sums.zip(errors).map(move |((sum, is_moment), (error, _))| {
+        let terms = net.terms[usize::from(is_moment)];
+        (first + usize::from(is_moment), body, [sum, terms, error])
+    })
 }

@@ -54,7 +54,7 @@ const POWER: FindingSpec<'_> = FindingSpec {
 
 /// Three findings: a, b by differences, b by virtual power. None where joints share all reactions.
 pub(crate) fn released_constraint(context: &CheckContext<'_>) -> Vec<Finding> {
-    let count = context.reactions.len();
+    let count = context.dense.actuator_row();
     let determinate = context.dense.determinate[..count].iter();
     let determinate = determinate.filter(|&&is| is).count();
     if determinate == 0 {
@@ -72,7 +72,7 @@ pub(crate) fn released_constraint(context: &CheckContext<'_>) -> Vec<Finding> {
             // Of a reaction that is not determined there is no single value.
             let Some(b_k) = b_k else { continue };
             let location = || context.reaction_location(position.q, k);
-            let [a_unit, b_unit] = coefficient_units(context.reactions[k].component.unit() != "N");
+            let [a_unit, b_unit] = coefficient_units(context.dense.angular[k]);
             let (reference, bound) = (&position.reference, &position.rounding_bound);
             let [a_scale, b_scale] = context.coefficient_scales(k);
             let numbers = [subject.a[k] - reference.a[k], a_scale, bound.a[k]];

@@ -5,6 +5,7 @@ use super::friction::depends_on_reactions;
 use super::state::MultibodyState;
 use super::{MotionSample, MultibodyError, MultibodySystem, Result};
 use crate::dense::{DenseMechanism, add_scaled};
+use crate::pose::Pose;
 use crate::wrenches::BodyWrench;
 use faer::Mat;
 
@@ -42,7 +43,7 @@ struct AppliedForces {
 /// A state with the rows there.
 struct EvaluationPoint<'a> {
     at: MultibodyState,
-    x: &'a [f64],
+    poses: Vec<Pose>,
     v: &'a [f64],
     drive_states: &'a [f64],
     jacobian: Vec<f64>,
@@ -58,9 +59,8 @@ impl MultibodyOde<'_> {
         2 * self.frames.rows.columns() + self.system.drives.len() + 1
     }
 
-    pub(super) fn state(&self, t: f64, y: &[f64]) -> MultibodyState {
-        let n = self.frames.rows.columns();
-        let [poses, velocities] = self.frames.to_frames(&y[..n], &y[n..2 * n]);
+    fn state_of(&self, t: f64, poses: &[Pose], v: &[f64]) -> MultibodyState {
+        let [poses, velocities] = self.frames.to_frames(poses, v);
         MultibodyState {
             t,
             poses,
@@ -69,22 +69,22 @@ impl MultibodyOde<'_> {
     }
 
     /// Adds forces on bodies to those on the coordinates.
-    fn add_wrenches(&self, wrenches: &[BodyWrench], x: &[f64], force: &mut [f64]) {
+    fn add_wrenches(&self, wrenches: &[BodyWrench], poses: &[Pose], force: &mut [f64]) {
         let wrenches = self.frames.shifted_wrenches(wrenches);
-        self.frames.add_wrenches(x, &wrenches, 1.0, force);
+        self.frames.add_wrenches(poses, &wrenches, 1.0, force);
     }
 
     /// The masses without any force but −½ I′ ω² of varying moments of inertia, at coordinates and speeds.
-    fn assemble_masses(&self, x: &[f64], v: &[f64]) -> AppliedForces {
+    fn assemble_masses(&self, poses: &[Pose], v: &[f64]) -> AppliedForces {
         let n = self.frames.rows.columns();
         let (mut mass, mut force) = (Mat::zeros(n, n), vec![0.0; n]);
-        for (b, body, c) in self.frames.moving_bodies() {
-            let of = &self.system.masses[b];
+        for (b, body) in self.frames.moving_bodies() {
+            let (of, angle) = (&self.system.masses[b], poses[b].angle);
+            let c = body.columns.range().start;
             mass[(c, c)] = of.mass;
             mass[(c + 1, c + 1)] = of.mass;
-            let varying = body.angular_inertia(x[c + 2]) - body.mass.inertia;
-            mass[(c + 2, c + 2)] = of.inertia + varying;
-            force[c + 2] = -body.varying_moment(x[c + 2], v[c + 2], 0.0);
+            mass[(c + 2, c + 2)] = of.inertia + body.varying_inertia(angle);
+            force[c + 2] = -body.varying_moment(angle, v[c + 2], 0.0).z;
         }
         AppliedForces {
             mass,
@@ -104,7 +104,7 @@ impl MultibodyOde<'_> {
             }
             let magnitude = self.system.magnitude(&load.magnitude, at)?;
             let wrenches = self.system.wrenches(i, magnitude, at);
-            self.add_wrenches(&wrenches, point.x, &mut to.force);
+            self.add_wrenches(&wrenches, &point.poses, &mut to.force);
             if !load.is_conservative() {
                 to.power += at.power(&wrenches);
             }
@@ -146,17 +146,16 @@ impl MultibodyOde<'_> {
             return Err(not_finite);
         }
         let (x, v) = (&y[..n], &y[n..2 * n]);
-        let mut velocity_products = vec![0.0; frames.rows.len()];
-        frames.rows.velocity_product(x, v, &mut velocity_products);
+        let poses = frames.poses_of(x);
+        let mut applied = self.assemble_masses(&poses, v);
         let point = EvaluationPoint {
-            at: self.state(t, y),
-            x,
+            at: self.state_of(t, &poses, v),
             v,
             drive_states: &y[2 * n..],
-            jacobian: frames.jacobian(x),
-            velocity_products,
+            jacobian: frames.rows.jacobian(&poses),
+            velocity_products: frames.rows.velocity_products(&poses, v),
+            poses,
         };
-        let mut applied = self.assemble_masses(x, v);
         self.add_loads(&point, &mut applied).ok_or(not_finite)?;
         self.add_drives(&point, &mut applied).ok_or(not_finite)?;
         let (a, multipliers) = self.solve_with_friction(&point, &mut applied)?;
@@ -189,7 +188,11 @@ impl MultibodyOde<'_> {
         let mut forces = vec![std::mem::take(&mut applied.force)];
         for &load in &frictions {
             let mut unit = vec![0.0; self.frames.rows.columns()];
-            self.add_wrenches(&self.system.wrenches(load, 1.0, at), point.x, &mut unit);
+            self.add_wrenches(
+                &self.system.wrenches(load, 1.0, at),
+                &point.poses,
+                &mut unit,
+            );
             forces.push(unit);
         }
         let found = self.solve_augmented(&applied.mass, point, &forces)?;

@@ -15,6 +15,7 @@
 
 use super::equations::MultibodyOde;
 use super::{MotionSample, MultibodyError, Result};
+use crate::pose::{Pose, Twist};
 
 /// Error of a step, relative to the largest of its kind so far.
 const TOLERANCE: f64 = 1e-13;
@@ -54,8 +55,14 @@ impl<'a> ExtrapolationSolver<'a> {
         start: &MotionSample,
         end: Option<f64>,
     ) -> Result<Self> {
-        let mut y = of.frames.coordinates(&start.poses)?;
-        y.extend(of.frames.velocities(&start.poses, &start.velocities));
+        let poses: Vec<Pose> = start.poses.iter().map(|pose| (*pose).into()).collect();
+        let rates: Vec<Twist> = start
+            .velocities
+            .iter()
+            .map(|rates| (*rates).into())
+            .collect();
+        let mut y = of.frames.coordinates_of(&of.frames.moved_frames(&poses)?);
+        y.extend(of.frames.velocities(&poses, &rates));
         y.resize(of.dimension(), 0.0);
         of.project(start.t, &mut y)?;
         let duration = end.map_or(1.0, |end| end - start.t);

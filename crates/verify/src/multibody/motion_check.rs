@@ -132,7 +132,7 @@ impl MultibodySystem {
 
     /// The claimed frames. Where no row depends on whole revolutions, a claim may leave them out.
     fn comparable_poses(&self, claim: &MotionSample, sample: &MotionSample) -> Vec<[f64; 3]> {
-        let counts_revolutions = self.frames.rows.counts_revolutions();
+        let counts_revolutions = self.frames.counts_revolutions;
         let both = claim.poses.iter().zip(&sample.poses);
         both.map(|(&[x, y, angle], other)| {
             let excess = match counts_revolutions {

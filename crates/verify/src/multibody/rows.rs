@@ -4,12 +4,14 @@
 use super::equations::MultibodyOde;
 use super::{MotionSample, MultibodyError, MultibodySystem, Result};
 use crate::dense::DenseMechanism;
+use crate::description::Description;
 use crate::inertias::Inertias;
 use crate::lu::Lu;
+use crate::pose::{Columns, Pose, Twist};
 use crate::rank::rank;
+use crate::rows::row::Since;
 use dwell_dynamics::CoordinateMode;
-use dwell_geometry::{Mechanism, Vec2, vec2};
-use dwell_kinetostatics::Mass;
+use dwell_geometry::Mechanism;
 use faer::Mat;
 
 /// Newton's steps to close the rows.
@@ -24,25 +26,49 @@ pub(super) fn centroidal_frames(
     mechanism: &Mechanism,
     inertias: Inertias<'_>,
 ) -> Result<DenseMechanism> {
-    let masses = inertias.masses;
-    let origin = |body: usize, mean| match masses[body] {
-        Mass { mass, center, .. } if mass > 0.0 && body != mechanism.ground => center,
-        _ => mean,
-    };
-    Ok(DenseMechanism::with_origins(mechanism, inertias, origin)?)
+    let description = Description::in_plane(mechanism, inertias)?;
+    let centers: Vec<_> = description.bodies.iter().map(|body| body.mass).collect();
+    Ok(DenseMechanism::of(description, |body, mean| {
+        match centers[body].mass > 0.0 && body != mechanism.ground {
+            true => centers[body].center,
+            false => mean,
+        }
+    }))
 }
 
 impl DenseMechanism {
-    /// Frames of all bodies and their rates out of coordinates and velocities.
-    pub(super) fn to_frames(&self, x: &[f64], v: &[f64]) -> [Vec<[f64; 3]>; 2] {
-        let ground = self.bodies[self.mechanism.ground].shift;
+    /// The coordinates of bodies that move in the plane, out of the poses of their moved frames.
+    pub(super) fn coordinates_of(&self, poses: &[Pose]) -> Vec<f64> {
+        let moving = self.moving_bodies();
+        let of_body = moving.flat_map(|(b, _)| {
+            let Pose {
+                position, angle, ..
+            } = poses[b];
+            [position.x, position.y, angle]
+        });
+        of_body.collect()
+    }
+
+    /// The poses of the moved frames out of coordinates.
+    pub(super) fn poses_of(&self, x: &[f64]) -> Vec<Pose> {
+        let of_body = self.bodies.iter().map(|body| match body.columns {
+            Columns::Plane(c) | Columns::Space(c) => Pose::from([x[c], x[c + 1], x[c + 2]]),
+            Columns::Fixed => Pose::default(),
+        });
+        of_body.collect()
+    }
+
+    /// Frames [x, y, θ] of all bodies and their rates out of moved frames and velocities.
+    pub(super) fn to_frames(&self, poses: &[Pose], v: &[f64]) -> [Vec<[f64; 3]>; 2] {
+        let ground = self.bodies[self.ground].shift;
         let mut both = [0; 2].map(|_| vec![[0.0; 3]; self.bodies.len()]);
-        for (b, body, c) in self.moving_bodies() {
-            let arm = body.shift.rotate(Vec2::from_angle(x[c + 2]));
-            let origin = ground + (vec2(x[c], x[c + 1]) - arm);
-            let velocity = vec2(v[c], v[c + 1]) - arm.perp() * v[c + 2];
-            both[0][b] = [origin.x, origin.y, x[c + 2]];
-            both[1][b] = [velocity.x, velocity.y, v[c + 2]];
+        for (b, body) in self.moving_bodies() {
+            let (pose, twist): (&Pose, Twist) = (&poses[b], body.columns.twist(v));
+            let arm = pose.rotation.apply(body.shift);
+            let origin = ground + (pose.position - arm);
+            let velocity = twist.at(-arm);
+            both[0][b] = [origin.x, origin.y, pose.angle];
+            both[1][b] = [velocity.x, velocity.y, twist.angular.z];
         }
         both
     }
@@ -91,11 +117,11 @@ impl MultibodySystem {
 
     /// The equations with gears meshed and independent rows chosen at a start.
     pub(super) fn ode_at(&self, start: &MotionSample) -> Result<MultibodyOde<'_>> {
-        let x = self.frames.coordinates(&start.poses)?;
+        let poses = self.frames.frames(&start.poses)?;
         let candidate_rows = self.prescribed_mechanism().1;
         let mut frames = self.frames.clone();
-        frames.rows.mesh(&x);
-        let active_rows = frames.independent_rows_of(&candidate_rows, usize::MAX, &x);
+        frames.rows.mesh(&poses);
+        let active_rows = frames.independent_rows_of(&candidate_rows, usize::MAX, &poses);
         Ok(MultibodyOde {
             system: self,
             frames,
@@ -121,7 +147,7 @@ impl MultibodyOde<'_> {
 
     /// The least change of the coordinates, a radian counted as a size, that changes the rows by
     /// `by`.
-    fn min_norm_change(&self, x: &[f64], by: &[f64], t: f64) -> Result<Vec<f64>> {
+    fn min_norm_change(&self, poses: &[Pose], by: &[f64], t: f64) -> Result<Vec<f64>> {
         let frames = &self.frames;
         let n = frames.rows.columns();
         let mut right = Mat::zeros(n + self.active_rows.len(), 1);
@@ -129,7 +155,7 @@ impl MultibodyOde<'_> {
             right[(n + k, 0)] = by[row] * frames.row_scale[row];
         }
         let unit = |i, j| if i == j { 1.0 } else { 0.0 };
-        self.solve_bordered(unit, &frames.jacobian(x), &mut right, t)?;
+        self.solve_bordered(unit, &frames.rows.jacobian(poses), &mut right, t)?;
         let scaled = (0..n).map(|c| right[(c, 0)] * frames.column_scale(c));
         Ok(scaled.collect())
     }
@@ -167,27 +193,38 @@ impl MultibodyOde<'_> {
         let [value, row_velocities, _] = self.prescribed_values(t);
         let mut residual = vec![0.0; frames.rows.len()];
         let mut converged = false;
+        let mut poses = frames.poses_of(x);
+        let row_values = &value;
         for _ in 0..MAX_NEWTON_STEPS {
-            frames.rows.residual(x, &value, &mut residual);
+            let since = Since {
+                poses: &poses,
+                row_values,
+            };
+            frames.rows.residual(&poses, since, &value, &mut residual);
             residual.iter_mut().for_each(|r| *r = -*r);
-            let step = self.min_norm_change(x, &residual, t)?;
+            let step = self.min_norm_change(&poses, &residual, t)?;
             x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
+            poses = frames.poses_of(x);
             let length = frames.largest_component(x);
             converged = frames.largest_component(&step) <= CONVERGED_STEP * (1.0 + length);
             if converged {
                 break;
             }
         }
-        frames.rows.residual(x, &value, &mut residual);
+        let since = Since {
+            poses: &poses,
+            row_values,
+        };
+        frames.rows.residual(&poses, since, &value, &mut residual);
         let open = |&row: &usize| residual[row].abs() * frames.row_scale[row] / frames.size;
         let closed = |row: &usize| open(row) <= MAX_RESIDUAL;
         if !converged || !self.candidate_rows.iter().all(closed) {
             return Err(MultibodyError::NotClosed(t));
         }
-        let jacobian = frames.jacobian(x);
+        let jacobian = frames.rows.jacobian(&poses);
         let velocity_error = |row| row_velocities[row] - frames.row_velocity(&jacobian, row, v);
         let correction: Vec<f64> = (0..frames.rows.len()).map(velocity_error).collect();
-        let change = self.min_norm_change(x, &correction, t)?;
+        let change = self.min_norm_change(&poses, &correction, t)?;
         v.iter_mut().zip(&change).for_each(|(v, c)| *v += c);
         Ok(())
     }

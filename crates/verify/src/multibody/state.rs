@@ -3,8 +3,9 @@
 use super::{MultibodyError, MultibodySystem, Result};
 use crate::body_motion::BodyMotion;
 use crate::loads::load_wrenches;
+use crate::pose::{Pose, Twist};
 use crate::wrenches::BodyWrench;
-use dwell_geometry::{BodyId, Vec2, vec2};
+use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::{LoadKind, Magnitude, Signal};
 
 /// Frames of all bodies and their rates at a time.
@@ -27,9 +28,8 @@ impl MultibodyState {
     pub(super) fn power(&self, wrenches: &[BodyWrench]) -> f64 {
         let power = |wrench: &BodyWrench| {
             let body = wrench.body.0;
-            let ([x, y, _], [vx, vy, omega]) = (self.poses[body], self.velocities[body]);
-            let arm = wrench.point - vec2(x, y);
-            wrench.force.dot(vec2(vx, vy) + arm.perp() * omega) + wrench.couple * omega
+            let origin = Pose::from(self.poses[body]).position;
+            Twist::from(self.velocities[body]).power(&wrench.about(origin))
         };
         wrenches.iter().map(power).sum()
     }
@@ -122,8 +122,7 @@ impl MultibodySystem {
             let v = at.motion().point_velocity(BodyId(b), mass.center);
             let v = v.unwrap_or(Vec2::ZERO);
             let omega = at.velocities[b][2];
-            let body = &self.frames.bodies[b];
-            let varying = body.angular_inertia(at.poses[b][2]) - body.mass.inertia;
+            let varying = self.frames.bodies[b].varying_inertia(at.poses[b][2]);
             let inertia = mass.inertia + varying;
             kinetic += 0.5 * (mass.mass * v.dot(v) + inertia * omega * omega);
         }

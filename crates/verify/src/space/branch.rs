@@ -1,11 +1,13 @@
 //! The branch of claimed states: that of the assembly, by continuing its pose densely.
 
-use super::DensePose;
-use super::state::{SpaceCase, SpaceState};
+use super::state::{SpaceCase, SpaceState, poses};
 use crate::comparison::{Comparison, FindingSpec, LargestDifference};
+use crate::dense::DenseMechanism;
 use crate::error::Result;
+use crate::pose::Pose;
+use crate::state::not_dense;
 use dwell_findings::{Check, Finding};
-use dwell_geometry::space::{Placement, Vec3};
+use dwell_geometry::space::Vec3;
 
 const BRANCH: FindingSpec<'_> = FindingSpec {
     key: "state-branch",
@@ -20,39 +22,47 @@ const BRANCH: FindingSpec<'_> = FindingSpec {
 /// Steps of the coordinates within which Newton's method stays on the branch: rad, or parts of the size.
 const BRANCH_STEP: f64 = 0.1;
 
-/// Where the bodies are after the coordinates have moved from the assembly to other values on a straight line, closed densely all the way.
-///
-/// # Errors
-/// [`DenseError`] where a pose on the way has no closed one beside it.
-pub(super) fn continued(case: &SpaceCase<'_>, q: &[f64]) -> Result<Vec<Placement>> {
-    let mut at = case.start.1.to_vec();
-    for (_, coordinates) in case.positions_towards(q, BRANCH_STEP) {
-        let wanted = (&coordinates[..], Some(&at[..]));
-        let pose = DensePose::nearest(case.mechanism, &at, wanted, case.size)?;
-        at = pose.placements.into_owned();
+impl SpaceCase<'_> {
+    /// The coordinates on a straight line from those at the assembly to others, in short steps.
+    fn positions_towards(&self, q: &[f64]) -> impl Iterator<Item = Vec<f64>> {
+        let both = move || self.start.0.iter().zip(q);
+        let distances = both().enumerate();
+        let distances = distances.map(|(k, (from, to))| (to - from).abs() / self.unit(k));
+        let count = (distances.fold(0.0, f64::max) / BRANCH_STEP)
+            .ceil()
+            .max(1.0);
+        (1..=count as usize).map(move |k| {
+            let part = k as f64 / count;
+            both().map(|(from, to)| from + part * (to - from)).collect()
+        })
     }
-    Ok(at)
+
+    /// The moved frames after the coordinates have moved from the assembly to other values on a straight line, closed densely all the way.
+    ///
+    /// # Errors
+    /// [`DenseError`](crate::DenseError) where a pose on the way has no closed one beside it.
+    fn continued(&self, dense: &DenseMechanism, q: &[f64]) -> Result<Vec<Pose>> {
+        let mut at = dense.moved_frames(&poses(self.start.1))?;
+        let mut row_values = vec![0.0; dense.rows.len()];
+        for coordinates in self.positions_towards(q) {
+            let best = dense.at(&at)?;
+            row_values[dense.actuator_row()..].copy_from_slice(&coordinates);
+            at = best.close(&at, &row_values)?.poses;
+        }
+        Ok(at)
+    }
 }
 
-/// How far a body is from another placement, parts of the size or rad; how it stands about the line of its two balls is nobody's.
-fn apart(case: &SpaceCase<'_>, body: usize, [found, wanted]: [&Placement; 2]) -> f64 {
-    let turned = |v: Vec3| (found.rotation.apply(v) - wanted.rotation.apply(v)).norm();
-    let idle = case.idle.iter().find(|idle| idle.body.0 == body);
-    let turn: f64 = match idle {
-        Some(idle) => turned(idle.axis),
-        None => Vec3::AXES.map(turned).into_iter().sum(),
-    };
-    let point = idle.map_or(Vec3::ZERO, |idle| idle.point);
-    let at = |p: &Placement| p.position + p.rotation.apply(point);
-    turn + (at(found) - at(wanted)).norm() / case.size
-}
-
-/// Checks that claimed states are on the branch of the assembly: their placements with those to which it leads, closed densely all the way.
-/// It costs some closings for each rad.
+/// Checks that claimed states are on the branch of the assembly: their placements with those to which it leads, closed densely all the way,
+/// with the teeth of gears meshed as they were there. It costs some closings for each rad.
 pub fn check_branch_in_space(case: &SpaceCase<'_>, states: &[SpaceState]) -> Finding {
     let mut worst = LargestDifference::default();
-    let mut poses = 0;
+    let mut count = 0;
     let mut last: Option<&SpaceState> = None;
+    let dense = match case.dense() {
+        Ok(dense) => dense,
+        Err(error) => return not_dense(&BRANCH, &error),
+    };
     for claimed in states {
         let is_known = last
             .replace(claimed)
@@ -60,20 +70,40 @@ pub fn check_branch_in_space(case: &SpaceCase<'_>, states: &[SpaceState]) -> Fin
         if is_known {
             continue;
         }
-        poses += 1;
-        let wanted = match continued(case, &claimed.q) {
-            Ok(wanted) => wanted,
+        count += 1;
+        let found = dense.moved_frames(&poses(&claimed.placements));
+        let both = found.and_then(|found| Ok((found, case.continued(&dense, &claimed.q)?)));
+        let (found, wanted) = match both {
+            Ok(both) => both,
             Err(error) => {
                 worst.record_failure(error.to_string());
                 continue;
             }
         };
-        for (body, both) in claimed.placements.iter().zip(&wanted).enumerate() {
-            let distance = apart(case, body, [both.0, both.1]);
+        for (b, body) in dense.moving_bodies() {
+            let distance = apart(case, &dense, b, [&found[b], &wanted[b]]);
             let comparison = Comparison::new([distance, 1.0, 0.0], "", 1.0);
-            let name = &case.mechanism.bodies[body].name;
-            worst.record(&comparison, || format!("q = {:?}, {name}", claimed.q));
+            worst.record(&comparison, || {
+                format!("q = {:?}, {}", claimed.q, body.name)
+            });
         }
     }
-    BRANCH.finding(format!("{poses} poses"), worst)
+    BRANCH.finding(format!("{count} poses"), worst)
+}
+
+/// How far a body is from another pose, parts of the size or rad; how it stands about the line of its two balls is nobody's.
+fn apart(
+    case: &SpaceCase<'_>,
+    dense: &DenseMechanism,
+    body: usize,
+    [found, wanted]: [&Pose; 2],
+) -> f64 {
+    let turned = |v: Vec3| (found.rotation.apply(v) - wanted.rotation.apply(v)).norm();
+    let idle = case.idle.iter().find(|idle| idle.body.0 == body);
+    let turn: f64 = match idle {
+        Some(idle) => turned(idle.axis),
+        None => Vec3::AXES.map(turned).into_iter().sum(),
+    };
+    let point = idle.map_or(Vec3::ZERO, |idle| idle.point - dense.bodies[body].shift);
+    turn + (found.point(point) - wanted.point(point)).norm() / case.size
 }

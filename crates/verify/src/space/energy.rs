@@ -1,7 +1,7 @@
 //! Energies of a mechanism in space from the placements of its bodies.
 
-use super::rows::{Bodies, Sides};
-use super::state::{SpaceCase, product};
+use super::joints::Sides;
+use super::state::SpaceCase;
 use dwell_geometry::space::{BodyMotion, Placement};
 use dwell_kinetostatics::space::{Direction, LoadKind, Mass};
 use std::f64::consts::TAU;
@@ -12,7 +12,14 @@ pub fn kinetic_energy(
     placements: &[Placement],
     motions: &[BodyMotion],
 ) -> f64 {
-    0.5 * product(case, placements, [motions, motions])
+    let bodies = case.masses.iter().zip(placements.iter().zip(motions));
+    let of_body = |(mass, (placement, motion)): (&Mass, (&Placement, &BodyMotion))| {
+        let rotation = &placement.rotation;
+        let velocity = motion.point_velocity(rotation.apply(mass.center));
+        let turning = rotation.apply_inverse(motion.angular_velocity);
+        mass.mass * velocity.dot(velocity) + turning.dot(mass.angular_momentum(turning))
+    };
+    0.5 * bodies.map(of_body).sum::<f64>()
 }
 
 /// The potential energy of a load of constant magnitude, J; none of one that has no potential. The angle of a spring is that nearest to
@@ -22,24 +29,24 @@ pub fn potential_energy(
     placements: &[Placement],
     (kind, magnitude): (LoadKind, f64),
 ) -> Option<f64> {
-    let bodies = Bodies::at_rest(case.mechanism, placements);
+    let at =
+        |body: usize, point| placements[body].position + placements[body].rotation.apply(point);
     let of_unit = match kind {
         LoadKind::Gravity(g) => {
-            let weight =
-                |(body, mass): (usize, &Mass)| -mass.mass * g.dot(bodies.point(body, mass.center));
+            let weight = |(body, mass): (usize, &Mass)| -mass.mass * g.dot(at(body, mass.center));
             case.masses.iter().enumerate().map(weight).sum()
         }
         LoadKind::Force {
             body,
             point,
             direction: Direction::Ground(u),
-        } => -u.dot(bodies.point(body.0, point)),
+        } => -u.dot(at(body.0, point)),
         LoadKind::Spring {
             bodies: [a, b],
             points,
             free_length,
         } => {
-            let d = bodies.point(b.0, points[1]) - bodies.point(a.0, points[0]);
+            let d = at(b.0, points[1]) - at(a.0, points[0]);
             0.5 * (d.norm() - free_length).powi(2)
         }
         LoadKind::TorsionSpring { joint, free_angle } => {

@@ -29,17 +29,18 @@ pub fn with_friction_in_space(
     rates: [&[f64]; 2],
     (loads, frictions): (&[(LoadKind, f64)], &[Option<Friction>]),
 ) -> Result<Vec<(LoadKind, f64)>> {
-    let pose = DensePose::new(case.mechanism, placements)?;
+    let pose = DensePose::new(case.mechanism, case.masses, placements)?;
     let rest = vec![0.0; rates[0].len()];
-    let own = pose.solve(case.masses, rates, loads);
+    let own = pose.solve(rates, loads);
     let indices = (0..loads.len()).filter(|&load| frictions[load].is_some());
     let indices: Vec<usize> = indices.collect();
     let mass_free = vec![dwell_kinetostatics::space::Mass::default(); case.masses.len()];
+    let unloaded = DensePose::new(case.mechanism, &mass_free, placements)?;
     let units: Vec<Vec<Wrench>> = indices
         .iter()
         .map(|&load| {
             let unit = [(loads[load].0, 1.0)];
-            pose.solve(&mass_free, [&rest, &rest], &unit).reactions
+            unloaded.solve([&rest, &rest], &unit).reactions
         })
         .collect();
     let mut forces = vec![0.0; indices.len()];
@@ -86,7 +87,7 @@ pub fn sliding_in_space(
     q_dot: &[f64],
     friction: &Friction,
 ) -> Result<[f64; 2]> {
-    let pose = DensePose::new(case.mechanism, placements)?;
+    let pose = DensePose::new(case.mechanism, case.masses, placements)?;
     let law = Law {
         joint: &case.mechanism.joints[friction.joint.0],
         friction,

@@ -1,19 +1,28 @@
 //! One state closed densely, with all that it is compared with.
 
-use super::ClaimedState;
+use super::Claim;
 use crate::checks::MAX_DIFFERENCE_STEP;
 use crate::comparison::{Comparison, ComparisonSet};
 use crate::constraint_closing::Configuration;
-use crate::dense::{DenseBody, DenseMechanism, add_scaled};
-use crate::differences::Extrapolated;
+use crate::dense::{DenseMechanism, add_scaled};
+use crate::description::DescribedJoint;
 use crate::error::Result;
+use crate::motion::SecondDifferences;
+use crate::pose::Twist;
 use crate::wrenches::{BodyWrench, NetWrench};
-use dwell_geometry::{BodyId, Vec2, vec2};
+use dwell_geometry::space::{Vec3, Wrench};
+use std::borrow::Cow;
+
+/// A part of a self-stress of length one from which on a reaction is not determined.
+const STRESS: f64 = 1e-7;
 
 /// A state with its dense solution.
 pub(super) struct DenseState<'a> {
-    pub(super) dense: &'a DenseMechanism,
-    pub(super) state: &'a ClaimedState,
+    /// With the rows that are farthest from dependent there.
+    pub(super) dense: Cow<'a, DenseMechanism>,
+    pub(super) state: &'a Claim,
+    /// Which of all it is.
+    pub(super) index: usize,
     pub(super) configuration: Configuration,
     /// How far closing moved the claimed poses, relative to the largest coordinate in them.
     pub(super) closing_correction: f64,
@@ -27,6 +36,21 @@ pub(super) struct DenseState<'a> {
     pub(super) condition_number: f64,
     pub(super) load_wrenches: Vec<BodyWrench>,
     joint_wrenches: Vec<BodyWrench>,
+    /// The velocities at unit speed of each row.
+    pub(super) unit_velocities: Vec<Vec<f64>>,
+    /// Multipliers that hold nothing, where reactions are components of forces and rows repeat each other.
+    stresses: Vec<Vec<f64>>,
+}
+
+/// A reaction or an actuator's force, claimed and dense.
+pub(super) struct ComparedReaction {
+    pub(super) name: String,
+    pub(super) is_moment: bool,
+    pub(super) claimed: f64,
+    pub(super) value: f64,
+    pub(super) error: f64,
+    /// Whether only one value balances the forces.
+    pub(super) is_determined: bool,
 }
 
 /// Velocities and accelerations of the moved frames, and the multipliers: reactions, then actuator forces.
@@ -39,7 +63,7 @@ pub(super) struct DenseSolution {
 impl DenseSolution {
     fn new(
         dense: &DenseMechanism,
-        state: &ClaimedState,
+        state: &Claim,
         at: &Configuration,
         unit_velocities: &[Vec<f64>],
         loads: &[BodyWrench],
@@ -53,9 +77,9 @@ impl DenseSolution {
         rates[actuator_row..].copy_from_slice(&state.q_ddot);
         let x_ddot = dense.acceleration(at, &x_dot, &rates);
         // M ẍ + h − f: what the joints and actuators have to exert.
-        let inertia = inertia_wrenches(dense, at, &x_dot, &x_ddot);
+        let inertia = dense.inertia_wrenches(&at.poses, [&x_dot, &x_ddot]);
         let mut forces = vec![0.0; dense.rows.columns()];
-        dense.add_wrenches(&at.x, inertia.iter().chain(loads), -1.0, &mut forces);
+        dense.add_wrenches(&at.poses, inertia.iter().chain(loads), -1.0, &mut forces);
         Ok(Self {
             multipliers: dense.multipliers(at, &forces)?,
             x_dot,
@@ -68,47 +92,43 @@ impl DenseSolution {
     }
 }
 
-/// The inertia forces −m a_G and couples −I α of all moving bodies.
-fn inertia_wrenches(
-    dense: &DenseMechanism,
-    at: &Configuration,
-    x_dot: &[f64],
-    x_ddot: &[f64],
-) -> Vec<BodyWrench> {
-    let wrench = |(b, body, c): (usize, &DenseBody, usize)| BodyWrench {
-        body: BodyId(b),
-        force: -(dense.center_acceleration(body, at, x_dot, x_ddot) * body.mass.mass),
-        point: dense.center(body, at),
-        couple: -body.inertia_moment(at.x[c + 2], x_dot[c + 2], x_ddot[c + 2]),
-    };
-    dense.moving_bodies().map(wrench).collect()
-}
-
 impl<'a> DenseState<'a> {
     /// A state that has passed [`check_counts`].
-    pub(super) fn new(dense: &'a DenseMechanism, state: &'a ClaimedState) -> Result<Self> {
-        let (configuration, closing_correction) = dense.close_at(&state.poses, &state.q)?;
+    pub(super) fn new(
+        dense: &'a DenseMechanism,
+        (index, state): (usize, &'a Claim),
+    ) -> Result<Self> {
+        let poses = &state.poses;
+        let dense = dense.at(&dense.moved_frames(poses)?)?;
+        let (configuration, closing_correction) = dense.close_at(poses, &state.q)?;
         dense.check_redundant_rows(&configuration)?;
         let loads = dense.shifted_wrenches(&state.load_wrenches);
         let velocities = dense.unit_velocities(&configuration);
-        let solution = DenseSolution::new(dense, state, &configuration, &velocities, &loads)?;
+        let solution = DenseSolution::new(&dense, state, &configuration, &velocities, &loads)?;
         let exact = solution.flat();
         let bounds = dense.rounding_bounds(&configuration, &velocities, &exact, |perturbed| {
             let velocities = dense.unit_velocities(perturbed);
-            Ok(DenseSolution::new(dense, state, perturbed, &velocities, &loads)?.flat())
+            Ok(DenseSolution::new(&dense, state, perturbed, &velocities, &loads)?.flat())
         });
         let (bounds, pose_rounding_bound) = bounds?;
         let n = dense.rows.columns();
+        let rates = [&state.velocities[..], &state.accelerations];
         Ok(Self {
             closing_correction,
-            joint_wrenches: dense.joint_wrenches(&configuration, &state.reactions, &state.tau),
-            dense,
+            joint_wrenches: dense.joint_wrenches(
+                &configuration.poses,
+                &state.reactions,
+                &state.tau,
+            ),
             state,
-            condition_number: dense.condition_number(&configuration.x),
+            index,
+            condition_number: dense.condition_number(&configuration.poses),
+            stresses: dense.self_stresses(&configuration.poses),
             configuration,
             solution,
-            claimed_dot: dense.velocities(&state.poses, &state.velocities),
-            claimed_ddot: shifted_accelerations(dense, state),
+            claimed_dot: dense.velocities(poses, &state.velocities),
+            claimed_ddot: dense.accelerations(poses, rates),
+            unit_velocities: velocities,
             pose_rounding_bound,
             bounds: DenseSolution {
                 x_dot: bounds[..n].to_vec(),
@@ -116,6 +136,7 @@ impl<'a> DenseState<'a> {
                 multipliers: bounds[2 * n..].to_vec(),
             },
             load_wrenches: loads,
+            dense,
         })
     }
 
@@ -129,7 +150,7 @@ impl<'a> DenseState<'a> {
         what: &str,
     ) {
         let separator = if what.is_empty() { "" } else { ", " };
-        let location = format!("t = {} s{separator}{what}", self.state.t);
+        let location = format!("{}{separator}{what}", self.state.name);
         let comparison = Comparison::new(numbers, unit, self.condition_number);
         set.add(comparison, location);
     }
@@ -150,46 +171,83 @@ impl<'a> DenseState<'a> {
     pub(super) fn largest_force(&self) -> f64 {
         let size = self.dense.size();
         let loads = self.load_wrenches.iter();
-        let loads = loads.map(|l| l.force.norm().max(l.couple.abs() / size));
-        let inertia = self.dense.moving_bodies().map(|(body, ..)| {
-            let [x, y, moment] = self.inertia_forces(body);
-            x.hypot(y).max(moment.abs() / size)
+        let loads = loads.map(|l| l.force.norm().max(l.couple.norm() / size));
+        let inertia = self.dense.moving_bodies().map(|(body, _)| {
+            let rate = self.momentum_rate(body);
+            rate.force.norm().max(rate.moment.norm() / size)
         });
         loads.chain(inertia).fold(0.0, f64::max)
     }
 
-    /// Everything that acts on a body.
+    /// Everything that acts on a body, about its centre of mass.
     pub(super) fn net_wrench(&self, body: usize) -> NetWrench {
-        let body_at = &self.dense.bodies[body];
-        let center = self.dense.center(body_at, &self.configuration);
+        let center = self.dense.bodies[body].center(&self.configuration.poses[body]);
         let all = self.joint_wrenches.iter().chain(&self.load_wrenches);
         NetWrench::of(all.filter(|a| a.body.0 == body), center)
     }
 
-    /// m a_G and I α with the claimed motion.
-    pub(super) fn inertia_forces(&self, body: usize) -> [f64; 3] {
-        let (dense, of) = (self.dense, &self.dense.bodies[body]);
-        let (u, a) = (&self.claimed_dot, &self.claimed_ddot);
-        let acceleration = dense.center_acceleration(of, &self.configuration, u, a);
-        let force = acceleration * of.mass.mass;
-        let x = &self.configuration.x;
-        let moment = |c: usize| of.inertia_moment(x[c + 2], u[c + 2], a[c + 2]);
-        [force.x, force.y, of.column.map_or(0.0, moment)]
+    /// m a_G and the rate of the angular momentum about the centre of mass, with the claimed motion.
+    pub(super) fn momentum_rate(&self, body: usize) -> Wrench {
+        let pose = &self.configuration.poses[body];
+        self.dense.bodies[body].momentum_rate(pose, [&self.claimed_dot, &self.claimed_ddot])
     }
 
-    /// Of a varying moment of inertia: its value, and ½ I′ ω² with the claimed motion.
-    pub(super) fn varying_inertia(&self, body: usize) -> [f64; 2] {
-        let of = &self.dense.bodies[body];
-        of.column.map_or([0.0; 2], |c| {
-            let (angle, omega) = (self.configuration.x[c + 2], self.claimed_dot[c + 2]);
-            let inertia = of.angular_inertia(angle) - of.mass.inertia;
-            [inertia, of.varying_moment(angle, omega, 0.0)]
-        })
+    /// The same with the accelerations that positions show.
+    pub(super) fn rate_by_differences(&self, body: usize, second: Twist) -> Wrench {
+        let (of, pose) = (&self.dense.bodies[body], &self.configuration.poses[body]);
+        let omega = of.columns.twist(&self.claimed_dot).angular;
+        Wrench {
+            force: second.linear.scaled(of.mass.mass),
+            moment: of.inertia_moment(pose, omega, second.angular),
+        }
+    }
+
+    /// How much the errors of these accelerations may move that, component by component.
+    pub(super) fn error_by_differences(&self, body: usize, errors: Twist) -> Wrench {
+        let (of, pose) = (&self.dense.bodies[body], &self.configuration.poses[body]);
+        Wrench {
+            force: errors.linear.scaled(of.mass.mass),
+            moment: of.angular_momentum(pose, errors.angular),
+        }
+    }
+
+    /// What acts on a body less the rate of its momenta, component by component: the difference, the sum of absolute terms with those of
+    /// the claimed motion, and the error, moments over the size, N.
+    pub(super) fn balance(
+        &self,
+        body: usize,
+        rate: Wrench,
+        claimed: Wrench,
+        errors: Wrench,
+    ) -> Vec<[f64; 3]> {
+        let (net, columns) = (self.net_wrench(body), self.dense.bodies[body].columns);
+        let parts = |of: &Wrench| columns.components(of.force, of.moment);
+        let all = parts(&net.sum)
+            .zip(parts(&rate))
+            .zip(parts(&claimed))
+            .zip(parts(&errors));
+        let numbers = all.map(
+            |((((sum, is_moment), (rate, _)), (claimed, _)), (error, _))| {
+                let arm = if is_moment {
+                    1.0 / self.dense.size()
+                } else {
+                    1.0
+                };
+                let terms = net.terms[usize::from(is_moment)] * arm;
+                let rounding = self.pose_rounding_bound * terms;
+                [
+                    (sum - rate) * arm,
+                    terms + claimed.abs() * arm,
+                    rounding + error.abs() * arm,
+                ]
+            },
+        );
+        numbers.collect()
     }
 
     /// Second derivatives in time of every moving body's centre of mass and angle, from positions
     /// alone. Newton's method starts from the state itself, not where its speeds would lead.
-    pub(super) fn second_differences(&self) -> Vec<Extrapolated> {
+    pub(super) fn second_differences(&self) -> SecondDifferences {
         self.dense.second_differences(
             &self.configuration,
             self.time_step(),
@@ -214,9 +272,95 @@ impl<'a> DenseState<'a> {
         if step.is_finite() { step } else { 1.0 }
     }
 
-    /// Power of actuators and loads less the rate of the kinetic energy, and the sum of what its
+    /// All reactions, then the actuators' forces.
+    pub(super) fn dense_reactions(&self) -> Vec<ComparedReaction> {
+        let (dense, state) = (&*self.dense, self.state);
+        let mut all = Vec::new();
+        let of_row = |row: usize, claimed: f64| ComparedReaction {
+            name: dense.row_names[row].clone(),
+            is_moment: dense.angular[row],
+            claimed,
+            value: self.solution.multipliers[row],
+            error: self.bounds.multipliers[row],
+            is_determined: dense.determinate[row],
+        };
+        for joint in &dense.joints {
+            let claimed = &state.reactions[joint.reactions.clone()];
+            match joint.is_wrench {
+                true => all.extend(self.components(joint, claimed)),
+                false => {
+                    let rows = joint.rows.clone().zip(claimed);
+                    all.extend(rows.map(|(row, claimed)| of_row(row, *claimed)));
+                }
+            }
+        }
+        let actuators = (dense.actuator_row()..).zip(&state.tau);
+        all.extend(actuators.map(|(row, tau)| of_row(row, *tau)));
+        all
+    }
+
+    /// Force and moment of a joint by components.
+    fn components(&self, joint: &DescribedJoint, claimed: &[f64]) -> Vec<ComparedReaction> {
+        let (dense, poses) = (&*self.dense, &self.configuration.poses);
+        let of = |multipliers: &[f64]| dense.joint_wrench(joint, poses, multipliers);
+        let (value, error) = (
+            of(&self.solution.multipliers),
+            dense.joint_wrench_bound(joint, poses, &self.bounds.multipliers),
+        );
+        let stresses: Vec<[f64; 6]> = self.stresses.iter().map(|stress| of(stress)).collect();
+        let reaction = |k: usize| {
+            let described = &dense.reactions[joint.reactions.start + k];
+            let arm = if described.is_moment {
+                1.0 / dense.size()
+            } else {
+                1.0
+            };
+            ComparedReaction {
+                name: described.name.clone(),
+                is_moment: described.is_moment,
+                claimed: claimed[k],
+                value: value[k],
+                error: error[k],
+                is_determined: stresses.iter().all(|s| s[k].abs() * arm < STRESS),
+            }
+        };
+        (0..6).map(reaction).collect()
+    }
+
+    /// The power of the claimed reactions of a joint at speeds of all coordinates, W.
+    pub(super) fn power_of(&self, joint: &DescribedJoint, u: &[f64]) -> f64 {
+        let (dense, poses) = (&*self.dense, &self.configuration.poses);
+        let of_joint = joint.reactions.clone();
+        let claimed = &self.state.reactions[of_joint.clone()];
+        let wrenches = dense.reactions[of_joint].iter().zip(claimed);
+        let wrenches =
+            wrenches.flat_map(|(reaction, value)| reaction.action.wrenches(poses, *value));
+        let power = |wrench: BodyWrench| {
+            let body = wrench.body.0;
+            let twist = dense.bodies[body].columns.twist(u);
+            twist.power(&wrench.about(poses[body].position))
+        };
+        wrenches.map(power).sum()
+    }
+
+    /// What the reactions of a joint do at unit speed of each actuator, what the largest force could, and its rounding, W.
+    pub(super) fn joint_powers(&self, joint: &DescribedJoint) -> Vec<[f64; 3]> {
+        let largest = self.largest_force() * self.dense.size();
+        let units = self.unit_velocities[self.dense.actuator_row()..].iter();
+        let powers = units.map(|u| {
+            let scale = largest * self.dense.scaled_norm(u);
+            [
+                self.power_of(joint, u),
+                scale,
+                self.relative_rounding_bound() * scale,
+            ]
+        });
+        powers.collect()
+    }
+
+    /// Power of actuators and loads less the rate of the kinetic energy, that of the loads, and the sum of what its
     /// terms could be, |F| |v|, W: a force across its velocity is rounded as if it were along it.
-    pub(super) fn power_balance(&self) -> (f64, f64) {
+    pub(super) fn power_balance(&self) -> [f64; 3] {
         let (mut sum, mut terms) = (0.0, 0.0);
         let mut add = |power: f64, max: f64| {
             sum += power;
@@ -225,58 +369,56 @@ impl<'a> DenseState<'a> {
         for (tau, rate) in self.state.tau.iter().zip(&self.state.q_dot) {
             add(tau * rate, (tau * rate).abs());
         }
-        let (at, solution) = (&self.configuration, &self.solution);
-        let (u, a) = (&solution.x_dot, &solution.x_ddot);
-        for load in &self.load_wrenches {
-            if let Some(c) = self.dense.bodies[load.body.0].column {
-                let arm = load.point - vec2(at.x[c], at.x[c + 1]);
-                let v = vec2(u[c], u[c + 1]);
-                add(load.force.dot(v), load.force.norm() * v.norm());
-                let max = (u[c + 2] * arm.norm() * load.force.norm()).abs();
-                add(u[c + 2] * arm.cross(load.force), max);
-                add(u[c + 2] * load.couple, (u[c + 2] * load.couple).abs());
+        let (poses, solution) = (&self.configuration.poses, &self.solution);
+        let rates = [&solution.x_dot[..], &solution.x_ddot];
+        let inertia = self.dense.inertia_wrenches(poses, rates);
+        let mut of_loads = 0.0;
+        for (k, wrench) in self.load_wrenches.iter().chain(&inertia).enumerate() {
+            let (body, pose) = (&self.dense.bodies[wrench.body.0], &poses[wrench.body.0]);
+            let twist = body.columns.twist(&solution.x_dot);
+            let (arm, omega) = (wrench.point - pose.position, twist.angular.norm());
+            let power = wrench.force.dot(twist.at(arm)) + wrench.couple.dot(twist.angular);
+            let reach = twist.linear.norm() + omega * arm.norm();
+            add(
+                power,
+                wrench.force.norm() * reach + omega * wrench.couple.norm(),
+            );
+            if k < self.load_wrenches.len() {
+                of_loads += power;
             }
         }
-        for (_, body, c) in self.dense.moving_bodies() {
-            let v = self.dense.center_velocity(body, at, u);
-            let force = self.dense.center_acceleration(body, at, u, a) * body.mass.mass;
-            let moment = body.inertia_moment(at.x[c + 2], u[c + 2], a[c + 2]);
-            let angular_power = u[c + 2] * moment;
-            add(-v.dot(force), v.norm() * force.norm());
-            add(-angular_power, angular_power.abs());
-        }
-        (sum, terms)
+        [sum, of_loads, terms]
     }
 
     /// What the ground and the loads do less the rate of the momentum, with the sum of absolute
-    /// terms: x, y, and the moment about the ground's moved origin over the size, N.
-    pub(super) fn momentum_balance(&self) -> [(f64, f64, &'static str); 3] {
-        let ground = self.dense.mechanism.ground;
-        let on_ground = self.joint_wrenches.iter().filter(|a| a.body.0 == ground);
-        let on_bodies = self.load_wrenches.iter().filter(|a| a.body.0 != ground);
-        let mut total = NetWrench::of(on_bodies, Vec2::ZERO);
-        // The ground's action is the opposite of what acts on it.
-        let on_ground = NetWrench::of(on_ground, Vec2::ZERO);
-        for c in 0..3 {
-            total.sum[c] -= on_ground.sum[c];
-            total.terms[c] += on_ground.terms[c];
+    /// terms: forces, and moments about the ground's moved origin over the size, N.
+    pub(super) fn momentum_balance(&self) -> Vec<[f64; 2]> {
+        let (dense, ground) = (&*self.dense, self.dense.ground);
+        let mut total = NetWrench::default();
+        for wrench in &self.joint_wrenches {
+            // The ground's action is the opposite of what acts on it.
+            if wrench.body.0 == ground {
+                total.add(wrench, -1.0, Vec3::ZERO);
+            }
         }
         let DenseSolution { x_dot, x_ddot, .. } = &self.solution;
-        for wrench in inertia_wrenches(self.dense, &self.configuration, x_dot, x_ddot) {
-            total.add(&wrench, Vec2::ZERO);
+        let inertia = dense.inertia_wrenches(&self.configuration.poses, [x_dot, x_ddot]);
+        let on_bodies = self.load_wrenches.iter().filter(|a| a.body.0 != ground);
+        for wrench in on_bodies.chain(&inertia) {
+            total.add(wrench, 1.0, Vec3::ZERO);
         }
-        let size = self.dense.size();
-        [
-            (total.sum[0], total.terms[0], "x"),
-            (total.sum[1], total.terms[0], "y"),
-            (total.sum[2] / size, total.terms[2] / size, "moment"),
-        ]
+        let components = dense.whole().components(total.sum.force, total.sum.moment);
+        let with_terms = components.map(|(sum, is_moment)| match is_moment {
+            true => [sum / dense.size(), total.terms[1] / dense.size()],
+            false => [sum, total.terms[0]],
+        });
+        with_terms.collect()
     }
 }
 
 /// Everything must be there, and as many as there should be.
-pub(super) fn check_counts(dense: &DenseMechanism, state: &ClaimedState) -> Result<(), String> {
-    let (bodies, actuators) = (dense.bodies.len(), dense.mechanism.actuators.len());
+pub(super) fn check_counts(dense: &DenseMechanism, state: &Claim) -> Result<(), String> {
+    let (bodies, actuators) = (dense.bodies.len(), dense.actuators.len());
     let counts = [
         ("coordinates", state.q.len(), actuators),
         ("actuator velocities", state.q_dot.len(), actuators),
@@ -284,7 +426,7 @@ pub(super) fn check_counts(dense: &DenseMechanism, state: &ClaimedState) -> Resu
         ("poses", state.poses.len(), bodies),
         ("velocities", state.velocities.len(), bodies),
         ("accelerations", state.accelerations.len(), bodies),
-        ("reactions", state.reactions.len(), dense.actuator_row()),
+        ("reactions", state.reactions.len(), dense.reactions.len()),
         ("actuator forces", state.tau.len(), actuators),
     ];
     if let Some((what, found, expected)) = counts.into_iter().find(|c| c.1 != c.2) {
@@ -297,16 +439,4 @@ pub(super) fn check_counts(dense: &DenseMechanism, state: &ClaimedState) -> Resu
         )),
         None => Ok(()),
     }
-}
-
-/// The claimed accelerations of the moved frames, in dense order.
-fn shifted_accelerations(dense: &DenseMechanism, state: &ClaimedState) -> Vec<f64> {
-    let mut x_ddot = vec![0.0; dense.rows.columns()];
-    for (b, body, c) in dense.moving_bodies() {
-        let arm = body.shift.rotate(Vec2::from_angle(state.poses[b][2]));
-        let ([.., omega], [ax, ay, alpha]) = (state.velocities[b], state.accelerations[b]);
-        let a = vec2(ax, ay) + arm.perp() * alpha - arm * (omega * omega);
-        x_ddot[c..c + 3].copy_from_slice(&[a.x, a.y, alpha]);
-    }
-    x_ddot
 }

@@ -16,7 +16,7 @@
 //! without loads, (3) is τ = m q̈ + ½ m′ q̇² and R = a q̈ + b q̇².
 
 use super::dense_state::DenseState;
-use super::{ClaimedState, StateChecker};
+use super::{ClaimedState, StateChecker, claims};
 use crate::checks::MAX_DIFFERENCE_STEP;
 use crate::comparison::{ComparisonSet, FindingSpec};
 use crate::dense::{DenseMechanism, add_scaled};
@@ -24,7 +24,7 @@ use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives
 use crate::inertias::Inertias;
 use crate::wrenches::BodyWrench;
 use dwell_findings::{Check, Finding};
-use dwell_geometry::{Mechanism, vec2};
+use dwell_geometry::Mechanism;
 use rayon::prelude::*;
 
 const MASS_MATRIX: FindingSpec<'_> = FindingSpec {
@@ -72,27 +72,28 @@ pub fn check_energies<'m>(
     matrices: &[Vec<f64>],
 ) -> Vec<Finding> {
     match DenseMechanism::with_meshed_gears(mechanism, inertias, assembly_poses) {
-        Ok(dense) => {
-            let checker = StateChecker::new(&dense, states);
-            let mut findings = checker.energies(states, matrices).to_vec();
-            findings.extend(checker.lagrange());
-            findings
-        }
+        Ok(dense) => StateChecker::new(&dense, &claims(states)).by_energies(matrices),
         Err(error) => vec![super::not_dense(&MASS_MATRIX, &error)],
     }
 }
 
 impl StateChecker<'_> {
+    /// The findings on states with their generalised inertias, row by row.
+    pub(crate) fn by_energies(&self, matrices: &[Vec<f64>]) -> Vec<Finding> {
+        let mut findings = self.energies(matrices).to_vec();
+        findings.extend(self.lagrange());
+        findings
+    }
+
     /// (1) and (2).
-    fn energies(&self, states: &[ClaimedState], claimed: &[Vec<f64>]) -> [Finding; 2] {
+    fn energies(&self, claimed: &[Vec<f64>]) -> [Finding; 2] {
         let mut matrix = ComparisonSet::with_individual_scales();
         let mut kinetic = ComparisonSet::default();
         for m in &self.dense_states {
-            let mut claims = states.iter().zip(claimed);
-            let claimed = claims.find(|(state, _)| std::ptr::eq(*state, m.state));
+            let claimed = claimed.get(m.index);
             let n = m.state.q.len();
             let at = |i: usize, j: usize| {
-                let value = claimed.and_then(|(_, claimed)| claimed.get(i * n + j));
+                let value = claimed.and_then(|claimed| claimed.get(i * n + j));
                 value.copied().unwrap_or(f64::NAN)
             };
             let dense = m.mass_matrix();
@@ -100,7 +101,7 @@ impl StateChecker<'_> {
             for i in 0..n {
                 for j in 0..n {
                     let scale = (dense[i][i] * dense[j][j]).sqrt();
-                    let [one, other] = [i, j].map(|k| &self.dense.mechanism.actuators[k].name);
+                    let [one, other] = [i, j].map(|k| &self.dense.actuator_names()[k]);
                     let error = m.relative_rounding_bound() * scale;
                     let numbers = [at(i, j) - dense[i][j], scale, error];
                     m.compare(&mut matrix, numbers, "kg m2", &format!("{one} {other}"));
@@ -117,7 +118,7 @@ impl StateChecker<'_> {
         ]
     }
 
-    /// (3), of the actuators and of the reactions.
+    /// (3), of the actuators and of the rows of the joints.
     fn lagrange(&self) -> Vec<Finding> {
         let actuator_row = self.dense.actuator_row();
         let rows = self.rows();
@@ -125,10 +126,14 @@ impl StateChecker<'_> {
         let states = self.dense_states.par_iter();
         let forces: Vec<_> = states.map(DenseState::lagrange).collect();
         for (m, forces) in self.dense_states.iter().zip(forces) {
-            let claimed = m.state.reactions.iter().chain(&m.state.tau);
             let largest_force = m.largest_force();
-            for (k, ((claimed, force), (arm, name))) in claimed.zip(forces).zip(&rows).enumerate() {
-                let Some(force) = force else { continue };
+            let claimed = m.claimed_multipliers();
+            for (k, ((claimed, force), (arm, name))) in
+                claimed.into_iter().zip(forces).zip(&rows).enumerate()
+            {
+                let (Some(claimed), Some(force)) = (claimed, force) else {
+                    continue;
+                };
                 let (value, error) = (force.value * arm, force.error * arm);
                 let numbers = [claimed * arm - value, largest_force.max(value.abs()), error];
                 let set = match k < actuator_row {
@@ -141,7 +146,9 @@ impl StateChecker<'_> {
         let determinate = self.dense.determinate[..actuator_row].iter();
         let indeterminate = determinate.filter(|&&is| !is).count();
         let mut findings = vec![self.finding(&LAGRANGE, of_actuators)];
-        if indeterminate == actuator_row && actuator_row > 0 {
+        // Teeth in space are rows of velocities: with another constraint open, there is no coordinate of theirs to differentiate by.
+        if indeterminate == actuator_row && actuator_row > 0 || self.dense.rows.has_teeth_in_space()
+        {
             return findings;
         }
         let mut released = self.finding(&RELEASED, released);
@@ -155,9 +162,30 @@ impl StateChecker<'_> {
 }
 
 impl DenseState<'_> {
+    /// By row: the claimed multiplier, an actuator's force last; of a joint whose reactions are components of force and moment, what these do
+    /// as the row opens at unit speed. None of rows that belong to no joint.
+    fn claimed_multipliers(&self) -> Vec<Option<f64>> {
+        let (dense, state) = (&*self.dense, self.state);
+        let mut all = vec![None; dense.rows.len()];
+        for joint in &dense.joints {
+            let claimed = &state.reactions[joint.reactions.clone()];
+            if !joint.is_wrench {
+                let rows = joint.rows.clone().zip(claimed);
+                rows.for_each(|(row, claimed)| all[row] = Some(*claimed));
+                continue;
+            }
+            for row in joint.rows.clone() {
+                all[row] = Some(self.power_of(joint, &self.unit_velocities[row]));
+            }
+        }
+        let actuators = (dense.actuator_row()..).zip(&state.tau);
+        actuators.for_each(|(row, tau)| all[row] = Some(*tau));
+        all
+    }
+
     /// (1) at the state.
     fn mass_matrix(&self) -> Vec<Vec<f64>> {
-        let (dense, n) = (self.dense, self.state.q.len());
+        let (dense, n) = (&*self.dense, self.state.q.len());
         let row = |i: usize| dense.actuator_row() + i;
         let energy = |rates: &[(usize, f64)]| dense.kinetic_energy(&self.configuration, rates);
         let single: Vec<f64> = (0..n).map(|i| energy(&[(row(i), 1.0)])).collect();
@@ -174,8 +202,8 @@ impl DenseState<'_> {
 
     /// (3) for every row; none for those that are not determined.
     fn lagrange(&self) -> Vec<Option<Extrapolated>> {
-        let dense = self.dense;
-        let unit_velocities = dense.unit_velocities(&self.configuration);
+        let dense = &*self.dense;
+        let unit_velocities = &self.unit_velocities;
         let rates = self.momentum_rates();
         let row = |r: usize| {
             let slope = self.energy_slope(r, &unit_velocities[r]);
@@ -192,14 +220,14 @@ impl DenseState<'_> {
 
     /// d/dt ⟨u_r, ẋ⟩ of every row, along the motion.
     fn momentum_rates(&self) -> Vec<Extrapolated> {
-        let (dense, state) = (self.dense, self.state);
+        let (dense, state) = (&*self.dense, self.state);
         let actuator_row = dense.actuator_row();
         let rounding = self.relative_rounding_bound().max(f64::EPSILON);
         let mut row_values = self.configuration.row_values.clone();
         derivatives(DerivativeOrder::First, self.time_step(), rounding, |t| {
             self.coordinates_at(t, &mut row_values[actuator_row..]);
             let from = &self.configuration;
-            let configuration = dense.close_on_branch(from, &from.x, &row_values).ok()?;
+            let configuration = dense.close_on_branch(from, &from.poses, &row_values).ok()?;
             let velocities = dense.unit_velocities(&configuration);
             let mut x_dot = vec![0.0; dense.rows.columns()];
             for (i, u) in velocities[actuator_row..].iter().enumerate() {
@@ -213,7 +241,7 @@ impl DenseState<'_> {
 
     /// ∂E/∂y of a row with the unit velocities `u`, at the velocities of the actuators.
     fn energy_slope(&self, row: usize, u: &[f64]) -> Extrapolated {
-        let (dense, state) = (self.dense, self.state);
+        let (dense, state) = (&*self.dense, self.state);
         let none = |value| Extrapolated { value, error: 0.0 };
         if state.q_dot.iter().all(|&rate| rate == 0.0) {
             return none(0.0);
@@ -233,10 +261,9 @@ impl DenseState<'_> {
     /// The power of the loads at the velocities `u`, W.
     fn load_power(&self, u: &[f64]) -> f64 {
         let power = |load: &BodyWrench| {
-            self.dense.bodies[load.body.0].column.map_or(0.0, |c| {
-                let origin = vec2(self.configuration.x[c], self.configuration.x[c + 1]);
-                load.force.dot(vec2(u[c], u[c + 1])) + load.moment(origin) * u[c + 2]
-            })
+            let body = load.body.0;
+            let twist = self.dense.bodies[body].columns.twist(u);
+            twist.power(&load.about(self.configuration.poses[body].position))
         };
         self.load_wrenches.iter().map(power).sum()
     }

@@ -14,6 +14,7 @@ mod plain;
 mod setup;
 
 use dwell_findings::{Finding, all_pass};
+use dwell_geometry::space::vec3;
 use dwell_geometry::{BodyId, JointKind, vec2};
 use dwell_verify::{Case, ClaimedState, Range, check_states, rank, spread, verify_all};
 use mechanisms::all;
@@ -171,7 +172,7 @@ fn loads_count() {
                 describe(&without)
             );
         }
-        let elsewhere = findings(&|s| s.load_wrenches[0].point += vec2(1e-3, 1e-3));
+        let elsewhere = findings(&|s| s.load_wrenches[0].point += vec3(1e-3, 1e-3, 0.0));
         assert!(failing(&elsewhere).contains(&"state-reactions"));
     }
 }

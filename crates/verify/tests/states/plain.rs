@@ -3,6 +3,7 @@
 
 use crate::gauss::gauss;
 use dwell_geometry::constraint_rows::ConstraintRows;
+use dwell_geometry::space::vec3;
 use dwell_geometry::{BodyId, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::{LoadKind, Mass};
 use dwell_verify::{ClaimedState, load_wrenches};
@@ -73,7 +74,7 @@ pub(crate) fn state(
             force[c] -= wrench.force.x;
             force[c + 1] -= wrench.force.y;
             force[c + 2] -=
-                wrench.couple + (wrench.point - vec2(x[c], x[c + 1])).cross(wrench.force);
+                (wrench.couple + (wrench.point - vec3(x[c], x[c + 1], 0.0)).cross(wrench.force)).z;
         }
     }
     let transposed = (0..n * n).map(|i| jacobian[(i % n) * n + i / n]).collect();

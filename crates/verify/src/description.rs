@@ -1,0 +1,114 @@
+//! A mechanism as the checks take it, in the plane or in space: bodies with coordinates, rows, and what each reaction does to the
+//! bodies.
+
+pub(crate) mod action;
+pub(crate) mod plane;
+pub(crate) mod space;
+
+use crate::pose::{Columns, Pose};
+use crate::rows::row::Row;
+use action::Action;
+use dwell_geometry::space::Vec3;
+use dwell_kinetostatics::space::Mass;
+use dwell_numerics::PiecewiseQuintic;
+use std::ops::Range;
+
+/// A mechanism in rows.
+#[derive(Debug, Clone)]
+pub(crate) struct Description {
+    pub(crate) ground: usize,
+    pub(crate) bodies: Vec<DescribedBody>,
+    pub(crate) joints: Vec<DescribedJoint>,
+    /// Those of the joints, then one of each actuator.
+    pub(crate) rows: Vec<DescribedRow>,
+    pub(crate) reactions: Vec<DescribedReaction>,
+    /// By actuator: what a unit of its force does.
+    pub(crate) actuators: Vec<Action>,
+    /// The points at which joints and actuators act on bodies.
+    pub(crate) attachments: Vec<(usize, Vec3)>,
+    /// What a radian is compared with, m.
+    pub(crate) size: f64,
+    /// Whether rows depend on whole revolutions of a body.
+    pub(crate) counts_revolutions: bool,
+}
+
+/// A body.
+#[derive(Debug, Clone)]
+pub(crate) struct DescribedBody {
+    pub(crate) name: String,
+    pub(crate) columns: Columns,
+    pub(crate) mass: Mass,
+    /// A moment of inertia about z over the body's angle besides, of a body that moves in the plane.
+    pub(crate) varying: Option<PiecewiseQuintic>,
+}
+
+/// Which rows and reactions are a joint's.
+#[derive(Debug, Clone)]
+pub(crate) struct DescribedJoint {
+    pub(crate) name: String,
+    pub(crate) rows: Range<usize>,
+    pub(crate) reactions: Range<usize>,
+    /// Whether its reactions are the components of force and moment about its point, not the multipliers of its rows.
+    pub(crate) is_wrench: bool,
+    /// Its second body.
+    pub(crate) second: usize,
+    /// Its point, of a body.
+    pub(crate) point: (usize, Vec3),
+}
+
+impl DescribedJoint {
+    /// Its second body, and where its point is.
+    pub(crate) fn at(&self, poses: &[Pose]) -> (usize, Vec3) {
+        (self.second, poses[self.point.0].point(self.point.1))
+    }
+}
+
+/// A row with its name.
+#[derive(Debug, Clone)]
+pub(crate) struct DescribedRow {
+    pub(crate) row: Row,
+    /// Whether it is an angle (rad), not a length (m).
+    pub(crate) is_angle: bool,
+    pub(crate) name: String,
+}
+
+/// A reaction with its name.
+#[derive(Debug, Clone)]
+pub(crate) struct DescribedReaction {
+    pub(crate) name: String,
+    pub(crate) is_moment: bool,
+    /// What a unit of it does.
+    pub(crate) action: Action,
+}
+
+impl Description {
+    /// Gives all points in frames whose origins are at these points of the bodies.
+    pub(crate) fn shift(&mut self, origins: &[Vec3]) {
+        let mut shift = |body: usize, point: &mut Vec3| *point -= origins[body];
+        for row in &mut self.rows {
+            row.row.each_ends(|ends| {
+                for (body, point) in ends.bodies.into_iter().zip(&mut ends.points) {
+                    shift(body, point);
+                }
+            });
+        }
+        for joint in &mut self.joints {
+            shift(joint.point.0, &mut joint.point.1);
+        }
+        let reactions = self.reactions.iter_mut().map(|r| &mut r.action);
+        for action in reactions.chain(&mut self.actuators) {
+            action.each_point(&mut shift);
+        }
+    }
+
+    /// By body: the mean of its attachments.
+    pub(crate) fn attachment_means(&self) -> Vec<Vec3> {
+        let mut sums = vec![(Vec3::ZERO, 0_u32); self.bodies.len()];
+        for (body, point) in &self.attachments {
+            sums[*body].0 += *point;
+            sums[*body].1 += 1;
+        }
+        let mean = |(sum, count): (Vec3, u32)| sum.scaled(1.0 / f64::from(count.max(1)));
+        sums.into_iter().map(mean).collect()
+    }
+}
