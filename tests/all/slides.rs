@@ -4,7 +4,7 @@
 use dwell_kinetostatics::ReducedModel;
 use dwell_scene::PlaneScene;
 use dwell_validation::PlanSubject;
-use dwell_verify::{Case, spread, verify_all};
+use dwell_verify::{Case, CheckedMechanism, spread, verify_all};
 
 /// Judges a scene by every truth, and says how large its largest group is.
 fn check_scene(name: &str, text: &str, largest: usize) {
@@ -17,9 +17,7 @@ fn check_scene(name: &str, text: &str, largest: usize) {
     );
     let range = subject.exact().range();
     let case = Case {
-        varying_inertias: &[],
-        mechanism: &scene.mechanism,
-        masses: &scene.masses,
+        mechanism: CheckedMechanism::Plane(&scene.mechanism, (&scene.masses).into()),
         range,
         positions: spread(range, 12),
     };

@@ -5,7 +5,7 @@ use super::tested_mechanism::OperationMutation;
 use super::to_f64::pose_to_f64;
 use dwell_kinetostatics::Model;
 use dwell_scene::PlaneScene;
-use dwell_verify::{Coefficients, InverseDynamics, Subject, SubjectError};
+use dwell_verify::{Coefficients, InverseDynamics, Pose, Subject, SubjectError};
 
 /// The reduced model of a mechanism with its scene, evaluated in mutating numbers.
 pub(super) struct MutatedModel<'a> {
@@ -15,16 +15,17 @@ pub(super) struct MutatedModel<'a> {
 }
 
 impl Subject for MutatedModel<'_> {
-    fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
+    fn poses(&self, q: f64) -> Result<Vec<Pose>, SubjectError> {
         let Self { model, scene, .. } = self;
         let mut pose = model.plan().pose();
         with_mutation(self.mutation, || {
             model.plan().positions(&[MutatingScalar::new(q)], &mut pose)
         })
         .map_err(subject_error(q))?;
-        Ok(model
-            .plan()
-            .body_frames(&scene.mechanism, &pose_to_f64(model.plan(), &pose)))
+        let pose = pose_to_f64(model.plan(), &pose);
+        Ok(Pose::all_in_plane(
+            &model.plan().body_frames(&scene.mechanism, &pose),
+        ))
     }
 
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {

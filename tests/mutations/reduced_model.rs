@@ -10,7 +10,8 @@ use dwell_scene::PlaneScene;
 use dwell_validation::PlanSubject;
 use dwell_verify::checks::PublishedSample;
 use dwell_verify::{
-    Case, Coefficients, Finding, InverseDynamics, Subject, SubjectError, spread, verify_all,
+    Case, CheckedMechanism, Coefficients, Finding, InverseDynamics, Pose, Subject, SubjectError,
+    spread, verify_all,
 };
 use std::f64::consts::FRAC_PI_2;
 
@@ -169,9 +170,7 @@ impl TestedModel {
             return None;
         }
         let case = Case {
-            mechanism: &self.scene.mechanism,
-            masses: &self.scene.masses,
-            varying_inertias: &[],
+            mechanism: CheckedMechanism::Plane(&self.scene.mechanism, (&self.scene.masses).into()),
             range: self.subject.exact().range(),
             positions: self.positions.clone(),
         };
@@ -193,7 +192,7 @@ impl TestedModel {
                     .zip(b)
                     .any(|(a, b)| (a - b).abs() > UNCHANGED_TOLERANCE * largest)
             };
-            let poses = match (self.subject.poses(q), mutated.poses(q)) {
+            let poses = match (self.subject.frames(q), mutated.frames(q)) {
                 (Ok(a), Ok(b)) => changed(a.as_flattened(), b.as_flattened()),
                 _ => true,
             };
@@ -211,7 +210,7 @@ impl TestedModel {
     /// to the side that is said there. The cosine's sign: no rounding decides it.
     fn assembly_finding(&self, subject: &dyn Subject) -> Finding {
         let start = self.scene.assembly.to_configuration();
-        let poses = subject.poses(start.q[0]).unwrap_or_default();
+        let poses = subject.frames(start.q[0]).unwrap_or_default();
         let is_beyond = |(pose, guess): (&[f64; 3], &Option<f64>)| {
             guess.is_some_and(|guess| (pose[2] - guess).cos() < FRAC_PI_2.cos())
         };
@@ -294,7 +293,7 @@ impl MutatedSubject<'_> {
 }
 
 impl Subject for MutatedSubject<'_> {
-    fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
+    fn poses(&self, q: f64) -> Result<Vec<Pose>, SubjectError> {
         let lag = if self.mutation == Some(Mutation::PoseThatLags) {
             1e-3
         } else {
@@ -394,7 +393,7 @@ impl Subject for MutatedSubject<'_> {
                             c.b[k] += travel * c.b[k - 1];
                         }
                         (Mutation::NormalThatStays, Component::Normal) if slides => {
-                            let pose = self.model.subject.poses(q)?[joint.bodies[0].0];
+                            let pose = self.model.subject.frames(q)?[joint.bodies[0].0];
                             let (sin, _) = (0.5 * pose[2]).sin_cos();
                             // cos θ = 1 − 2 sin²(θ/2): exactly 1 on a body that does not turn.
                             let part = 1.0 - 2.0 * sin * sin;

@@ -14,7 +14,8 @@ use dwell_kinetostatics::{
 };
 use dwell_scene::PlaneScene;
 use dwell_verify::{
-    Case, ClaimedState, Subject, check_energies, check_states, load_wrenches, verify_all,
+    Case, CheckedMechanism, ClaimedState, Subject, check_energies, check_states, load_wrenches,
+    verify_all,
 };
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -201,9 +202,7 @@ impl TestedMechanism {
         let (mechanism, masses) = (&self.scene.mechanism, &self.scene.masses);
         if self.mode == CheckMode::Reduced {
             let case = Case {
-                mechanism,
-                varying_inertias: &[],
-                masses,
+                mechanism: CheckedMechanism::Plane(mechanism, masses.into()),
                 range: self.model.plan().range(),
                 positions: self.positions.iter().map(|q| q[0]).collect(),
             };
@@ -245,7 +244,7 @@ impl TestedMechanism {
                 let (mut poses, mut inertia, mut forces) = (Vec::new(), Vec::new(), Vec::new());
                 for (q, k) in self.positions.iter().zip(0..) {
                     let [v, r] = [VELOCITIES[k][0], ACCELERATIONS[k][0]];
-                    poses.extend(subject.poses(q[0]).ok()?.into_iter().flatten());
+                    poses.extend(subject.frames(q[0]).ok()?.into_iter().flatten());
                     let at = subject.coefficients(q[0]).ok()?;
                     inertia.extend([at.m, at.half_dm]);
                     forces.extend(self.determinate(at.a));

@@ -1,18 +1,41 @@
 //! What is checked, over which positions.
 
+use crate::dense::DenseMechanism;
+use crate::error::Result;
+use crate::inertias::Inertias;
+use dwell_geometry::space::{IdleBody, Mechanism as SpaceMechanism};
 use dwell_geometry::{Mechanism, Range};
-use dwell_kinetostatics::{Mass, VaryingInertia};
+use dwell_kinetostatics::space::Mass as SpaceMass;
 use std::f64::consts::TAU;
 
-/// A mechanism with its masses, and the positions at which a subject is checked.
+/// A mechanism with its masses, in the plane or in space.
+#[derive(Debug, Clone, Copy)]
+pub enum CheckedMechanism<'a> {
+    /// In the plane.
+    Plane(&'a Mechanism, Inertias<'a>),
+    /// In space, with the bodies whose rotation about the line of their balls is nobody's.
+    Space(&'a SpaceMechanism, &'a [SpaceMass], &'a [IdleBody]),
+}
+
+impl CheckedMechanism<'_> {
+    /// The mechanism in dense rows, not yet assembled.
+    pub(crate) fn dense(&self) -> Result<DenseMechanism> {
+        match *self {
+            Self::Plane(mechanism, inertias) => {
+                DenseMechanism::without_rank_check(mechanism, inertias)
+            }
+            Self::Space(mechanism, masses, idle) => {
+                DenseMechanism::in_space(mechanism, masses, idle)
+            }
+        }
+    }
+}
+
+/// A mechanism, and the positions at which a subject is checked.
 #[derive(Debug, Clone)]
 pub struct Case<'a> {
     /// The mechanism; one actuator.
-    pub mechanism: &'a Mechanism,
-    /// Its masses, one per body.
-    pub masses: &'a [Mass],
-    /// The bodies whose moment of inertia is a function of their angle.
-    pub varying_inertias: &'a [VaryingInertia],
+    pub mechanism: CheckedMechanism<'a>,
     /// The range of the coordinate.
     pub range: Range,
     /// The sampled coordinates, rad. See [`spread`].

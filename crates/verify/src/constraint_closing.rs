@@ -15,8 +15,8 @@ use crate::lu::Lu;
 use crate::pose::{Columns, Pose, Twist};
 use crate::rows::row::Since;
 use faer::Mat;
-use std::borrow::Cow;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Newton steps allowed. Quadratic convergence from anything near needs four or five.
 const MAX_NEWTON_STEPS: usize = 25;
@@ -40,6 +40,8 @@ pub struct Configuration {
     pub(crate) poses: Vec<Pose>,
     /// The value each row was closed at: zero for a closed joint, q for an actuator.
     pub(crate) row_values: Vec<f64>,
+    /// The rows that are solved: as many as coordinates. What the others say follows from them.
+    pub(crate) rows: Arc<[usize]>,
     pub(crate) lu: Lu,
 }
 
@@ -60,13 +62,15 @@ impl DenseMechanism {
     /// [`DenseError`] where the rows are dependent, or do not close.
     pub fn close(&self, guess: &[Pose], row_values: &[f64]) -> Result<Configuration> {
         let poses = guess;
-        self.close_since(Since { poses, row_values }, guess, row_values)
+        let rows = self.rows_at(guess)?;
+        self.close_since(Since { poses, row_values }, rows, guess, row_values)
     }
 
-    /// The same with the rows of velocities counted since a configuration.
-    pub(crate) fn close_since(
+    /// The same by some of the rows, with those of velocities counted since a configuration.
+    fn close_since(
         &self,
         since: Since<'_>,
+        rows: Arc<[usize]>,
         guess: &[Pose],
         row_values: &[f64],
     ) -> Result<Configuration> {
@@ -78,9 +82,9 @@ impl DenseMechanism {
         let mut residual = vec![0.0; self.rows.len()];
         let mut previous = f64::INFINITY;
         for step in 1..=MAX_NEWTON_STEPS {
-            let lu = self.factor(&poses)?;
+            let lu = self.factor(&poses, &rows)?;
             self.rows.residual(&poses, since, row_values, &mut residual);
-            let mut correction = self.solve(&lu, &residual);
+            let mut correction = self.solve((&lu, &rows), &residual);
             let norm = self.scaled_norm(&correction);
             if norm.is_nan() || norm >= MAX_NEWTON_STEP {
                 return not_closed(step, norm);
@@ -89,14 +93,15 @@ impl DenseMechanism {
             poses = self.moved(&poses, &correction);
             if norm < CONVERGED_STEP || (norm < STALLED_STEP && norm > 0.5 * previous) {
                 self.rows.residual(&poses, since, row_values, &mut residual);
-                let open = self.largest_residual(&residual, &self.independent_rows);
+                let open = self.largest_residual(&residual, &rows);
                 if open.is_nan() || open > MAX_RESIDUAL {
                     return not_closed(step, norm);
                 }
-                let (lu, row_values) = (self.factor(&poses)?, row_values.to_vec());
+                let (lu, row_values) = (self.factor(&poses, &rows)?, row_values.to_vec());
                 return Ok(Configuration {
                     poses,
                     row_values,
+                    rows,
                     lu,
                 });
             }
@@ -153,7 +158,12 @@ impl DenseMechanism {
         initial_guess: &[Pose],
         row_values: &[f64],
     ) -> Result<Configuration> {
-        let configuration = self.close_since(from.since(), initial_guess, row_values)?;
+        let configuration = self.close_since(
+            from.since(),
+            Arc::clone(&from.rows),
+            initial_guess,
+            row_values,
+        )?;
         if configuration.lu.positive() == from.lu.positive() {
             Ok(configuration)
         } else {
@@ -178,25 +188,11 @@ impl DenseMechanism {
         self.close_on_branch(from, &initial_guess, &row_values)
     }
 
-    /// As [`DenseMechanism::follow`]; where rows repeat each other, by those that are farthest from dependent at `from`:
-    /// any others may become dependent before the end.
-    pub(crate) fn follow_with_best_rows(
-        &self,
-        from: &Configuration,
-        row: usize,
-        to: f64,
-    ) -> Result<Configuration> {
-        let best = self.at(&from.poses)?;
-        match best {
-            Cow::Borrowed(same) => same.follow(from, row, to),
-            Cow::Owned(best) => best.follow(&best.close(&from.poses, &from.row_values)?, row, to),
-        }
-    }
-
     /// Follows the branch continuously until `row` has the value `to`, in steps short enough for
-    /// Newton's method not to change branch, halved where it fails.
+    /// Newton's method not to change branch, halved where it fails. Where rows repeat each other, it goes by those that are farthest from
+    /// dependent at `from`: any others may become dependent before the end.
     pub fn follow(&self, from: &Configuration, row: usize, to: f64) -> Result<Configuration> {
-        let mut here = from.clone();
+        let mut here = self.by_best_rows(from)?;
         for _ in 0..MAX_FOLLOW_STEPS {
             if here.row_values[row] == to {
                 return Ok(here);
@@ -226,6 +222,17 @@ impl DenseMechanism {
         })
     }
 
+    /// The same configuration by the rows that are farthest from dependent there.
+    fn by_best_rows(&self, at: &Configuration) -> Result<Configuration> {
+        let mut best = at.clone();
+        let rows = self.rows_at(&at.poses)?;
+        if rows != at.rows {
+            best.lu = self.factor(&at.poses, &rows)?;
+            best.rows = rows;
+        }
+        Ok(best)
+    }
+
     /// How fast the rows' imposed value moves the mechanism: the largest |ω|, or |v| per size, of
     /// any body at the velocities `u`.
     pub fn scaled_norm(&self, u: &[f64]) -> f64 {
@@ -241,21 +248,21 @@ impl DenseMechanism {
     pub fn unit_velocity(&self, at: &Configuration, row: usize) -> Vec<f64> {
         let mut rates = vec![0.0; self.rows.len()];
         rates[row] = 1.0;
-        self.solve(&at.lu, &rates)
+        self.solve((&at.lu, &at.rows), &rates)
     }
 
     /// The unit velocities of every row.
     ///
     /// A row that is not solved cannot be opened: nothing moves.
     pub fn unit_velocities(&self, at: &Configuration) -> Vec<Vec<f64>> {
-        let n = self.independent_rows.len();
+        let n = at.rows.len();
         let mut right = Mat::zeros(n, n);
-        for (k, &row) in self.independent_rows.iter().enumerate() {
+        for (k, &row) in at.rows.iter().enumerate() {
             right[(k, k)] = self.row_scale[row];
         }
         at.lu.solve(&mut right);
         let mut velocities = vec![vec![0.0; n]; self.rows.len()];
-        for (k, &row) in self.independent_rows.iter().enumerate() {
+        for (k, &row) in at.rows.iter().enumerate() {
             for (c, velocity) in velocities[row].iter_mut().enumerate() {
                 *velocity = right[(c, k)] * self.column_scale(c);
             }
@@ -270,7 +277,7 @@ impl DenseMechanism {
         for (r, rate) in right.iter_mut().zip(rates) {
             *r = rate - *r;
         }
-        self.solve(&at.lu, &right)
+        self.solve((&at.lu, &at.rows), &right)
     }
 
     /// The largest residual of some rows, in sizes or rad.
@@ -302,8 +309,8 @@ impl DenseMechanism {
         })
     }
 
-    fn factor(&self, poses: &[Pose]) -> Result<Lu> {
-        Lu::new(self.independent_part(&self.scaled_jacobian(poses))).map_err(DenseError::Singular)
+    fn factor(&self, poses: &[Pose], rows: &[usize]) -> Result<Lu> {
+        Lu::new(part(&self.scaled_jacobian(poses), rows)).map_err(DenseError::Singular)
     }
 
     /// The sign of the determinant of the rows that are solved; none where they are dependent, or in space some of those that repeat each
@@ -313,39 +320,36 @@ impl DenseMechanism {
         if in_space && self.rows.len() != self.rows.columns() {
             return None;
         }
-        Some(self.factor(poses).ok()?.positive())
-    }
-
-    /// The rows that are solved.
-    fn independent_part(&self, matrix: &Mat<f64>) -> Mat<f64> {
-        Mat::from_fn(self.independent_rows.len(), matrix.ncols(), |i, j| {
-            matrix[(self.independent_rows[i], j)]
-        })
+        Some(self.factor(poses, &self.assembly_rows).ok()?.positive())
     }
 
     /// The multipliers of all rows under which the forces `q` of the coordinates are made up:
     /// Jᵀ λ = q, by factors of the transposed matrix. Those of rows that are not solved are zero.
     pub(crate) fn multipliers(&self, at: &Configuration, q: &[f64]) -> Result<Vec<f64>> {
-        let rows = self.independent_part(&self.scaled_jacobian(&at.poses));
+        let rows = part(&self.scaled_jacobian(&at.poses), &at.rows);
         let lu = Lu::new(rows.transpose().to_owned());
         let lu = lu.map_err(DenseError::Singular)?;
         let mut right = Mat::from_fn(q.len(), 1, |c, _| q[c] * self.column_scale(c));
         lu.solve(&mut right);
         let mut multipliers = vec![0.0; self.rows.len()];
-        for (k, &row) in self.independent_rows.iter().enumerate() {
+        for (k, &row) in at.rows.iter().enumerate() {
             multipliers[row] = right[(k, 0)] * self.row_scale[row];
         }
         Ok(multipliers)
     }
 
-    fn solve(&self, lu: &Lu, right: &[f64]) -> Vec<f64> {
-        let rows = &self.independent_rows;
+    fn solve(&self, (lu, rows): (&Lu, &[usize]), right: &[f64]) -> Vec<f64> {
         let scaled = |i: usize| right[rows[i]] * self.row_scale[rows[i]];
         let mut scaled = Mat::from_fn(rows.len(), 1, |i, _| scaled(i));
         lu.solve(&mut scaled);
         let unscaled = (0..rows.len()).map(|c| scaled[(c, 0)] * self.column_scale(c));
         unscaled.collect()
     }
+}
+
+/// Some rows of a matrix.
+fn part(matrix: &Mat<f64>, rows: &[usize]) -> Mat<f64> {
+    Mat::from_fn(rows.len(), matrix.ncols(), |i, j| matrix[(rows[i], j)])
 }
 
 /// The largest magnitude; not a number if any is not, where `f64::max` would drop it.

@@ -6,7 +6,6 @@ use crate::comparison::{Comparison, LargestDifference};
 use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
 use crate::error::{DenseError, Result};
-use crate::inertias::Inertias;
 use crate::pose::Pose;
 use crate::subject::{Subject, SubjectError};
 use dwell_kinetostatics::Coefficients;
@@ -83,19 +82,17 @@ impl<'a> CheckContext<'a> {
     /// Closes the mechanism at every position and measures the scales. A position that does not
     /// close is noted, not an error: the others are still checked.
     pub fn new(case: &'a Case<'a>, subject: &'a dyn Subject) -> Result<Self> {
-        let actuators = case.mechanism.actuators.len();
-        if actuators != 1 {
-            return Err(DenseError::Actuators(actuators));
+        let dense = case.mechanism.dense()?;
+        if dense.actuators.len() != 1 {
+            return Err(DenseError::Actuators(dense.actuators.len()));
         }
-        let mechanism = case.mechanism;
-        let inertias = Inertias {
-            masses: case.masses,
-            varying: case.varying_inertias,
-        };
         let dense = match case.positions.first().map(|&q| subject.poses(q)) {
             // Gears mesh as in the subject's first poses: from there on they must keep step.
-            Some(Ok(poses)) => DenseMechanism::with_meshed_gears(mechanism, inertias, &poses)?,
-            _ => DenseMechanism::new(mechanism, inertias)?,
+            Some(Ok(poses)) => {
+                let start = dense.moved_frames(&poses)?;
+                dense.assembled(&start)?
+            }
+            _ => dense.squared()?,
         };
         let close = |&q: &f64| {
             let poses = subject.poses(q).map_err(|e| (q, e.to_string()))?;
@@ -145,7 +142,24 @@ impl<'a> CheckContext<'a> {
         format!("{} positions {range}", self.positions.len())
     }
 
-    /// Scales of the a and the b of a reaction.
+    /// By row of the joints: what the values of all reactions make of its multiplier; of a joint whose reactions are components of force and
+    /// moment, their power as the row opens at unit speed.
+    pub(crate) fn by_row(&self, at: &CheckedPosition, reactions: &[f64]) -> Vec<f64> {
+        let (dense, poses) = (&self.dense, &at.configuration.poses);
+        let mut rows = vec![0.0; dense.actuator_row()];
+        for joint in &dense.joints {
+            let given = &reactions[joint.reactions.clone()];
+            for (k, row) in joint.rows.clone().enumerate() {
+                rows[row] = match joint.is_wrench {
+                    true => dense.power_of(joint, poses, given, &at.unit_velocities[row]),
+                    false => given[k],
+                };
+            }
+        }
+        rows
+    }
+
+    /// Scales of the a and the b of a row.
     pub(crate) fn coefficient_scales(&self, reaction: usize) -> [f64; 2] {
         let unit = usize::from(self.dense.angular[reaction]);
         [self.scales.a[unit], self.scales.b[unit]]
@@ -201,9 +215,8 @@ pub(crate) fn either<T, E>(result: Result<T, E>) -> Either<T, E> {
 }
 
 impl CheckedPosition {
-    fn new(dense: &DenseMechanism, poses: &[[f64; 3]], q: f64) -> Result<Self> {
-        let poses: Vec<Pose> = poses.iter().map(|pose| Pose::from(*pose)).collect();
-        let (configuration, closing_correction) = dense.close_at(&poses, &[q])?;
+    fn new(dense: &DenseMechanism, poses: &[Pose], q: f64) -> Result<Self> {
+        let (configuration, closing_correction) = dense.close_at(poses, &[q])?;
         let unit_velocities = dense.unit_velocities(&configuration);
         let reference = dense.coefficients(&configuration, &unit_velocities);
         let flat = |c: &Coefficients| [&[c.m, c.half_dm][..], &c.a, &c.b].concat();

@@ -18,6 +18,7 @@ use dwell_geometry::Mechanism;
 use dwell_geometry::space::{IdleBody, Mechanism as SpaceMechanism, Vec3, vec3};
 use dwell_kinetostatics::space::Mass as SpaceMass;
 use dwell_numerics::PiecewiseQuintic;
+use std::sync::Arc;
 
 /// A body in its moved frame.
 #[derive(Debug, Clone)]
@@ -91,8 +92,8 @@ pub struct DenseMechanism {
     pub(crate) row_scale: Vec<f64>,
     pub(crate) column_scales: Vec<f64>,
     pub(crate) size: f64,
-    /// The rows that are solved: as many as coordinates. What the others say follows from them.
-    pub(crate) independent_rows: Vec<usize>,
+    /// The rows that are solved where the mechanism is assembled.
+    pub(crate) assembly_rows: Arc<[usize]>,
     /// By row: whether only one multiplier of it balances the forces.
     pub(crate) determinate: Vec<bool>,
 }
@@ -103,10 +104,14 @@ impl DenseMechanism {
     /// # Errors
     /// [`DenseError`] where a reference, an axis or the number of rows or masses is wrong.
     pub fn new<'m>(mechanism: &Mechanism, inertias: impl Into<Inertias<'m>>) -> Result<Self> {
-        let dense = Self::without_rank_check(mechanism, inertias)?;
-        let (rows, columns) = (dense.rows.len(), dense.rows.columns());
+        Self::without_rank_check(mechanism, inertias)?.squared()
+    }
+
+    /// The same, which has as many rows as coordinates.
+    pub(crate) fn squared(self) -> Result<Self> {
+        let (rows, columns) = (self.rows.len(), self.rows.columns());
         if rows == columns {
-            Ok(dense)
+            Ok(self)
         } else {
             Err(DenseError::NotSquare { rows, columns })
         }
@@ -176,7 +181,7 @@ impl DenseMechanism {
             counts_revolutions,
             column_scales,
             size,
-            independent_rows: (0..count).collect(),
+            assembly_rows: (0..count).collect(),
             determinate: vec![true; count],
         }
     }

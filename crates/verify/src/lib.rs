@@ -50,6 +50,7 @@ mod dense;
 mod description;
 mod differences;
 mod error;
+mod forces;
 mod free_motion;
 mod inertias;
 mod loads;
@@ -66,7 +67,7 @@ mod state;
 mod subject;
 mod wrenches;
 
-pub use case::{Case, spread};
+pub use case::{Case, CheckedMechanism, spread};
 pub use checks::verify_all;
 pub use comparison::FindingSpec;
 pub use constraint_closing::Configuration;

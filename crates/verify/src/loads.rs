@@ -171,8 +171,7 @@ fn pair(bodies: [BodyId; 2], force: Vec2, point: Vec2, couple: f64) -> Vec<BodyW
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::description::plane::lifted;
-    use crate::pose::{Pose, Twist};
+    use crate::pose::{Pose, Twist, lifted};
     use crate::wrenches::NetWrench;
     use dwell_geometry::space::{Vec3, Wrench};
     use dwell_geometry::vec2;

@@ -1,7 +1,13 @@
 //! Where bodies are, how they move, and which of that are coordinates of the dense equations.
 
+use dwell_geometry::Vec2;
 use dwell_geometry::space::{Placement, Rotation, Vec3, Wrench, vec3};
 use std::ops::Range;
+
+/// A vector of the plane in space.
+pub(crate) fn lifted(v: Vec2) -> Vec3 {
+    vec3(v.x, v.y, 0.0)
+}
 
 /// Position (m) and rotation of a body's frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -42,6 +48,16 @@ impl From<Placement> for Pose {
 }
 
 impl Pose {
+    /// The poses of frames [x, y, θ] in the plane.
+    pub fn all_in_plane(frames: &[[f64; 3]]) -> Vec<Self> {
+        frames.iter().map(|frame| Self::from(*frame)).collect()
+    }
+
+    /// The frame [x, y, θ] of a body that moves in the plane.
+    pub fn in_plane(&self) -> [f64; 3] {
+        [self.position.x, self.position.y, self.angle]
+    }
+
     /// Where a point of the body is.
     pub(crate) fn point(&self, point: Vec3) -> Vec3 {
         self.position + self.rotation.apply(point)

@@ -7,7 +7,7 @@ use crate::inertias::Inertias;
 use crate::pose::Pose;
 use dwell_geometry::Mechanism;
 use dwell_geometry::space::Wrench;
-use std::borrow::Cow;
+use std::sync::Arc;
 
 /// A row of which less than this remains beside the others depends on them: as for singular values.
 const INDEPENDENCE_TOLERANCE: f64 = 1e-9;
@@ -27,12 +27,8 @@ impl DenseMechanism {
 
     /// The same as it is assembled with the moved frames in these poses.
     pub(crate) fn assembled(mut self, start: &[Pose]) -> Result<Self> {
-        let (rows, columns) = (self.rows.len(), self.rows.columns());
-        if rows != columns {
-            self.independent_rows = self.select_independent_rows(start);
-            if self.independent_rows.len() != columns {
-                return Err(DenseError::NotSquare { rows, columns });
-            }
+        if self.rows.len() != self.rows.columns() {
+            self.assembly_rows = self.rows_at(start)?;
             for row in self.dependent_rows(start)? {
                 self.determinate[row] = false;
             }
@@ -41,20 +37,20 @@ impl DenseMechanism {
         Ok(self)
     }
 
-    /// The same with the rows that are farthest from dependent at these poses: any others may be dependent there.
-    pub(crate) fn at(&self, poses: &[Pose]) -> Result<Cow<'_, Self>> {
-        let columns = self.rows.columns();
-        if self.rows.len() == columns {
-            return Ok(Cow::Borrowed(self));
+    /// The rows that are solved at these poses: where rows repeat each other, a largest set of those that are farthest from dependent there.
+    ///
+    /// # Errors
+    /// [`DenseError::NotSquare`] where they do not determine the pose.
+    pub(crate) fn rows_at(&self, poses: &[Pose]) -> Result<Arc<[usize]>> {
+        let (rows, columns) = (self.rows.len(), self.rows.columns());
+        if rows == columns {
+            return Ok(Arc::clone(&self.assembly_rows));
         }
-        let independent_rows = self.select_independent_rows(poses);
-        if independent_rows.len() != columns {
-            return Err(DenseError::Singular(0.0));
+        let independent = self.select_independent_rows(poses);
+        match independent.len() == columns {
+            true => Ok(independent.into()),
+            false => Err(DenseError::NotSquare { rows, columns }),
         }
-        Ok(Cow::Owned(Self {
-            independent_rows,
-            ..self.clone()
-        }))
     }
 
     /// The rows that are solved where rows repeat each other, the actuators' among them.

@@ -1,5 +1,6 @@
 //! What is checked: anything that yields the results of a mechanism of one degree of freedom.
 
+use crate::pose::Pose;
 use dwell_kinetostatics::Coefficients;
 
 /// Why a subject could not answer.
@@ -24,10 +25,20 @@ pub struct InverseDynamics {
 /// A result to be checked. It is asked from several threads at once, and a question must have the
 /// same answer whatever was asked before.
 pub trait Subject: Sync {
-    /// The frame [x, y, θ] of every body, the ground included, in m and rad.
-    fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError>;
+    /// Where every body is, the ground included.
+    fn poses(&self, q: f64) -> Result<Vec<Pose>, SubjectError>;
 
-    /// The reduced coefficients at `q`, of every reaction in the order of [`dwell_geometry::Mechanism::reactions`].
+    /// The frames [x, y, θ] of a mechanism in the plane, m and rad.
+    ///
+    /// # Errors
+    /// As of the poses.
+    fn frames(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
+        let poses = self.poses(q)?;
+        Ok(poses.iter().map(Pose::in_plane).collect())
+    }
+
+    /// The reduced coefficients at `q`, of every reaction: in the plane in the order of [`dwell_geometry::Mechanism::reactions`]; in space by
+    /// joint the components of force and moment of the first body on the second about the joint's point on it, in the axes of the ground.
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError>;
 
     /// Forces at (`q`, `q_dot`, `q_ddot`) in rad, rad/s, rad/s².

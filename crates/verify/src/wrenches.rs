@@ -1,8 +1,6 @@
 //! Forces on bodies at points, and couples.
 
-use crate::dense::DenseMechanism;
-use crate::description::plane::lifted;
-use crate::pose::Pose;
+use crate::pose::lifted;
 use dwell_geometry::space::{Vec3, Wrench, vec3};
 use dwell_geometry::{BodyId, Vec2};
 
@@ -76,49 +74,5 @@ impl NetWrench {
         self.sum.moment += moment.scaled(factor);
         self.terms[0] += force.norm();
         self.terms[1] += (wrench.point - about).norm() * force.norm() + wrench.couple.norm();
-    }
-}
-
-impl DenseMechanism {
-    /// Forces on bodies with their points from the ground's moved origin.
-    pub(crate) fn shifted_wrenches(&self, wrenches: &[BodyWrench]) -> Vec<BodyWrench> {
-        let ground = self.bodies[self.ground].shift;
-        let shifted = wrenches.iter().map(|wrench| BodyWrench {
-            // A pure couple acts nowhere, and its point, wherever it was put, must not cost digits.
-            point: match wrench.force == Vec3::ZERO {
-                true => Vec3::ZERO,
-                false => wrench.point - ground,
-            },
-            ..*wrench
-        });
-        shifted.collect()
-    }
-
-    /// Adds `sign` times forces on bodies, at points from the ground's moved origin, to the forces of the coordinates.
-    pub(crate) fn add_wrenches<'w>(
-        &self,
-        poses: &[Pose],
-        wrenches: impl IntoIterator<Item = &'w BodyWrench>,
-        sign: f64,
-        forces: &mut [f64],
-    ) {
-        for wrench in wrenches {
-            let body = wrench.body.0;
-            let at_origin = wrench.about(poses[body].position);
-            self.bodies[body].columns.add(&at_origin, sign, forces);
-        }
-    }
-
-    /// All forces of joints and actuators on bodies, the ground among them, at points from the ground's moved origin.
-    pub(crate) fn joint_wrenches(
-        &self,
-        poses: &[Pose],
-        reactions: &[f64],
-        tau: &[f64],
-    ) -> Vec<BodyWrench> {
-        let actions = self.reactions.iter().map(|reaction| &reaction.action);
-        let all = actions.zip(reactions).chain(self.actuators.iter().zip(tau));
-        all.flat_map(|(action, value)| action.wrenches(poses, *value))
-            .collect()
     }
 }

@@ -5,7 +5,7 @@
 mod subjects;
 
 use dwell_geometry::Mechanism;
-use dwell_verify::{Case, Coefficients, Subject, SubjectError, verify_all};
+use dwell_verify::{Case, CheckedMechanism, Coefficients, Subject, SubjectError, verify_all};
 use subjects::dense::{DenseSubject, Mutation};
 use subjects::mechanisms::{Setup, crank_rocker, inverted_slider_crank, single_dwell};
 use subjects::mutated::MutatedSubject;
@@ -216,7 +216,7 @@ fn a_change_of_branch() {
     let (upper, lower) = (setup.subject(), mirrored.subject());
     let mutated = MutatedSubject::new(&upper).poses(|q, poses| {
         if q > 3.0 {
-            poses.clone_from_slice(&lower.poses(q).unwrap());
+            poses.clone_from_slice(&lower.frames(q).unwrap());
         }
     });
     let failing = failing(&setup.case(12), &mutated);
@@ -229,7 +229,7 @@ fn a_change_of_branch() {
 fn a_subject_without_answers() {
     struct Silent;
     impl Subject for Silent {
-        fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
+        fn poses(&self, q: f64) -> Result<Vec<dwell_verify::Pose>, SubjectError> {
             self.coefficients(q).map(|_| Vec::new())
         }
         fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
@@ -281,7 +281,7 @@ fn a_subject_without_answers() {
 
     let mut nowhere = setup.case(0);
     assert!(verify_all(&nowhere, &subject, &[]).iter().all(|f| !f.pass));
-    nowhere.masses = &setup.masses[1..];
+    nowhere.mechanism = CheckedMechanism::Plane(&setup.mechanism, (&setup.masses[1..]).into());
     let findings = verify_all(&nowhere, &subject, &[]);
     assert_eq!(findings.len(), 1);
     assert_eq!(findings[0].worst_at, "3 masses for 4 bodies");

@@ -109,13 +109,13 @@ fn val_reframed() {
 fn val_far_away() {
     struct Far<'a>(&'a dyn Subject, Vec2);
     impl Subject for Far<'_> {
-        fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, dwell_verify::SubjectError> {
-            let mut poses = self.0.poses(q)?;
+        fn poses(&self, q: f64) -> Result<Vec<dwell_verify::Pose>, dwell_verify::SubjectError> {
+            let mut poses = self.0.frames(q)?;
             for pose in poses.iter_mut().skip(1) {
                 pose[0] += self.1.x;
                 pose[1] += self.1.y;
             }
-            Ok(poses)
+            Ok(dwell_verify::Pose::all_in_plane(&poses))
         }
         fn coefficients(
             &self,

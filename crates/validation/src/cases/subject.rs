@@ -5,7 +5,7 @@ use dwell_kinetostatics::{ExactModel, ReducedModel};
 use dwell_scene::PlaneScene;
 use dwell_study::StudyError;
 use dwell_study::models::reduced_model;
-use dwell_verify::{Coefficients, InverseDynamics, Subject, SubjectError};
+use dwell_verify::{Coefficients, InverseDynamics, Pose, Subject, SubjectError};
 
 /// The compiled model of a scene with all reactions.
 #[derive(Debug)]
@@ -38,11 +38,13 @@ fn subject_error(q: f64) -> impl Fn(PositionError) -> SubjectError {
 }
 
 impl Subject for PlanSubject {
-    fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
+    fn poses(&self, q: f64) -> Result<Vec<Pose>, SubjectError> {
         let model = self.exact.model();
         let (plan, mut pose) = (model.plan(), model.plan().pose());
         plan.positions(&[q], &mut pose).map_err(subject_error(q))?;
-        Ok(plan.body_frames(model.mechanism(), &pose))
+        Ok(Pose::all_in_plane(
+            &plan.body_frames(model.mechanism(), &pose),
+        ))
     }
 
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {

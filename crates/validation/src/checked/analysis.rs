@@ -18,8 +18,8 @@ use dwell_study::explain::explain_motion;
 use dwell_study::reduce::compute::ReducedCurves;
 use dwell_study::{CalibrationResult, PreparedScene, find_value, symbolic_findings};
 use dwell_verify::{
-    Case, CheckContext, CheckedFreeMotion, CheckedPosition, ErrorCurve, FreeMotionCase, Range,
-    check_free_motion, half_dm_curve, reaction_curve, spread,
+    Case, CheckContext, CheckedFreeMotion, CheckedMechanism, CheckedPosition, ErrorCurve,
+    FreeMotionCase, Range, check_free_motion, half_dm_curve, reaction_curve, spread,
 };
 use std::path::Path;
 
@@ -173,9 +173,7 @@ fn check_reduced_model(
         None => subject.exact().range(),
     };
     let case = Case {
-        mechanism: &scene.mechanism,
-        masses: &scene.masses,
-        varying_inertias: &scene.varying_inertias,
+        mechanism: CheckedMechanism::Plane(&scene.mechanism, states::inertias(scene)),
         range,
         positions: spread(range, CHECKED_POSITIONS),
     };

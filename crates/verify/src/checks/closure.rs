@@ -73,7 +73,7 @@ fn branch(context: &CheckContext<'_>) -> LargestDifference {
     for position in sorted {
         let location = || context.location(position.q);
         let Some(before) = &here else { break };
-        match dense.follow_with_best_rows(before, row, position.q) {
+        match dense.follow(before, row, position.q) {
             Ok(next) => {
                 let distance = dense.distance(&next, &position.configuration);
                 position.record(&mut worst, [distance, 1.0, 0.0], "", location);

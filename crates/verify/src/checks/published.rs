@@ -3,10 +3,10 @@
 use super::coefficient_units;
 use crate::case::Case;
 use crate::comparison::{Comparison, FindingSpec, LargestDifference};
-use crate::dense::condition_number;
+use crate::pose::lifted;
 use crate::subject::{Subject, SubjectError};
 use dwell_findings::{Check, Finding};
-use dwell_geometry::{BodyId, Component, Vec2};
+use dwell_geometry::{BodyId, Vec2};
 
 /// A point of a body and where it was published to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,14 +74,14 @@ pub fn published(
     samples: &[PublishedSample],
 ) -> Vec<Finding> {
     let mut worst: [LargestDifference; 5] = Default::default();
-    let reactions = case.mechanism.reactions();
-    let moments: Vec<bool> = reactions
-        .iter()
-        .map(|r| r.component == Component::Moment)
-        .collect();
+    let Ok(dense) = case.mechanism.dense() else {
+        return Vec::new();
+    };
+    let moments: Vec<bool> = dense.reactions.iter().map(|r| r.is_moment).collect();
     for sample in samples {
         let poses = subject.poses(sample.q).unwrap_or_default();
-        let condition_number = condition_number(case.mechanism, &poses);
+        let frames = dense.moved_frames(&poses);
+        let condition_number = frames.map_or(1.0, |frames| dense.condition_number(&frames));
         let result = compare(&moments, subject, sample, |kind, k, difference, unit| {
             let comparison = Comparison {
                 numbers: [difference, scale(&moments, samples, kind, k), 0.0],
@@ -89,8 +89,8 @@ pub fn published(
                 condition_number,
             };
             worst[kind].record(&comparison, || {
-                let name = match (kind, reactions.get(k), case.mechanism.bodies.get(k)) {
-                    (2 | 3, Some(&r), _) => format!(", {}", case.mechanism.reaction_name(r)),
+                let name = match (kind, dense.reactions.get(k), dense.bodies.get(k)) {
+                    (2 | 3, Some(reaction), _) => format!(", {}", reaction.name),
                     (4, _, body) => format!(", {}", body.map_or("?", |b| &b.name)),
                     _ => String::new(),
                 };
@@ -171,9 +171,8 @@ fn compare(
     }
     let poses = subject.poses(sample.q)?;
     for point in &sample.points {
-        let gap = poses.get(point.body.0).map_or(f64::NAN, |&[x, y, angle]| {
-            let arm = point.local.rotate(Vec2::from_angle(angle));
-            (x + arm.x - point.position.x).hypot(y + arm.y - point.position.y)
+        let gap = poses.get(point.body.0).map_or(f64::NAN, |pose| {
+            (pose.point(lifted(point.local)) - lifted(point.position)).norm()
         });
         record(4, point.body.0, gap, "m");
     }

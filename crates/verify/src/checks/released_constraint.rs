@@ -62,24 +62,33 @@ pub(crate) fn released_constraint(context: &CheckContext<'_>) -> Vec<Finding> {
     }
     let [a, b, power] = context.for_each_position(|position, [a, b, power]| {
         let subject = context.subject.coefficients(position.q)?;
-        if subject.a.len() != count || subject.b.len() != count {
+        let given = [&subject.a, &subject.b];
+        if given
+            .iter()
+            .any(|of| of.len() != context.dense.reactions.len())
+        {
             for worst in [a, b, power] {
                 worst.record_failure("the subject does not give every reaction".into());
             }
             return Ok(());
         }
+        let [own_a, own_b] = given.map(|of| context.by_row(position, of));
         for (k, b_k) in b_by_differences(context, position).iter().enumerate() {
             // Of a reaction that is not determined there is no single value.
-            let Some(b_k) = b_k else { continue };
+            if !context.dense.determinate[k] {
+                continue;
+            }
             let location = || context.reaction_location(position.q, k);
             let [a_unit, b_unit] = coefficient_units(context.dense.angular[k]);
             let (reference, bound) = (&position.reference, &position.rounding_bound);
             let [a_scale, b_scale] = context.coefficient_scales(k);
-            let numbers = [subject.a[k] - reference.a[k], a_scale, bound.a[k]];
+            let numbers = [own_a[k] - reference.a[k], a_scale, bound.a[k]];
             position.record(a, numbers, a_unit, location);
-            let numbers = [subject.b[k] - b_k.value, b_scale, b_k.error];
-            position.record(b, numbers, b_unit, location);
-            let numbers = [subject.b[k] - reference.b[k], b_scale, bound.b[k]];
+            if let Some(b_k) = b_k {
+                let numbers = [own_b[k] - b_k.value, b_scale, b_k.error];
+                position.record(b, numbers, b_unit, location);
+            }
+            let numbers = [own_b[k] - reference.b[k], b_scale, bound.b[k]];
             position.record(power, numbers, b_unit, location);
         }
         Ok(())
@@ -89,9 +98,11 @@ pub(crate) fn released_constraint(context: &CheckContext<'_>) -> Vec<Finding> {
         let indeterminate = count - determinate;
         domain += &format!("; {indeterminate} that joints share are not determined");
     }
-    let findings = [(A, a), (B, b), (POWER, power)];
+    // Teeth in space are rows of velocities: with another constraint open, there is no coordinate of theirs to differentiate by.
+    let by_differences = (!context.dense.rows.has_teeth_in_space()).then_some((B, b));
+    let findings = [Some((A, a)), by_differences, Some((POWER, power))];
     let finding = |(spec, worst): (FindingSpec<'_>, _)| spec.finding(domain.clone(), worst);
-    findings.map(finding).into()
+    findings.into_iter().flatten().map(finding).collect()
 }
 
 /// Eq. (3) for every reaction that is determined.
@@ -121,6 +132,7 @@ fn b_by_differences(
         },
         _ => NO_ESTIMATE,
     };
-    let of = |k: usize| dense.determinate[k].then(|| estimate(k));
+    let differs = !dense.rows.has_teeth_in_space();
+    let of = |k: usize| (differs && dense.determinate[k]).then(|| estimate(k));
     (0..row).map(of).collect()
 }

@@ -23,12 +23,12 @@ use super::action::{Action, Direction};
 use super::{DescribedBody, DescribedJoint, DescribedReaction, DescribedRow, Description};
 use crate::error::{DenseError, Result};
 use crate::inertias::Inertias;
-use crate::pose::Columns;
+use crate::pose::{Columns, lifted};
 use crate::rows::gear::Gear;
 use crate::rows::row::Row;
 use crate::rows::terms::{Ends, Term, perpendicular};
 use dwell_geometry::constraint_rows::ConstraintRows;
-use dwell_geometry::space::{Vec3, vec3};
+use dwell_geometry::space::Vec3;
 use dwell_geometry::{
     ActuatorKind, BodyId, Component, Coordinate, Joint, JointKind, Mechanism, Vec2,
 };
@@ -38,11 +38,6 @@ use std::f64::consts::TAU;
 /// Two points of one body are one centre when they are this close, in pitch radii: only the turn that the line of centres is counted to
 /// hangs on it.
 const SAME_CENTRE: f64 = 1e-6;
-
-/// A vector of the plane in space.
-pub(crate) fn lifted(v: Vec2) -> Vec3 {
-    vec3(v.x, v.y, 0.0)
-}
 
 fn ends(bodies: [BodyId; 2], points: [Vec2; 2]) -> Ends {
     Ends {

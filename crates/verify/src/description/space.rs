@@ -129,63 +129,42 @@ fn rows_of(joint: &Joint) -> Vec<(Row, bool)> {
     let (at, bodies) = (ends(joint), joint.bodies.map(|b| b.0));
     let across = [first.normal, first.axis.cross(first.normal)];
     let product = |u: Vec3, w: Vec3| {
-        let directions = Directions {
-            bodies,
-            vectors: [u, w],
-        };
+        let vectors = [u, w];
+        let directions = Directions { bodies, vectors };
         (Row::single(Term::Product(directions), 0.0), true)
     };
     let along = |u: Vec3| (Row::single(Term::AlongFirst(at, u), 0.0), false);
-    let meets = || Vec3::AXES.map(|e| (Row::single(Term::AlongGround(at, e), 0.0), false));
-    let parallel = || across.map(|v| product(v, second.axis));
-    let on_line = || across.map(along);
-    let no_turn = || [product(first.normal, second.axis.cross(second.normal))];
-    let mut rows: Vec<(Row, bool)> = vec![];
+    let meets = || {
+        Vec3::AXES
+            .map(|e| (Row::single(Term::AlongGround(at, e), 0.0), false))
+            .to_vec()
+    };
+    let parallel = || across.map(|v| product(v, second.axis)).to_vec();
+    let on_line = || across.map(along).to_vec();
+    let no_turn = || vec![product(first.normal, second.axis.cross(second.normal))];
     match joint.kind {
-        JointKind::Weld => {
-            rows.extend(meets());
-            rows.extend(parallel());
-            rows.extend(no_turn());
-        }
-        JointKind::Revolute => {
-            rows.extend(meets());
-            rows.extend(parallel());
-        }
-        JointKind::Prismatic => {
-            rows.extend(on_line());
-            rows.extend(parallel());
-            rows.extend(no_turn());
-        }
-        JointKind::Cylindrical => {
-            rows.extend(on_line());
-            rows.extend(parallel());
-        }
+        JointKind::Weld => [meets(), parallel(), no_turn()].concat(),
+        JointKind::Revolute => [meets(), parallel()].concat(),
+        JointKind::Prismatic => [on_line(), parallel(), no_turn()].concat(),
+        JointKind::Cylindrical => [on_line(), parallel()].concat(),
         JointKind::Helical { pitch } => {
-            rows.extend(on_line());
-            rows.extend(parallel());
             let travel = Term::AlongFirst(at, first.axis);
             let screw = Row::Sum {
                 terms: vec![(1.0, travel), (-pitch, angle(joint))],
                 constant: 0.0,
                 period: Some((TAU * pitch).abs()),
             };
-            rows.push((screw, false));
+            [on_line(), parallel(), vec![(screw, false)]].concat()
         }
-        JointKind::Universal => {
-            rows.extend(meets());
-            rows.push(product(first.axis, second.axis));
-        }
-        JointKind::Spherical => rows.extend(meets()),
-        JointKind::Planar => {
-            rows.push(along(first.axis));
-            rows.extend(parallel());
-        }
-        JointKind::Distance { length } => {
-            rows.push((Row::single(Term::Distance(at), length), false));
-        }
-        JointKind::Gear { .. } => rows.extend(mesh(joint).map(|mesh| (Row::Mesh(mesh), false))),
+        JointKind::Universal => [meets(), vec![product(first.axis, second.axis)]].concat(),
+        JointKind::Spherical => meets(),
+        JointKind::Planar => [vec![along(first.axis)], parallel()].concat(),
+        JointKind::Distance { length } => vec![(Row::single(Term::Distance(at), length), false)],
+        JointKind::Gear { .. } => mesh(joint)
+            .map(|mesh| (Row::Mesh(mesh), false))
+            .into_iter()
+            .collect(),
     }
-    rows
 }
 
 /// The teeth of a gear pair; none of other joints.

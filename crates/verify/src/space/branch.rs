@@ -45,9 +45,8 @@ impl SpaceCase<'_> {
         let mut at = dense.moved_frames(&poses(self.start.1))?;
         let mut row_values = vec![0.0; dense.rows.len()];
         for coordinates in self.positions_towards(q) {
-            let best = dense.at(&at)?;
             row_values[dense.actuator_row()..].copy_from_slice(&coordinates);
-            at = best.close(&at, &row_values)?.poses;
+            at = dense.close(&at, &row_values)?.poses;
         }
         Ok(at)
     }

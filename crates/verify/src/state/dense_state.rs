@@ -11,15 +11,13 @@ use crate::motion::SecondDifferences;
 use crate::pose::Twist;
 use crate::wrenches::{BodyWrench, NetWrench};
 use dwell_geometry::space::{Vec3, Wrench};
-use std::borrow::Cow;
 
 /// A part of a self-stress of length one from which on a reaction is not determined.
 const STRESS: f64 = 1e-7;
 
 /// A state with its dense solution.
 pub(super) struct DenseState<'a> {
-    /// With the rows that are farthest from dependent there.
-    pub(super) dense: Cow<'a, DenseMechanism>,
+    pub(super) dense: &'a DenseMechanism,
     pub(super) state: &'a Claim,
     /// Which of all it is.
     pub(super) index: usize,
@@ -99,16 +97,15 @@ impl<'a> DenseState<'a> {
         (index, state): (usize, &'a Claim),
     ) -> Result<Self> {
         let poses = &state.poses;
-        let dense = dense.at(&dense.moved_frames(poses)?)?;
         let (configuration, closing_correction) = dense.close_at(poses, &state.q)?;
         dense.check_redundant_rows(&configuration)?;
         let loads = dense.shifted_wrenches(&state.load_wrenches);
         let velocities = dense.unit_velocities(&configuration);
-        let solution = DenseSolution::new(&dense, state, &configuration, &velocities, &loads)?;
+        let solution = DenseSolution::new(dense, state, &configuration, &velocities, &loads)?;
         let exact = solution.flat();
         let bounds = dense.rounding_bounds(&configuration, &velocities, &exact, |perturbed| {
             let velocities = dense.unit_velocities(perturbed);
-            Ok(DenseSolution::new(&dense, state, perturbed, &velocities, &loads)?.flat())
+            Ok(DenseSolution::new(dense, state, perturbed, &velocities, &loads)?.flat())
         });
         let (bounds, pose_rounding_bound) = bounds?;
         let n = dense.rows.columns();
@@ -274,7 +271,7 @@ impl<'a> DenseState<'a> {
 
     /// All reactions, then the actuators' forces.
     pub(super) fn dense_reactions(&self) -> Vec<ComparedReaction> {
-        let (dense, state) = (&*self.dense, self.state);
+        let (dense, state) = (self.dense, self.state);
         let mut all = Vec::new();
         let of_row = |row: usize, claimed: f64| ComparedReaction {
             name: dense.row_names[row].clone(),
@@ -301,7 +298,7 @@ impl<'a> DenseState<'a> {
 
     /// Force and moment of a joint by components.
     fn components(&self, joint: &DescribedJoint, claimed: &[f64]) -> Vec<ComparedReaction> {
-        let (dense, poses) = (&*self.dense, &self.configuration.poses);
+        let (dense, poses) = (self.dense, &self.configuration.poses);
         let of = |multipliers: &[f64]| dense.joint_wrench(joint, poses, multipliers);
         let (value, error) = (
             of(&self.solution.multipliers),
@@ -329,18 +326,9 @@ impl<'a> DenseState<'a> {
 
     /// The power of the claimed reactions of a joint at speeds of all coordinates, W.
     pub(super) fn power_of(&self, joint: &DescribedJoint, u: &[f64]) -> f64 {
-        let (dense, poses) = (&*self.dense, &self.configuration.poses);
-        let of_joint = joint.reactions.clone();
-        let claimed = &self.state.reactions[of_joint.clone()];
-        let wrenches = dense.reactions[of_joint].iter().zip(claimed);
-        let wrenches =
-            wrenches.flat_map(|(reaction, value)| reaction.action.wrenches(poses, *value));
-        let power = |wrench: BodyWrench| {
-            let body = wrench.body.0;
-            let twist = dense.bodies[body].columns.twist(u);
-            twist.power(&wrench.about(poses[body].position))
-        };
-        wrenches.map(power).sum()
+        let claimed = &self.state.reactions[joint.reactions.clone()];
+        self.dense
+            .power_of(joint, &self.configuration.poses, claimed, u)
     }
 
     /// What the reactions of a joint do at unit speed of each actuator, what the largest force could, and its rounding, W.
@@ -393,7 +381,7 @@ impl<'a> DenseState<'a> {
     /// What the ground and the loads do less the rate of the momentum, with the sum of absolute
     /// terms: forces, and moments about the ground's moved origin over the size, N.
     pub(super) fn momentum_balance(&self) -> Vec<[f64; 2]> {
-        let (dense, ground) = (&*self.dense, self.dense.ground);
+        let (dense, ground) = (self.dense, self.dense.ground);
         let mut total = NetWrench::default();
         for wrench in &self.joint_wrenches {
             // The ground's action is the opposite of what acts on it.

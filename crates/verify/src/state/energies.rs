@@ -165,7 +165,7 @@ impl DenseState<'_> {
     /// By row: the claimed multiplier, an actuator's force last; of a joint whose reactions are components of force and moment, what these do
     /// as the row opens at unit speed. None of rows that belong to no joint.
     fn claimed_multipliers(&self) -> Vec<Option<f64>> {
-        let (dense, state) = (&*self.dense, self.state);
+        let (dense, state) = (self.dense, self.state);
         let mut all = vec![None; dense.rows.len()];
         for joint in &dense.joints {
             let claimed = &state.reactions[joint.reactions.clone()];
@@ -185,7 +185,7 @@ impl DenseState<'_> {
 
     /// (1) at the state.
     fn mass_matrix(&self) -> Vec<Vec<f64>> {
-        let (dense, n) = (&*self.dense, self.state.q.len());
+        let (dense, n) = (self.dense, self.state.q.len());
         let row = |i: usize| dense.actuator_row() + i;
         let energy = |rates: &[(usize, f64)]| dense.kinetic_energy(&self.configuration, rates);
         let single: Vec<f64> = (0..n).map(|i| energy(&[(row(i), 1.0)])).collect();
@@ -202,7 +202,7 @@ impl DenseState<'_> {
 
     /// (3) for every row; none for those that are not determined.
     fn lagrange(&self) -> Vec<Option<Extrapolated>> {
-        let dense = &*self.dense;
+        let dense = self.dense;
         let unit_velocities = &self.unit_velocities;
         let rates = self.momentum_rates();
         let row = |r: usize| {
@@ -220,7 +220,7 @@ impl DenseState<'_> {
 
     /// d/dt ⟨u_r, ẋ⟩ of every row, along the motion.
     fn momentum_rates(&self) -> Vec<Extrapolated> {
-        let (dense, state) = (&*self.dense, self.state);
+        let (dense, state) = (self.dense, self.state);
         let actuator_row = dense.actuator_row();
         let rounding = self.relative_rounding_bound().max(f64::EPSILON);
         let mut row_values = self.configuration.row_values.clone();
@@ -241,7 +241,7 @@ impl DenseState<'_> {
 
     /// ∂E/∂y of a row with the unit velocities `u`, at the velocities of the actuators.
     fn energy_slope(&self, row: usize, u: &[f64]) -> Extrapolated {
-        let (dense, state) = (&*self.dense, self.state);
+        let (dense, state) = (self.dense, self.state);
         let none = |value| Extrapolated { value, error: 0.0 };
         if state.q_dot.iter().all(|&rate| rate == 0.0) {
             return none(0.0);

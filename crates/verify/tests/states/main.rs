@@ -16,7 +16,9 @@ mod setup;
 use dwell_findings::{Finding, all_pass};
 use dwell_geometry::space::vec3;
 use dwell_geometry::{BodyId, JointKind, vec2};
-use dwell_verify::{Case, ClaimedState, Range, check_states, rank, spread, verify_all};
+use dwell_verify::{
+    Case, CheckedMechanism, ClaimedState, Range, check_states, rank, spread, verify_all,
+};
 use mechanisms::all;
 use setup::Setup;
 
@@ -241,9 +243,7 @@ fn val_reduced_checks_with_every_joint() {
     ] {
         let setup = all().into_iter().find(|s| s.name == name).unwrap();
         let case = Case {
-            mechanism: &setup.mechanism,
-            masses: &setup.masses,
-            varying_inertias: &[],
+            mechanism: CheckedMechanism::Plane(&setup.mechanism, (&setup.masses).into()),
             range,
             positions: spread(range, 6),
         };

@@ -4,7 +4,7 @@
 use crate::gauss::gauss;
 use dwell_geometry::constraint_rows::ConstraintRows;
 use dwell_geometry::space::vec3;
-use dwell_geometry::{BodyId, Mechanism, Vec2, vec2};
+use dwell_geometry::{BodyId, Mechanism, Vec2};
 use dwell_kinetostatics::{LoadKind, Mass};
 use dwell_verify::{ClaimedState, load_wrenches};
 

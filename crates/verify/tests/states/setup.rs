@@ -3,7 +3,7 @@
 use super::plain;
 use dwell_geometry::{ActuatorKind, BodyId, Coordinate, Mechanism, Vec2};
 use dwell_kinetostatics::{LoadKind, Mass};
-use dwell_verify::{ClaimedState, Coefficients, InverseDynamics, Subject, SubjectError};
+use dwell_verify::{ClaimedState, Coefficients, InverseDynamics, Pose, Subject, SubjectError};
 
 /// A mechanism, where it starts, what loads it, and how it is moved.
 pub(crate) struct Setup {
@@ -91,8 +91,8 @@ impl Setup {
 
 /// Without its loads, and with its first actuator's coordinate.
 impl Subject for Setup {
-    fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
-        Ok(self.unloaded(q, 0.0, 0.0).poses)
+    fn poses(&self, q: f64) -> Result<Vec<Pose>, SubjectError> {
+        Ok(Pose::all_in_plane(&self.unloaded(q, 0.0, 0.0).poses))
     }
 
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {

@@ -9,7 +9,7 @@ use super::gauss::gauss;
 use dwell_geometry::constraint_rows::ConstraintRows;
 use dwell_geometry::{BodyId, Mechanism, Vec2};
 use dwell_kinetostatics::Mass;
-use dwell_verify::{Coefficients, InverseDynamics, Range, Subject, SubjectError};
+use dwell_verify::{Coefficients, InverseDynamics, Pose, Range, Subject, SubjectError};
 use std::f64::consts::TAU;
 
 /// Mistakes of the method itself, which a wrapper outside cannot make.
@@ -157,11 +157,13 @@ impl DenseSubject {
 }
 
 impl Subject for DenseSubject {
-    fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
+    fn poses(&self, q: f64) -> Result<Vec<Pose>, SubjectError> {
         let x = self.coordinates(q)?;
         let pose = |b| {
             let column = self.rows.column(BodyId(b));
-            column.map_or([0.0; 3], |c| [x[c], x[c + 1], x[c + 2]])
+            column
+                .map_or([0.0; 3], |c| [x[c], x[c + 1], x[c + 2]])
+                .into()
         };
         Ok((0..self.mechanism.bodies.len()).map(pose).collect())
     }

@@ -3,7 +3,7 @@
 use super::dense::DenseSubject;
 use dwell_geometry::{Actuator, Body, Joint, JointKind, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::Mass;
-use dwell_verify::{Case, Range, spread};
+use dwell_verify::{Case, CheckedMechanism, Range, spread};
 use std::f64::consts::PI;
 
 /// A mechanism with everything a case and a subject need.
@@ -18,9 +18,7 @@ pub(crate) struct Setup {
 impl Setup {
     pub(crate) fn case(&self, positions: usize) -> Case<'_> {
         Case {
-            mechanism: &self.mechanism,
-            masses: &self.masses,
-            varying_inertias: &[],
+            mechanism: CheckedMechanism::Plane(&self.mechanism, (&self.masses).into()),
             range: self.range,
             positions: spread(self.range, positions),
         }

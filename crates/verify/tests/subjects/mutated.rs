@@ -1,6 +1,6 @@
 //! Deliberate faults, wrapped around a correct subject.
 
-use dwell_verify::{Coefficients, InverseDynamics, Subject, SubjectError};
+use dwell_verify::{Coefficients, InverseDynamics, Pose, Subject, SubjectError};
 
 type AlterPoses<'a> = dyn Fn(f64, &mut [[f64; 3]]) + Sync + 'a;
 type AlterCoefficients<'a> = dyn Fn(&mut Coefficients) + Sync + 'a;
@@ -45,10 +45,10 @@ impl<'a> MutatedSubject<'a> {
 }
 
 impl Subject for MutatedSubject<'_> {
-    fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
-        let mut poses = self.subject.poses(q)?;
+    fn poses(&self, q: f64) -> Result<Vec<Pose>, SubjectError> {
+        let mut poses = self.subject.frames(q)?;
         (self.poses)(q, &mut poses);
-        Ok(poses)
+        Ok(Pose::all_in_plane(&poses))
     }
 
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
