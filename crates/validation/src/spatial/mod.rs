@@ -3,10 +3,9 @@
 //! and what the program writes of each.
 //!
 //! ```text
-//! reference ── samples ── findings ── written ── report
+//! reference ── subject ── findings ── written ── report
 //! ```
 
-mod bodies;
 mod claims;
 mod findings;
 mod motion;
@@ -14,10 +13,10 @@ mod period;
 mod reference;
 mod reference_poses;
 mod report;
-mod samples;
 mod several;
 mod states;
 mod stopped_motion;
+mod subject;
 mod written;
 
 pub use claims::{ClaimsIn, SpaceClaims};

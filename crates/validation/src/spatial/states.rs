@@ -93,22 +93,22 @@ pub(super) fn state_findings(
         let of = |rows: &[[f64; 4]; STATES]| in_units(claims.model(), &rows[k % STATES]);
         let (q_dot, q_ddot) = (of(&SPEEDS), of(&ACCELERATIONS));
         let t = 0.1 * k as f64;
-        let mut add = |q_ddot: &[f64], is_free: bool| {
-            match claims.state::<f64>(t, [q, &q_dot, q_ddot], axes) {
-                Ok(mut state) => {
-                    if is_free {
-                        // Nothing acts but the loads: that is what its accelerations claim.
-                        state.tau = vec![0.0; q.len()];
-                    }
-                    states.push(state);
-                }
-                Err(error) => refusals.push(error),
-            }
+        let mut add = |state: Result<SpaceState, SubjectError>| match state {
+            Ok(state) => states.push(state),
+            Err(error) => refusals.push(error),
         };
-        add(&q_ddot, false);
+        add(claims.state::<f64>(t, [q, &q_dot, &q_ddot], axes));
+        // Each load alone, at rest.
+        let loads = 0..claims.unit_loads().len();
+        loads.for_each(|load| add(claims.load_response::<f64>(q, load, axes)));
         let machine = machine.as_ref();
         if let Some(free) = machine.and_then(|m| free_accelerations(m, t, [q, &q_dot])) {
-            add(&free, true);
+            // Nothing acts but the loads: that is what its accelerations claim.
+            let state = claims.state::<f64>(t, [q, &q_dot, &free], axes);
+            add(state.map(|state| SpaceState {
+                tau: vec![0.0; q.len()],
+                ..state
+            }));
         }
     }
     let mut findings = check_states_in_space(&claims.case(), &states, BY_ENERGIES);

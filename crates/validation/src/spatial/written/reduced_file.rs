@@ -1,7 +1,6 @@
 //! The table of `reduce`: m, ½m′, a, b, and what the loads make, at its rows, with the dense equations at the model's placements there.
 
-use super::super::claims::{NAMES, components, constant};
-use super::super::samples::{PASSES, Samples};
+use super::super::claims::{NAMES, SpaceClaims, components, constant};
 use super::finding;
 use crate::error::ValidationError;
 use crate::written::motions::simpson;
@@ -12,8 +11,8 @@ use crate::written::poses::rows::{Rows, largest};
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::space::{Load, LoadKind};
 use dwell_scene::SpaceScene;
-use dwell_study::PreparedSpaceScene;
 use dwell_verify::FindingSpec;
+use dwell_verify::space::DenseSpace;
 use std::path::Path;
 
 const COEFFICIENTS: FindingSpec<'_> = FindingSpec {
@@ -45,6 +44,51 @@ const SLOPES: FindingSpec<'_> = FindingSpec {
     tolerance_reason: "what the rule's estimated error leaves",
 };
 
+/// A pass: speed and acceleration of the coordinate, and whether the loads act.
+#[derive(Clone, Copy)]
+struct Pass {
+    q_dot: f64,
+    q_ddot: f64,
+    is_loaded: bool,
+}
+
+/// Unit speed, unit acceleration from rest, and the loads at rest.
+const PASSES: [Pass; 3] = [
+    Pass {
+        q_dot: 1.0,
+        q_ddot: 0.0,
+        is_loaded: false,
+    },
+    Pass {
+        q_dot: 0.0,
+        q_ddot: 1.0,
+        is_loaded: false,
+    },
+    Pass {
+        q_dot: 0.0,
+        q_ddot: 0.0,
+        is_loaded: true,
+    },
+];
+
+impl Pass {
+    /// A thousandth of the force that the pass gives the whole mass at the size of the mechanism, N or kg m.
+    fn floor(self, claims: &SpaceClaims<'_>, scene: &SpaceScene) -> f64 {
+        let mass: f64 = scene.masses.iter().map(|mass| mass.mass).sum();
+        let weight = scene.loads.iter().find_map(|load| match constant(load)? {
+            (LoadKind::Gravity(_), magnitude) => Some(magnitude),
+            _ => None,
+        });
+        let plan = claims.model().plan();
+        let acceleration = match self.is_loaded {
+            true => weight.unwrap_or(1.0),
+            false if plan.is_angle(0) => plan.size(),
+            false => 1.0,
+        };
+        1e-3 * mass * acceleration
+    }
+}
+
 /// Rows of the table, and those that are judged.
 const POINTS: &str = "97";
 const STEP: usize = 16;
@@ -54,8 +98,7 @@ pub(super) fn findings(
     scene: &SpaceScene,
     (program, text): (&Path, &str),
 ) -> Result<Vec<Finding>, ValidationError> {
-    let prepared = PreparedSpaceScene::new(scene)?;
-    let mut samples = Samples::new(&prepared)?;
+    let claims = SpaceClaims::new(scene)?;
     let read = || -> Result<(Rows, Differences), String> {
         let program = Program::new(program, &format!("{}-reduced", scene.name));
         let run = program.run(&scene.name, text, &["reduce", "--points", POINTS])?;
@@ -72,7 +115,7 @@ pub(super) fn findings(
     };
     let mut worst = Differences::default();
     for row in (1..rows.count).step_by(STEP) {
-        compare(&mut worst, &mut samples, scene, (&rows, row))?;
+        compare(&mut worst, &claims, scene, (&rows, row));
     }
     let mut found: Vec<Finding> = finding(worst, &COEFFICIENTS, &rows, "reduced.csv")
         .into_iter()
@@ -118,17 +161,27 @@ fn slopes(scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
 // Long because each pass has its columns, its signs and its scales.
 fn compare(
     worst: &mut Differences,
-    samples: &mut Samples<'_>,
+    claims: &SpaceClaims<'_>,
     scene: &SpaceScene,
     (rows, row): (&Rows, usize),
-) -> Result<(), ValidationError> {
+) {
     let q = rows.get(row, &scene.mechanism.actuators[0].name);
     let q = q.unwrap_or(f64::NAN);
-    let placements = samples.placements(q)?;
-    let size = samples.model.plan().size();
+    let Ok(placements) = claims.placements::<f64>(&[q]) else {
+        let place = || format!("q = {q:.4}: no pose");
+        return worst.compare([f64::NAN, 0.0, 1.0], "", place);
+    };
+    let plan = claims.model().plan();
+    let (size, is_angle) = (plan.size(), plan.is_angle(0));
     let columns = [["half_dm", "b"], ["m", "a"], ["w", "c"]];
     for (pass, [of_actuator, of_reaction]) in PASSES.into_iter().zip(columns) {
-        let Some(dense) = samples.dense(&placements, pass) else {
+        let loads: Vec<(LoadKind, f64)> = match pass.is_loaded {
+            true => scene.loads.iter().filter_map(constant).collect(),
+            false => Vec::new(),
+        };
+        let rates: [&[f64]; 2] = [&[pass.q_dot], &[pass.q_ddot]];
+        let (mechanism, masses) = (&scene.mechanism, &scene.masses);
+        let Ok(dense) = DenseSpace::new(mechanism, masses, &placements, rates, &loads) else {
             continue;
         };
         // Under loads: the sum of each load's column times its magnitude.
@@ -147,7 +200,7 @@ fn compare(
                 scene.loads.iter().map(of_load).sum::<Option<f64>>()
             }
         };
-        let floor = samples.floor(pass);
+        let floor = pass.floor(claims, scene);
         let all: Vec<[f64; 6]> = dense.reactions.iter().map(components).collect();
         let largest = |kind: usize| {
             let of_kind = all.iter().zip(&dense.determined).flat_map(|(v, is)| {
@@ -157,7 +210,7 @@ fn compare(
             largest(of_kind)
         };
         let scales = [largest(0).max(floor), largest(1).max(floor * size)];
-        let unit = match samples.model.plan().is_angle(0) {
+        let unit = match is_angle {
             true => size,
             false => 1.0,
         };
@@ -180,5 +233,4 @@ fn compare(
             }
         }
     }
-    Ok(())
 }
