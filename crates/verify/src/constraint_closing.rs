@@ -136,15 +136,32 @@ impl DenseMechanism {
         both.map(|(body, (from, to))| body.columns.step(from, to))
     }
 
-    /// How far two configurations are apart, whole revolutions of a body not counted, rad or sizes.
+    /// How far two configurations are apart, rad or sizes.
     pub(crate) fn distance(&self, one: &Configuration, other: &Configuration) -> f64 {
-        let steps = self.steps(&other.poses, &one.poses).zip(&self.bodies);
-        self.norm_of(steps.map(|(mut step, body)| {
-            if let Columns::Plane(_) = body.columns {
-                step.angular.z -= TAU * (step.angular.z / TAU).round();
-            }
-            step
-        }))
+        let bodies = 0..self.bodies.len();
+        self.norm_of(bodies.map(|b| self.apart(b, [&one.poses[b], &other.poses[b]])))
+    }
+
+    /// How far two poses of a body are apart: whole revolutions are not counted, nor how it stands about a line about which it turns idly.
+    fn apart(&self, body: usize, [one, other]: [&Pose; 2]) -> Twist {
+        if let Some(idle) = self.idle.iter().find(|idle| idle.body.0 == body) {
+            let axis = |pose: &Pose| pose.rotation.apply(idle.axis);
+            return Twist {
+                linear: one.point(idle.point) - other.point(idle.point),
+                angular: axis(other).cross(axis(one)),
+            };
+        }
+        let columns = self.bodies[body].columns;
+        let mut step = columns.step(other, one);
+        if let Columns::Plane(_) = columns {
+            step.angular.z -= TAU * (step.angular.z / TAU).round();
+        }
+        step
+    }
+
+    /// The same in rad or sizes.
+    pub(crate) fn body_distance(&self, body: usize, poses: [&Pose; 2]) -> f64 {
+        self.norm_of(std::iter::once(self.apart(body, poses)))
     }
 
     /// Closes the rows at other values on the branch of `from`, starting from `initial_guess`.

@@ -89,6 +89,8 @@ pub struct DenseMechanism {
     pub(crate) row_names: Vec<String>,
     pub(crate) angular: Vec<bool>,
     pub(crate) counts_revolutions: bool,
+    /// Bodies whose rotation about a line is nobody's, with the line in the moved frame.
+    pub(crate) idle: Vec<IdleBody>,
     pub(crate) row_scale: Vec<f64>,
     pub(crate) column_scales: Vec<f64>,
     pub(crate) size: f64,
@@ -153,6 +155,7 @@ impl DenseMechanism {
             actuators,
             size,
             counts_revolutions,
+            idle,
             ..
         } = description;
         let both = bodies.into_iter().zip(shifts);

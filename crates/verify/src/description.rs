@@ -8,7 +8,7 @@ pub(crate) mod space;
 use crate::pose::{Columns, Pose};
 use crate::rows::row::Row;
 use action::Action;
-use dwell_geometry::space::Vec3;
+use dwell_geometry::space::{IdleBody, Vec3};
 use dwell_kinetostatics::space::Mass;
 use dwell_numerics::PiecewiseQuintic;
 use std::ops::Range;
@@ -26,6 +26,8 @@ pub(crate) struct Description {
     pub(crate) actuators: Vec<Action>,
     /// The points at which joints and actuators act on bodies.
     pub(crate) attachments: Vec<(usize, Vec3)>,
+    /// Bodies whose rotation about a line is nobody's.
+    pub(crate) idle: Vec<IdleBody>,
     /// What a radian is compared with, m.
     pub(crate) size: f64,
     /// Whether rows depend on whole revolutions of a body.
@@ -91,6 +93,9 @@ impl Description {
                     shift(body, point);
                 }
             });
+        }
+        for idle in &mut self.idle {
+            shift(idle.body.0, &mut idle.point);
         }
         for joint in &mut self.joints {
             shift(joint.point.0, &mut joint.point.1);

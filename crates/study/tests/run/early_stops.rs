@@ -433,3 +433,35 @@ fn columns_are_chosen_by_name_and_by_their_first_words() {
         assert_eq!(error.help.unwrap(), help);
     }
 }
+
+/// A starter that begins at the very end of a motion has not moved anything: what rounding leaves of its energy is no error of the motion.
+#[test]
+fn a_body_at_rest_until_a_load_begins_at_the_end_is_a_result() {
+    let text = r#"
+        title = "A starter"
+        [bodies.ground]
+        points = { O = [0, 0] }
+        [bodies.block]
+        points = { P = [0, 0] }
+        mass = 2.0
+        center = "P"
+        inertia = 0.01
+        [joints]
+        guide = { prismatic = ["ground.O", "block.P"], axis = [1, 0] }
+        [actuators]
+        x = { length = "guide" }
+        [assembly]
+        x = -0.5
+        [drives]
+        starter = { applied-force = "x", magnitude = "floor(0.5 * t)" }
+        [motion]
+        initial-velocity = { x = 0.0 }
+        duration = 2.0
+    "#;
+    let settings = MotionSolver::Settings(SolverSettings::default());
+    let motion = compute_free_motion(&scene(text), &settings, &no_progress).unwrap();
+    assert!(motion.computed.early_stop.is_none());
+    // Of each row the time, then x.
+    let rows = &motion.computed.table.rows;
+    assert!(rows.iter().all(|row| (row[1] + 0.5).abs() < 1e-12));
+}

@@ -102,6 +102,7 @@ impl Description {
             reactions,
             actuators: actuators.map(|a| lift.along(a.coordinate())).collect(),
             attachments: attachments(mechanism),
+            idle: Vec::new(),
             size: mechanism.size(),
             counts_revolutions,
         })

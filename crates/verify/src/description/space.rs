@@ -81,6 +81,7 @@ impl Description {
             reactions,
             actuators: actuators.map(|a| actuator_action(mechanism, a)).collect(),
             attachments: attachments(mechanism),
+            idle: idle.to_vec(),
             size: mechanism.size(),
             counts_revolutions: false,
         })

@@ -7,7 +7,6 @@ use crate::error::Result;
 use crate::pose::Pose;
 use crate::state::not_dense;
 use dwell_findings::{Check, Finding};
-use dwell_geometry::space::Vec3;
 
 const BRANCH: FindingSpec<'_> = FindingSpec {
     key: "state-branch",
@@ -80,7 +79,7 @@ pub fn check_branch_in_space(case: &SpaceCase<'_>, states: &[SpaceState]) -> Fin
             }
         };
         for (b, body) in dense.moving_bodies() {
-            let distance = apart(case, &dense, b, [&found[b], &wanted[b]]);
+            let distance = dense.body_distance(b, [&found[b], &wanted[b]]);
             let comparison = Comparison::new([distance, 1.0, 0.0], "", 1.0);
             worst.record(&comparison, || {
                 format!("q = {:?}, {}", claimed.q, body.name)
@@ -88,21 +87,4 @@ pub fn check_branch_in_space(case: &SpaceCase<'_>, states: &[SpaceState]) -> Fin
         }
     }
     BRANCH.finding(format!("{count} poses"), worst)
-}
-
-/// How far a body is from another pose, parts of the size or rad; how it stands about the line of its two balls is nobody's.
-fn apart(
-    case: &SpaceCase<'_>,
-    dense: &DenseMechanism,
-    body: usize,
-    [found, wanted]: [&Pose; 2],
-) -> f64 {
-    let turned = |v: Vec3| (found.rotation.apply(v) - wanted.rotation.apply(v)).norm();
-    let idle = case.idle.iter().find(|idle| idle.body.0 == body);
-    let turn: f64 = match idle {
-        Some(idle) => turned(idle.axis),
-        None => Vec3::AXES.map(turned).into_iter().sum(),
-    };
-    let point = idle.map_or(Vec3::ZERO, |idle| idle.point - dense.bodies[body].shift);
-    turn + (found.point(point) - wanted.point(point)).norm() / case.size
 }

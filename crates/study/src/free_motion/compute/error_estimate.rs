@@ -26,6 +26,11 @@ pub(crate) fn error_of(
     estimate::over_motion(&one, &two, rounding)
 }
 
+/// Whether a coordinate that changes by this is at rest as far as its tolerance can tell.
+pub(crate) fn is_at_rest(change: f64, atol: f64) -> bool {
+    change <= 100.0 * atol
+}
+
 /// Why a motion is no result whose coordinate has this error and changes by this, where it is not. What hardly moves may have an
 /// error as large as its tolerance.
 pub(crate) fn large_error(
@@ -119,7 +124,7 @@ impl FreeMotionProblem<'_> {
         atol: f64,
         record: &mut Record,
     ) -> (String, Option<String>) {
-        let (mut text, mut large) = (String::new(), None);
+        let (mut text, mut large, mut moves) = (String::new(), None, false);
         for &i in self.machine.free() {
             let [from, to] = extent(pairs.iter().map(|(a, _)| a.coordinate(i)));
             let unknown = self.initial_speed_error(i) * (to - from);
@@ -129,6 +134,7 @@ impl FreeMotionProblem<'_> {
             text += &format!(" {error:.1e} {unit} in {name},");
             record.add(format!("error.{name}"), unit, error);
             large = large.or_else(|| large_error((name, unit), error, to - from, atol));
+            moves |= !is_at_rest(to - from, atol);
         }
         if !is_rounding(max_kinetic, max_potential) {
             let rounding = 4.0 * f64::EPSILON * max_kinetic;
@@ -141,10 +147,11 @@ impl FreeMotionProblem<'_> {
             let stated = error.max(imbalance).max(kinetic);
             text += &format!(" {stated:.1e} of the largest kinetic energy,");
             record.add("error.kinetic_energy", "", stated);
-            if error > LARGE_ERROR && max_kinetic > f64::MIN_POSITIVE {
+            // Of what is at rest, the energy is that of its rounding.
+            if moves && error > LARGE_ERROR {
                 large.get_or_insert_with(|| large_energy_error(error));
             }
-            if imbalance > LARGE_ERROR && max_kinetic > f64::MIN_POSITIVE {
+            if moves && imbalance > LARGE_ERROR {
                 large.get_or_insert_with(|| {
                     format!("the energy balance closes to {imbalance:.1e} of the largest kinetic energy only")
                 });

@@ -26,7 +26,7 @@ pub(crate) use accuracy::find_motion;
 pub(crate) use contacts::NamedContacts;
 pub(crate) use difference::{Compared, Difference, pair_by_time, reactions_at};
 pub(crate) use ending::end_where_impossible;
-pub(crate) use error_estimate::{error_of, large_energy_error, large_error};
+pub(crate) use error_estimate::{error_of, is_at_rest, large_energy_error, large_error};
 pub(crate) use events::{event_table, named_events};
 pub use motion_problem::MotionProblem;
 pub(crate) use motion_problem::{compiled_event, motion_to_simulate};

@@ -5,8 +5,8 @@ use super::run::Run;
 use crate::explain::StudyError;
 use crate::free_motion::compute::{
     Energies, LARGE_ERROR, MotionProblem as _, MotionSolver, NamedContacts, balance_line,
-    class_line, cost_line, event_line, large_energy_error, large_error, not_accurate, not_resolved,
-    times_of, too_many_steps,
+    class_line, cost_line, event_line, is_at_rest, large_energy_error, large_error, not_accurate,
+    not_resolved, times_of, too_many_steps,
 };
 use crate::number_format::digits;
 use crate::ranges::extent;
@@ -119,16 +119,20 @@ impl SpaceMotionProblem<'_> {
             let why = "its error cannot be estimated: a second run fails";
             return Some(not_resolved(self.scene(), why));
         };
-        if errors.energy > LARGE_ERROR {
+        let (samples, atol) = (self.samples(&run.motion).ok()?, run.options.atol);
+        let change = |i: usize| {
+            let [from, to] = extent(samples.iter().map(|s| s.coordinate(i)));
+            to - from
+        };
+        // Of what is at rest, the energy is that of its rounding.
+        let moves = |&i: &usize| !is_at_rest(change(i), atol);
+        if errors.energy > LARGE_ERROR && self.machine.free().iter().any(moves) {
             let why = large_energy_error(errors.energy);
             return Some(not_resolved(self.scene(), &why));
         }
-        let samples = self.samples(&run.motion).ok()?;
         let mut each = self.machine.free().iter().zip(&errors.coordinates);
-        let why = each.find_map(|(&i, &error)| {
-            let [from, to] = extent(samples.iter().map(|s| s.coordinate(i)));
-            large_error(self.named_coordinate(i), error, to - from, run.options.atol)
-        });
+        let why = each
+            .find_map(|(&i, &error)| large_error(self.named_coordinate(i), error, change(i), atol));
         why.map(|why| not_resolved(self.scene(), &why))
     }
 }
