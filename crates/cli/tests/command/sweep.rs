@@ -159,7 +159,7 @@ fn kill_and_compare(samples: &str, more: &[&str], later: &[u64]) {
 #[test]
 fn a_killed_small_study_goes_on_and_its_files_are_those_of_an_unbroken_one() {
     // Motions take their time: rows are stored once a second.
-    kill_and_compare("40", &["--result", "motion,m"], &[0, 300, 3, 900, 1700]);
+    kill_and_compare("15", &["--result", "motion,m"], &[0, 300, 3, 900, 1700]);
 }
 
 #[test]
