@@ -59,7 +59,8 @@ impl<'a> PartFolder<'a> {
         let held: Result<Vec<Held>, SweepError> = std::thread::scope(|scope| {
             // The thread ends when this is dropped.
             let (_running, ended) = channel();
-            scope.spawn(|| filling.store_repeatedly(ended));
+            let filling = &filling;
+            scope.spawn(move || filling.store_repeatedly(&ended));
             let parts = parts.par_iter().zip(&filling.open);
             let fill = |(part, open)| filling.fill_part(part, open, &compute);
             parts.map(fill).collect()
@@ -140,7 +141,7 @@ impl Filling<'_, '_> {
     }
 
     /// Stores the rows of open parts from time to time, until the sender is dropped.
-    fn store_repeatedly(&self, ended: Receiver<()>) {
+    fn store_repeatedly(&self, ended: &Receiver<()>) {
         let [shortest, longest] = WAIT;
         let mut wait = shortest;
         while ended.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
