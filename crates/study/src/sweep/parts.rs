@@ -121,11 +121,14 @@ impl<'a> PartFolder<'a> {
                 part.is_whole = true;
             } else {
                 let read = |file: &PartFile| self.checked_points(file, &part.points);
-                let stored = self.read(&path, &part.points, read)?;
-                if stored.iter().any(|k| self.share.contains(*k)) {
-                    part.stored.extend(stored);
-                    part.pieces.push(path);
+                match self.read(&path, &part.points, read) {
+                    Ok(stored) if !stored.iter().any(|k| self.share.contains(*k)) => continue,
+                    Ok(stored) => part.stored.extend(stored),
+                    // Another process has finished the part meanwhile, and removed what is in its file.
+                    Err(_) if whole.exists() => part.is_whole = true,
+                    Err(fault) => return Err(fault),
                 }
+                part.pieces.push(path);
             }
         }
         part.stored.sort_unstable();
