@@ -145,7 +145,7 @@ cortex:
     cargo build --release --workspace --bins
     python3 validation/cortex/run.py
 
-# Ten million designs in Parquet files by a run that is killed twice, read back by Polars, DuckDB and pandas as docs/sweep.md shows. Installs these into a scratch environment
+# Ten million designs by a run that is killed twice, read back by Polars, DuckDB and pandas as docs/sweep.md shows. Installs these into a scratch environment
 [group('care')]
 designs points="10000000":
     cargo build --release --workspace --bins

@@ -180,7 +180,6 @@ fn the_pictures_of_sweeps_are_legible() {
             requests: &[],
             shard: None,
             export: None,
-            store: None,
             folder: &folder,
         };
         let done = sweep(&scene(case), &wanted, &no_progress).expect("a sweep");

@@ -6,8 +6,8 @@ import re
 import struct
 import zipfile
 
-# A database holds the times of its rows; its numbers are also in the CSV file beside it.
-PICTURES = {".png", ".svg", ".gif", ".sqlite"}
+# The rows of a sweep's Parquet files are also in the table that is asked for.
+PICTURES = {".png", ".svg", ".gif", ".parquet"}
 # A number has changed where it differs by more than this, relative to the largest of its column or to itself.
 EFFECTIVE = 1e-9
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\bNaN\b|\binf\b")

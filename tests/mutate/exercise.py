@@ -81,7 +81,8 @@ class Exercise:
         return f"{folder}: {' '.join(self.arguments)}"
 
     def command(self):
-        return [self.arguments[0], str(self.scene), *self.arguments[1:], "--pictures", "none", "--name", "scene"]
+        table = ["--export", "csv"] if self.arguments[0] == "sweep" else []
+        return [self.arguments[0], str(self.scene), *self.arguments[1:], *table, "--pictures", "none", "--name", "scene"]
 
 
 class Program:

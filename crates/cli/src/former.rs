@@ -3,12 +3,14 @@
 use clap::error::{ContextKind, ContextValue};
 
 /// Of which command, the former option, the current one.
-const OPTIONS: [(&str, &str, &str); 8] = [
+const OPTIONS: [(&str, &str, &str); 9] = [
     ("calibrate", "--set", "--parameter"),
     ("linearise", "--at", "--about"),
     ("reduce", "--table", "--table-accuracy"),
     ("reduce", "--to", "--table-to"),
     ("simulate", "--every", "--sample-interval"),
+    // Rows are Parquet files; a table is written on request.
+    ("sweep", "--store", "--export"),
     ("sweep", "--want", "--result"),
     ("symbolic", "--to", "--format"),
     ("validate", "--long", "--slow"),

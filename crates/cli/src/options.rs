@@ -121,8 +121,8 @@ pub(crate) enum Command {
         #[arg(long, value_parser = parse_time, value_name = "SECONDS", allow_hyphen_values = true)]
         period: Option<f64>,
     },
-    /// Parameter study over many variants of a scene, on all cores, stored in an SQLite file or in Parquet files; an
-    /// interrupted run can be resumed
+    /// Parameter study over many variants of a scene, on all cores, stored in Parquet files; an interrupted run can be
+    /// resumed
     Sweep(SweepArgs),
     /// Run all checks on all cases, or on the named ones; exit status 1 if a check fails
     Validate {

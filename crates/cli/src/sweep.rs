@@ -3,17 +3,12 @@
 use crate::values::{Choices, choice, parse_count};
 use clap::Args;
 use dwell_report::TableFormat;
-use dwell_study::{ParameterSweep, RowStore, Shard};
+use dwell_study::{ParameterSweep, Shard};
 use std::path::{Path, PathBuf};
 
 const TABLE_FORMATS: Choices<TableFormat> = &[
     ("csv", TableFormat::Csv, "Text"),
     ("npz", TableFormat::Npz, "A NumPy archive"),
-];
-
-const ROW_STORES: Choices<RowStore> = &[
-    ("sqlite", RowStore::Sqlite, "One SQLite file"),
-    ("parquet", RowStore::Parquet, "A folder of Parquet files"),
 ];
 
 #[derive(Debug, Args)]
@@ -43,15 +38,12 @@ pub(crate) struct SweepArgs {
     /// Result columns to compute, by name or prefix, such as period or m (default: all)
     #[arg(long = "result", value_name = "RESULT", value_delimiter = ',')]
     results: Vec<String>,
-    /// Compute only this part of the points, such as 2/8, in files of its own
+    /// Compute only this part of the points, such as 2/8, in the folder that all parts share
     #[arg(long, value_name = "PART/PARTS", allow_hyphen_values = true)]
     pub(crate) shard: Option<Shard>,
-    /// Compute nothing; export the stored results, including those of all shards
+    /// Write the rows as a table, too
     #[arg(long, value_parser = choice(TABLE_FORMATS), value_name = "FORMAT")]
     export: Option<TableFormat>,
-    /// Where rows are stored (default: sqlite below 100 000 points, parquet from there on)
-    #[arg(long, value_parser = choice(ROW_STORES), value_name = "KIND")]
-    store: Option<RowStore>,
 }
 
 impl SweepArgs {
@@ -64,7 +56,6 @@ impl SweepArgs {
             requests: &self.results,
             shard: self.shard,
             export: self.export,
-            store: self.store,
             folder,
         }
     }

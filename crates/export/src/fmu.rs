@@ -47,8 +47,8 @@ pub fn fmu_files(export: &Export, version: FmiVersion, scene: &str) -> FmuFiles 
     let identifier = names.prefix;
     let variables = variables::variables(export);
     let interface = match version {
-        FmiVersion::Two => ("fmi2.c", include_str!("fmu/fmi2.c")),
-        FmiVersion::Three => ("fmi3.c", include_str!("fmu/fmi3.c")),
+        FmiVersion::Two => "fmi2.c",
+        FmiVersion::Three => "fmi3.c",
     };
     let mut texts = vec![(
         "modelDescription.xml".to_owned(),
@@ -59,15 +59,38 @@ pub fn fmu_files(export: &Export, version: FmiVersion, scene: &str) -> FmuFiles 
         source(&name, text);
     }
     source("model.h", model::model(export, &variables));
-    source(interface.0, interface.1.to_owned());
+    source(interface, interface_of(version));
     if version == FmiVersion::Three {
         let text = description::build_description(&identifier, export.code.is_some());
         source("buildDescription.xml", text);
     }
     texts.extend(reference::reference_files(export, &variables, scene));
     FmuFiles {
-        sources: vec![format!("{identifier}.c"), interface.0.to_owned()],
+        sources: vec![format!("{identifier}.c"), interface.to_owned()],
         identifier,
         texts,
     }
+}
+
+/// The interface of a version, by the template of both: lines that begin with `2|` or `3|` are of that version alone.
+fn interface_of(version: FmiVersion) -> String {
+    let (own, other, names) = match version {
+        FmiVersion::Two => (
+            "2|",
+            "3|",
+            ["2", "fmi2Component", "FMUstate", "fmi2Byte", "Real"],
+        ),
+        FmiVersion::Three => (
+            "3|",
+            "2|",
+            ["3", "fmi3Instance", "FMUState", "uint8_t", "Float64"],
+        ),
+    };
+    let lines = include_str!("fmu/interface.c").lines();
+    let lines = lines.filter(|line| !line.starts_with(other));
+    let line = |line: &str| format!("{}\n", line.strip_prefix(own).unwrap_or(line));
+    let template: String = lines.map(line).collect();
+    let places = ["@v@", "@instance@", "@state@", "@byte@", "@double@"];
+    let names = places.into_iter().zip(names);
+    names.fold(template, |text, (place, name)| text.replace(place, name))
 }

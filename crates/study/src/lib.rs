@@ -104,7 +104,7 @@ pub use {
     output::{CommandResult, Outcome, PictureFormat, Pictures, add_page, add_summary},
     run::{Request, run},
     space::figure_of_positions,
-    sweep::output::{ParameterSweep, RowStore, sweep},
+    sweep::output::{ParameterSweep, sweep},
     symbolic::output::FormulaFormat,
     trajectory::figures::PictureSpan,
     trajectory::output::TrajectoryOutcome,

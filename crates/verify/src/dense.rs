@@ -181,6 +181,7 @@ impl DenseMechanism {
             row_names,
             row_scale: angular.iter().map(scale).collect(),
             angular,
+            idle,
             counts_revolutions,
             column_scales,
             size,

@@ -160,6 +160,8 @@ fn the_largest_force_of_a_drive_is_without_its_rotor() {
         "wheel.inertia=0.5:0.6:2",
         "--result",
         "cycle.motor.max_abs",
+        "--export",
+        "csv",
         "--pictures",
         "none",
     ];

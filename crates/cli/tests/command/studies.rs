@@ -125,11 +125,14 @@ fn sweeps() {
         &["--shard", "1/2", "--export", "csv"],
     );
     group.refused("nothing varied", &["sweep", "four-bar.toml"]);
-    group.dir.put(
-        "text/four-bar-sweep.sqlite",
-        "my own notes, and long enough not to be a header".repeat(4),
+    group
+        .dir
+        .put("text/four-bar-sweep/_study.toml", "my own notes");
+    refused(
+        &mut group,
+        "a file that defines no study",
+        &["--out", "text"],
     );
-    refused(&mut group, "a file that is no database", &["--out", "text"]);
     let own = [
         "sweep",
         "four-bar.toml",
@@ -138,7 +141,7 @@ fn sweeps() {
     ];
     let run = group.dir.run(&[&own[..], &["--out", "own"]].concat());
     assert_eq!(run.status, Some(0), "{run:?}");
-    refused(&mut group, "a file of another study", &["--out", "own"]);
+    refused(&mut group, "a folder of another study", &["--out", "own"]);
     group.dir.put(
         "four-bar.toml",
         four_bar_with(&[("mass = 1.0", "mass = 1.5")]),
@@ -174,6 +177,7 @@ fn a_former_option_or_command_is_answered_with_its_name() {
         (&["reduce", scene, "--table=1e-9"], "--table-accuracy"),
         (&["reduce", scene, "--to", "3"], "--table-to"),
         (&["simulate", scene, "--every", "0.1"], "--sample-interval"),
+        (&["sweep", scene, "--store", "sqlite"], "--export"),
         (&["sweep", scene, "--want", "m"], "--result"),
         (&["symbolic", scene, "--to", "c"], "--format"),
         (&["validate", "--long"], "--slow"),

@@ -1,7 +1,7 @@
 """Sweeps on a cluster: a study's numbered points in blocks that Ray or Dask spreads over its workers.
 
 A block is a shard of ``dwell sweep``: which points it has follows from the study alone, and its rows are Parquet files that are written
-beside their place and renamed when they are whole. So a block of a worker that was killed is computed again, without a row too many or too few.
+beside their place and renamed when they are complete. So a block of a worker that was killed goes on, without a row too many or too few.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class _Study:
         return pathlib.Path(self.folder) / "study.toml"
 
     def run(self, *shard: str, threads: int | None = None) -> None:
-        arguments = [self.command, "sweep", str(self.scene), *self.options, "--store", "parquet"]
+        arguments = [self.command, "sweep", str(self.scene), *self.options]
         arguments += ["--out", self.folder, "--pictures", "none", *shard]
         environment = {**os.environ, "NO_COLOR": "1"}
         if threads is not None:
@@ -140,7 +140,7 @@ def sweep_on(
     study.scene.write_text(scene, encoding="utf-8")
     with Progress("sweep") as progress:
         ENGINES[engine](study, blocks, progress)
-    # All parts are there: this computes nothing, checks every file and finds the extremes.
+    # All points are there: this computes nothing, merges the files of the blocks, checks every file and finds the extremes.
     study.run()
     summary = json.loads((place / "study-sweep.json").read_text(encoding="utf-8"))
     for left in place.glob(f"study-sweep-*-of-{blocks}.json"):

@@ -72,7 +72,7 @@ pub enum SweepError {
     /// An invalid shard.
     #[error("`{0}` is not a shard: write it as 2/8, the second of eight")]
     Shard(String),
-    /// The file holds another study.
+    /// The folder or file holds another study.
     #[error("{} holds another study: {difference}", path.display())]
     DifferentStudy {
         /// The file.
@@ -80,7 +80,7 @@ pub enum SweepError {
         /// The first difference.
         difference: String,
     },
-    /// The file is not a sweep store, or cannot be read or written.
+    /// A file is damaged or foreign, or cannot be read or written.
     #[error("{}: {reason}", path.display())]
     Store {
         /// The file.
@@ -101,7 +101,7 @@ impl SweepError {
             Self::Result { known, .. } => Some(format!("it has: {}", known.join(", "))),
             Self::DifferentStudy { .. } => Some(
                 "give the same --vary, --samples, --seed and --result to continue it, choose another folder \
-                 with --out, or move the file"
+                 with --out, or move it"
                     .to_owned(),
             ),
             Self::Store { .. } => Some("choose another folder with --out".to_owned()),

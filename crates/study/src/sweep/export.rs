@@ -6,20 +6,18 @@ use crate::output::{Outcome, Picture};
 use crate::sweep::compute::SweptScene;
 use crate::sweep::compute::{Row, SweepQuantity};
 use crate::sweep::figure::{Drawn, figure};
-use crate::sweep::output::{PreparedSweep, RowStore};
+use crate::sweep::output::PreparedSweep;
+use crate::sweep::parts::{FailedPoints, StoredRows};
 use crate::sweep::spread::Spread;
-use crate::sweep::stored::{FailedPoints, StoredResults};
 use dwell_findings::Record;
 use dwell_report::{Column, TableExport as _, TableFormat};
 use std::path::Path;
 
-/// The origin of the rows, and the number of missing ones.
+/// The origin of the rows.
 #[derive(Clone, Copy)]
 pub(crate) struct Counts {
     pub(crate) existing: usize,
-    pub(crate) imported: usize,
     pub(crate) computed: usize,
-    pub(crate) missing: usize,
 }
 
 /// The distribution of a result, and the points at which it is smallest and largest: of several the first, none where it is constant.
@@ -43,7 +41,7 @@ struct SweepReport<'a, S> {
 pub(crate) fn report_sweep(
     prepared: &PreparedSweep<'_, impl SweptScene>,
     path: &Path,
-    stored: &dyn StoredResults,
+    stored: &StoredRows<'_>,
     counts: Counts,
 ) -> Result<Outcome, StudyError> {
     let results = 0..prepared.results.len();
@@ -52,7 +50,7 @@ pub(crate) fn report_sweep(
         prepared,
         path,
         counts,
-        stored: stored.points().count(),
+        stored: stored.count(),
         statistics: statistics.collect::<Result<_, StudyError>>()?,
         failed: stored.failed()?,
     };
@@ -68,43 +66,33 @@ pub(crate) fn report_sweep(
         return Ok(outcome);
     }
     let name = |rest: &str| format!("{}-sweep{rest}", scene.name);
-    let formats = match (sweep.export, prepared.store) {
-        (Some(only), _) => vec![only],
-        (None, RowStore::Sqlite) => TableFormat::ALL.to_vec(),
-        // They would be as large as the Parquet files, and nobody reads 10⁷ lines.
-        (None, RowStore::Parquet) => Vec::new(),
-    };
-    if !formats.is_empty() {
+    if let Some(format) = sweep.export {
         let rows = stored.rows()?;
-        for format in formats {
-            let bytes = match format {
-                TableFormat::Csv => csv(prepared, &rows)?.into_bytes(),
-                TableFormat::Npz => npz(prepared, &rows)?,
-            };
-            let path = name(&format!(".{}", format.extension()));
-            outcome.files.add(path, bytes);
-        }
+        let bytes = match format {
+            TableFormat::Csv => csv(prepared, &rows)?.into_bytes(),
+            TableFormat::Npz => npz(prepared, &rows)?,
+        };
+        let path = name(&format!(".{}", format.extension()));
+        outcome.files.add(path, bytes);
     }
-    if sweep.export.is_none() {
-        match figure(prepared, stored, report.failed.count)? {
-            Drawn::Figure(figure, note) => {
-                let picture = Picture::figure(scene, name(".png"), true, *figure);
-                outcome.pictures.push(picture);
-                outcome.summary += &note.map_or(String::new(), |note| format!("  {note}\n"));
-            }
-            Drawn::Nothing(why) => outcome.summary += &format!("  no figure: {why}\n"),
+    match figure(prepared, stored, report.failed.count)? {
+        Drawn::Figure(figure, note) => {
+            let picture = Picture::figure(scene, name(".png"), true, *figure);
+            outcome.pictures.push(picture);
+            outcome.summary += &note.map_or(String::new(), |note| format!("  {note}\n"));
         }
+        Drawn::Nothing(why) => outcome.summary += &format!("  no figure: {why}\n"),
     }
     Ok(outcome)
 }
 
 impl Statistics {
-    fn of(values: &[f64], stored: &dyn StoredResults) -> Option<Self> {
+    fn of(values: &[f64], stored: &StoredRows<'_>) -> Option<Self> {
         let spread = Spread::of(values.iter().copied())?;
         let first = |value: f64| values.iter().position(|v| *v == value);
         let ends = first(spread.min).zip(first(spread.max));
         let ends = ends.filter(|_| spread.min < spread.max);
-        let ends = ends.map(|(a, b)| [a, b].map(|position| stored.points().index(position)));
+        let ends = ends.map(|(a, b)| [a, b].map(|position| stored.share().point(position as u64)));
         Some(Self { spread, ends })
     }
 }
@@ -149,13 +137,11 @@ impl<S: SweptScene> SweepReport<'_, S> {
             text += &format!(", {samples} with seed {}", design.seed);
         }
         if let Some(shard) = prepared.sweep.shard {
-            let points = self.stored + counts.missing;
-            text += &format!(", of which shard {shard} has {points}");
+            text += &format!(", of which shard {shard} has {}", self.stored);
         }
         text += &format!("\n  {}: {}", self.path.display(), count(self.stored, "row"));
         let parts = [
             (counts.existing, "already stored"),
-            (counts.imported, "imported from shards"),
             (counts.computed, "computed"),
         ];
         let parts = parts.iter().filter(|(n, _)| *n > 0);
@@ -164,9 +150,6 @@ impl<S: SweptScene> SweepReport<'_, S> {
             text += &format!(" ({})", parts.join(", "));
         }
         text.push('\n');
-        if counts.missing > 0 {
-            text += &format!("  {} not computed yet\n", count(counts.missing, "point"));
-        }
         let quantities = &prepared.requested.quantities;
         if quantities.iter().any(SweepQuantity::is_extremum) {
             text += "  smallest and largest values of a motion or a range are searched between its positions, too\n";
@@ -193,9 +176,7 @@ impl<S: SweptScene> SweepReport<'_, S> {
             ),
             ("rows", self.stored),
             ("rows.already_stored", counts.existing),
-            ("rows.imported", counts.imported),
             ("rows.computed", counts.computed),
-            ("points.missing", counts.missing),
             ("points.failed", self.failed.count),
         ] {
             record.add_count(name, count);

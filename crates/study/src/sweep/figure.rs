@@ -6,8 +6,8 @@ use crate::output::{self, scene_caption};
 use crate::sweep::compute::SweptScene;
 use crate::sweep::compute::{Axis as SweepAxis, SweepQuantity};
 use crate::sweep::output::PreparedSweep;
+use crate::sweep::parts::StoredRows;
 use crate::sweep::spread::Spread;
-use crate::sweep::stored::StoredResults;
 use dwell_report::{Axis, Chart, Figure, Mark, Paint, Series, Stroke};
 
 /// Maximum number of charts on the page, and of curves in a chart.
@@ -35,7 +35,7 @@ pub(crate) enum Drawn {
 /// The figure of a sweep.
 pub(crate) fn figure(
     prepared: &PreparedSweep<'_, impl SweptScene>,
-    stored: &dyn StoredResults,
+    stored: &StoredRows<'_>,
     failed: usize,
 ) -> Result<Drawn, SweepError> {
     let design = &prepared.design;
@@ -82,7 +82,7 @@ pub(crate) fn figure(
         name: "sweep".to_owned(),
         title: format!("Sweep over {}", axis_names(&design.axes)),
         caption: scene_caption(prepared.scene, caption),
-        provenance: method_text(prepared, stored.points().count(), failed),
+        provenance: method_text(prepared, stored.count(), failed),
         columns: 2,
         panels: charts.map(Into::into).collect(),
     };
@@ -221,15 +221,15 @@ fn chosen_values(values: Vec<f64>) -> Vec<f64> {
 /// The curves of a sweep over lists.
 struct SweptCurves<'a, S> {
     prepared: &'a PreparedSweep<'a, S>,
-    stored: &'a dyn StoredResults,
+    stored: &'a StoredRows<'a>,
 }
 
 impl<S: SweptScene> SweptCurves<'_, S> {
-    /// The values of an axis at all stored points.
+    /// The values of an axis at all points.
     fn inputs(&self, axis: usize) -> Vec<f64> {
         let design = &self.prepared.design;
-        let indices = self.stored.points().indices();
-        indices.map(|index| design.values(index)[axis]).collect()
+        let points = 0..design.points;
+        points.map(|point| design.values(point)[axis]).collect()
     }
 
     /// Curves over one axis; of another, a few of its values.

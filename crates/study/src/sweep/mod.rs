@@ -1,4 +1,4 @@
-//! `dwell sweep`: results of many variants of a scene, stored in a file as they are computed.
+//! `dwell sweep`: results of many variants of a scene, stored in files as they are computed.
 
 pub mod compute;
 #[cfg(feature = "output")]
@@ -6,17 +6,15 @@ mod export;
 #[cfg(feature = "output")]
 mod figure;
 #[cfg(feature = "output")]
+mod identity;
+#[cfg(feature = "output")]
 pub(crate) mod output;
 #[cfg(feature = "output")]
 mod parts;
 #[cfg(feature = "output")]
+mod share;
+#[cfg(feature = "output")]
 mod spread;
-#[cfg(feature = "output")]
-mod store;
-#[cfg(feature = "output")]
-mod store_check;
-#[cfg(feature = "output")]
-mod stored;
 #[cfg(test)]
 #[cfg(feature = "output")]
 mod tests;

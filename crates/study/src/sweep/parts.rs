@@ -1,31 +1,37 @@
-//! The results of a large sweep in a folder of Parquet files.
+//! The rows of a study in a folder of Parquet files.
 //!
 //! ```text
-//! SCENE-sweep/_study.toml                         what the study is
-//! SCENE-sweep/part-0000000000-0000065535.parquet  the rows of these points
+//! SCENE-sweep/_study.toml                                what the study is
+//! SCENE-sweep/part-0000000000-0000065535.parquet         the rows of these points
+//! SCENE-sweep/part-0000065536-0000131071.1-of-1.parquet  some of them, which a run or a shard has computed so far
 //! ```
 //!
-//! A part is written beside its place and renamed when it is complete: a file with the name of a part is whole, whatever
-//! happened to the process that wrote it. Which points a part has follows from the study alone, so that shards fill one folder.
+//! Which points a part has follows from the study alone, so that shards fill one folder. Every file is written beside its
+//! place and renamed when it is complete: it is whole, whatever happened to the process that wrote it. A run replaces its
+//! unfinished parts by longer ones from time to time, and in the end by the file of all their points.
 
+mod filling;
 mod part_file;
+mod stored;
 
 use crate::explain::SweepError;
 use crate::sweep::compute::{Design, PointResult, Row, Shard};
-use crate::sweep::store::{SCENE_TEXT, StoreFault, StudyIdentity, study_difference};
-use crate::sweep::stored::{FailedPoints, MAX_LISTED, StoredPoints, StoredResults};
-use part_file::{PartFault, PartFile, PartFormat};
+use crate::sweep::identity::{StoreFault, StudyIdentity, check_study, study_hash};
+use crate::sweep::share::{PART_LENGTH, Share};
+use part_file::{PartFault, PartFile, PartFormat, unsigned};
 use rayon::prelude::*;
-use sha2::{Digest, Sha256};
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::fs;
+use std::hash::{BuildHasher as _, RandomState};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+pub(crate) use stored::{FailedPoints, StoredRows};
 
 /// The definition of the study, beside its parts: readers of a folder of Parquet files leave out names with an underscore.
 const STUDY_FILE: &str = "_study.toml";
 /// Ending of the name of a file that is being written.
 const UNFINISHED: &str = "unfinished";
+const PARQUET: &str = "parquet";
 
 /// The folder of a study.
 pub(crate) struct PartFolder<'a> {
@@ -33,98 +39,195 @@ pub(crate) struct PartFolder<'a> {
     format: PartFormat,
     design: &'a Design,
     results: usize,
-    /// Points of a part; the last one may have fewer.
-    length: u64,
-    shard: Option<Shard>,
-    existing: Vec<Range<u64>>,
-    /// The parts that had no file when the folder was opened.
-    pub(crate) missing: Vec<Range<u64>>,
-    points: StoredPoints,
+    share: Share,
+    /// Among the names of unfinished files, so that no other process writes the same one.
+    process: u64,
+}
+
+/// The points of one file, and what there is of them.
+pub(crate) struct Part {
+    points: Range<u64>,
+    /// Whether its file is there.
+    is_whole: bool,
+    /// Files with some of its points, some of which are those of this run.
+    pieces: Vec<PathBuf>,
+    /// The points of these files, ascending.
+    stored: Vec<u64>,
+    /// Number of points of this run that no file has.
+    pub(crate) missing: usize,
 }
 
 impl<'a> PartFolder<'a> {
     /// Opens the folder of a study, or creates it. `headings` are those of the inputs and of the results.
     ///
     /// # Errors
-    /// [`SweepError::DifferentStudy`] if it holds another study, [`SweepError::Store`] if something in it is damaged, or it
-    /// cannot be read or written.
+    /// [`SweepError::DifferentStudy`] if it holds another study, [`SweepError::Store`] if it cannot be read or written.
     pub(crate) fn open(
         path: &Path,
         study: &StudyIdentity,
         headings: [&[String]; 2],
-        (design, length, shard): (&'a Design, u64, Option<Shard>),
+        (design, shard): (&'a Design, Option<Shard>),
     ) -> Result<Self, SweepError> {
         let failed = |reason: String| StoreFault::Reason(reason).with_path(path);
         fs::create_dir_all(path)
             .map_err(|e| failed(format!("the folder cannot be created: {e}")))?;
-        check_study(&path.join(STUDY_FILE), study)?;
         let format = PartFormat::new(headings, study_hash(study));
-        let mut folder = Self {
+        let folder = Self {
             path: path.to_owned(),
             format: format.map_err(|e| failed(e.to_string()))?,
             design,
             results: headings[1].len(),
-            length,
-            shard,
-            existing: Vec::new(),
-            missing: Vec::new(),
-            points: StoredPoints::default(),
+            share: Share::new(design.points, shard),
+            process: RandomState::new().hash_one(std::process::id()),
         };
-        for part in folder.parts() {
-            if folder.file(&part).exists() {
-                folder.open_part(&part)?;
-                folder.points.push(part.clone());
-                folder.existing.push(part);
-            } else {
-                folder.missing.push(part);
-            }
-        }
+        let file = path.join(STUDY_FILE);
+        check_study(&file, &folder.unfinished(&file), study)?;
         Ok(folder)
     }
 
-    /// All parts of the study, or of the shard.
-    fn parts(&self) -> Vec<Range<u64>> {
-        let (points, length) = (self.design.points, self.length);
-        let numbers = 0..points.div_ceil(length);
-        let numbers = numbers.filter(|number| self.shard.is_none_or(|s| s.contains(*number)));
-        let part = |number| number * length..points.min((number + 1) * length);
-        numbers.map(part).collect()
+    /// All parts with points of this run, each with what there is of them.
+    ///
+    /// # Errors
+    /// [`SweepError`] of a file that is damaged, or none of this study.
+    pub(crate) fn parts(&self) -> Result<Vec<Part>, SweepError> {
+        let mut files = self.files()?;
+        let starts = (0..self.design.points).step_by(PART_LENGTH as usize);
+        let files = starts.map(|start| (start, files.remove(&start).unwrap_or_default()));
+        let files: Vec<(u64, Vec<PathBuf>)> = files.collect();
+        let parts = files.into_par_iter().map(|(start, files)| {
+            let points = start..self.design.points.min(start + PART_LENGTH);
+            self.part(points, files)
+        });
+        let parts: Result<Vec<Option<Part>>, SweepError> = parts.collect();
+        Ok(parts?.into_iter().flatten().collect())
     }
 
-    fn file(&self, part: &Range<u64>) -> PathBuf {
-        let (first, last) = (part.start, part.end - 1);
+    /// A part with its files; `None` if no point of it is of this run.
+    fn part(&self, points: Range<u64>, files: Vec<PathBuf>) -> Result<Option<Part>, SweepError> {
+        if !points.clone().any(|k| self.share.contains(k)) {
+            return Ok(None);
+        }
+        let mut part = Part {
+            is_whole: false,
+            pieces: Vec::new(),
+            stored: Vec::new(),
+            missing: 0,
+            points,
+        };
+        let whole = self.file(&part.points);
+        for path in files {
+            if path == whole {
+                self.open_file(&path, &part.points)?;
+                part.is_whole = true;
+            } else {
+                let read = |file: &PartFile| self.checked_points(file, &part.points);
+                match self.read(&path, &part.points, read) {
+                    Ok(stored) if !stored.iter().any(|k| self.share.contains(*k)) => continue,
+                    Ok(stored) => part.stored.extend(stored),
+                    // Another process has finished the part meanwhile, and removed what is in its file.
+                    Err(_) if whole.exists() => part.is_whole = true,
+                    Err(fault) => return Err(fault),
+                }
+                part.pieces.push(path);
+            }
+        }
+        part.stored.sort_unstable();
+        if !part.is_whole {
+            part.missing = self.missing(&part).count();
+        }
+        Ok(Some(part))
+    }
+
+    /// The points of a part that this run has to compute, unless the part is whole.
+    fn missing<'p>(&self, part: &'p Part) -> impl Iterator<Item = u64> + 'p {
+        let share = self.share;
+        let points = part.points.clone();
+        points.filter(move |k| share.contains(*k) && part.stored.binary_search(k).is_err())
+    }
+
+    /// The Parquet files in the folder by the first point of their parts, each list in the order of the names.
+    fn files(&self) -> Result<BTreeMap<u64, Vec<PathBuf>>, SweepError> {
+        let failed = |e: std::io::Error| {
+            StoreFault::Reason(format!("the folder cannot be read: {e}")).with_path(&self.path)
+        };
+        let mut files: BTreeMap<u64, Vec<PathBuf>> = BTreeMap::new();
+        for entry in fs::read_dir(&self.path).map_err(failed)? {
+            let path = entry.map_err(failed)?.path();
+            if path.extension().is_none_or(|ending| ending != PARQUET) {
+                continue;
+            }
+            let Some(start) = self.start_of(&path) else {
+                let fault = "the file is no part of this study: move it to another folder";
+                return Err(StoreFault::Reason(fault.to_owned()).with_path(&path));
+            };
+            files.entry(start).or_default().push(path);
+        }
+        files.values_mut().for_each(|paths| paths.sort());
+        Ok(files)
+    }
+
+    /// The first point of the part that a file's name states.
+    fn start_of(&self, path: &Path) -> Option<u64> {
+        let name = path.file_name()?.to_str()?;
+        let stated = name.strip_prefix("part-")?.strip_suffix(".parquet")?;
+        let (range, shard) = match stated.split_once('.') {
+            Some((range, shard)) => (range, Some(shard.replacen("-of-", "/", 1).parse().ok()?)),
+            None => (stated, None),
+        };
+        let start: u64 = range.split_once('-')?.0.parse().ok()?;
+        let end = self.design.points.min(start.saturating_add(PART_LENGTH));
+        let is_part = start.is_multiple_of(PART_LENGTH) && start < end;
+        (is_part && *path == self.named(&(start..end), shard)).then_some(start)
+    }
+
+    fn named(&self, points: &Range<u64>, shard: Option<Shard>) -> PathBuf {
+        let (first, last) = (points.start, points.end - 1);
+        let shard = shard.map_or_else(String::new, |s| format!(".{}-of-{}", s.part, s.of));
         self.path
-            .join(format!("part-{first:010}-{last:010}.parquet"))
+            .join(format!("part-{first:010}-{last:010}{shard}.{PARQUET}"))
     }
 
-    /// Writes a part. Another process may write the same one: both have the same rows.
-    pub(crate) fn write(&self, part: &Range<u64>, rows: &[Row]) -> Result<(), SweepError> {
-        let file = self.file(part);
-        let unfinished = unfinished(&file);
+    /// The file of all points of a part.
+    fn file(&self, points: &Range<u64>) -> PathBuf {
+        self.named(points, None)
+    }
+
+    /// The file of the points that this run has of an unfinished part.
+    fn own_piece(&self, points: &Range<u64>) -> PathBuf {
+        self.named(points, Some(self.share.shard()))
+    }
+
+    /// Where this process writes a file before it has its name.
+    fn unfinished(&self, path: &Path) -> PathBuf {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let (name, process) = (name.trim_start_matches('_'), self.process);
+        path.with_file_name(format!("_{name}.{process:016x}.{UNFINISHED}"))
+    }
+
+    /// Writes the rows of some points of a part, in their order. Another process may write the same file: both have the
+    /// same rows.
+    fn write(&self, path: &Path, points: &Range<u64>, rows: &[Row]) -> Result<(), SweepError> {
+        let unfinished = self.unfinished(path);
         let write = || -> Result<(), String> {
             let written = self.format.write(&unfinished, rows);
             written.map_err(|e| e.to_string())?;
-            let renamed = fs::rename(&unfinished, &file);
+            let renamed = fs::rename(&unfinished, path);
             renamed.map_err(|e| e.to_string())
         };
-        write().map_err(|reason| {
-            // What remains is of no use; that it cannot be removed adds nothing to the first error.
-            let _ = fs::remove_file(&unfinished);
-            StoreFault::Reason(format!("cannot be written: {reason}")).with_path(&file)
-        })
+        let Err(reason) = write() else {
+            return Ok(());
+        };
+        // What remains is of no use; that it cannot be removed adds nothing to the first error.
+        let _ = fs::remove_file(&unfinished);
+        if self.file(points).exists() {
+            // Another process has finished the part, and removed what it took for the remains of a killed run.
+            return Ok(());
+        }
+        Err(StoreFault::Reason(format!("cannot be written: {reason}")).with_path(path))
     }
 
-    /// Notes that all missing parts are written, and removes what killed runs left.
-    pub(crate) fn complete(&mut self) {
-        self.existing = self.parts();
-        self.missing.clear();
-        self.points = StoredPoints::default();
-        for part in &self.existing {
-            self.points.push(part.clone());
-        }
-        if self.shard.is_some() {
-            return;
-        }
+    /// Removes what killed runs left.
+    fn remove_unfinished(&self) {
         for entry in fs::read_dir(&self.path).into_iter().flatten().flatten() {
             let path = entry.path();
             if path.extension().is_some_and(|ending| ending == UNFINISHED) {
@@ -133,148 +236,80 @@ impl<'a> PartFolder<'a> {
         }
     }
 
-    fn open_part(&self, part: &Range<u64>) -> Result<PartFile, SweepError> {
-        let rows = (part.end - part.start) as usize;
-        let opened = self.format.open(&self.file(part), rows);
-        opened.map_err(|fault| self.fault(part, fault))
-    }
-
-    fn fault(&self, part: &Range<u64>, fault: PartFault) -> SweepError {
-        let remedy = "remove it, and its points are computed again";
-        let fault = match fault {
-            PartFault::OtherStudy => StoreFault::Differs("the part is of another study".to_owned()),
-            PartFault::Damaged(what) => {
-                StoreFault::Reason(format!("the file is damaged ({what}): {remedy}"))
-            }
-            PartFault::Unreadable(why) => {
-                StoreFault::Reason(format!("the file cannot be read ({why}): {remedy}"))
-            }
+    /// Opens the file of a part, or of some of its points.
+    fn open_file(&self, path: &Path, points: &Range<u64>) -> Result<PartFile, SweepError> {
+        let length = (points.end - points.start) as usize;
+        let rows = match *path == self.file(points) {
+            true => length..=length,
+            false => 1..=length,
         };
-        fault.with_path(&self.file(part))
+        let opened = self.format.open(path, rows);
+        opened.map_err(|fault| fault.with_path(path))
     }
 
-    /// Reads something of every stored part, side by side.
-    fn of_parts<T: Send>(
+    /// Reads something of a file of a part.
+    fn read<T>(
         &self,
-        read: impl Fn(&PartFile, &Range<u64>) -> Result<T, PartFault> + Sync,
-    ) -> Result<Vec<T>, SweepError> {
-        let parts = self.existing.par_iter();
-        let read = parts.map(|part| {
-            let file = self.open_part(part)?;
-            read(&file, part).map_err(|fault| self.fault(part, fault))
-        });
-        read.collect()
+        path: &Path,
+        points: &Range<u64>,
+        read: impl Fn(&PartFile) -> Result<T, PartFault>,
+    ) -> Result<T, SweepError> {
+        let file = self.open_file(path, points)?;
+        read(&file).map_err(|fault| fault.with_path(path))
     }
 
-    /// Checks that the parts hold the points of their names: indices and inputs follow from the study.
-    pub(crate) fn check_inputs(&self) -> Result<(), SweepError> {
+    /// Reads something of the file of a whole part.
+    fn read_whole<T>(
+        &self,
+        points: &Range<u64>,
+        read: impl Fn(&PartFile) -> Result<T, PartFault>,
+    ) -> Result<T, SweepError> {
+        self.read(&self.file(points), points, read)
+    }
+
+    /// The points whose rows a file has: of its part, ascending, and with the inputs that follow from the study.
+    fn checked_points(&self, file: &PartFile, part: &Range<u64>) -> Result<Vec<u64>, PartFault> {
         const OTHER_POINTS: PartFault = PartFault::Damaged("it holds other points");
-        let checked = self.of_parts(|file, part| {
-            let expected = part.start as i64..part.end as i64;
-            if !file.indices()?.into_iter().eq(expected) {
+        // Below zero is beyond all points.
+        let points: Vec<u64> = file.indices()?.into_iter().map(|k| k as u64).collect();
+        let is_rising = points.is_sorted_by(|a, b| a < b);
+        if !is_rising || !points.iter().all(|k| part.contains(k)) {
+            return Err(OTHER_POINTS);
+        }
+        let inputs: Vec<Vec<f64>> = points.iter().map(|&k| self.design.values(k)).collect();
+        for axis in 0..self.design.axes.len() {
+            let expected = inputs.iter().map(|values| unsigned(values[axis]).to_bits());
+            if !file.input(axis)?.iter().map(|v| v.to_bits()).eq(expected) {
                 return Err(OTHER_POINTS);
             }
-            let inputs: Vec<Vec<f64>> = part.clone().map(|k| self.design.values(k)).collect();
-            for axis in 0..self.design.axes.len() {
-                let expected = inputs.iter().map(|values| values[axis].to_bits());
-                if !file.input(axis)?.iter().map(|v| v.to_bits()).eq(expected) {
-                    return Err(OTHER_POINTS);
-                }
-            }
-            Ok(())
-        });
-        checked.map(|_| ())
-    }
-}
-
-impl StoredResults for PartFolder<'_> {
-    fn points(&self) -> &StoredPoints {
-        &self.points
-    }
-
-    fn values(&self, result: usize) -> Result<Vec<f64>, SweepError> {
-        let parts = self.of_parts(|file, _| file.result(result))?;
-        Ok(parts.concat())
-    }
-
-    fn failed(&self) -> Result<FailedPoints, SweepError> {
-        let of_parts =
-            self.of_parts(|file, part| Ok(FailedPoints::of(part.clone().zip(file.messages()?))));
-        let mut all = FailedPoints::default();
-        for part in of_parts? {
-            all.count += part.count;
-            all.first.extend(part.first);
         }
-        all.first.truncate(MAX_LISTED);
-        Ok(all)
+        Ok(points)
     }
 
-    fn rows(&self) -> Result<Vec<Row>, SweepError> {
-        let of_parts = self.of_parts(|file, part| {
-            let columns: Result<Vec<_>, _> = (0..self.results).map(|k| file.result(k)).collect();
-            let columns = columns?;
-            let messages = file.messages()?;
-            let rows = part.clone().zip(messages).enumerate();
-            let row = |(k, (index, message))| Row {
+    /// The rows of a file that are of this run.
+    fn rows(&self, path: &Path, part: &Range<u64>) -> Result<Vec<Row>, SweepError> {
+        self.read(path, part, |file| {
+            let points = self.checked_points(file, part)?;
+            let inputs = 0..self.design.axes.len();
+            let inputs: Vec<_> = inputs.map(|k| file.input(k)).collect::<Result<_, _>>()?;
+            let results = 0..self.results;
+            let results: Vec<_> = results.map(|k| file.result(k)).collect::<Result<_, _>>()?;
+            let cells = |columns: &[Vec<f64>], k: usize| columns.iter().map(|c| c[k]).collect();
+            let rows = points.into_iter().zip(file.messages()?).enumerate();
+            let rows = rows.map(|(k, (index, message))| Row {
                 index,
-                inputs: self.design.values(index),
+                inputs: cells(&inputs, k),
                 result: PointResult {
-                    values: columns.iter().map(|column| column[k]).collect(),
+                    values: cells(&results, k),
                     message,
                 },
-            };
-            Ok(rows.map(row).collect::<Vec<Row>>())
-        });
-        Ok(of_parts?.into_iter().flatten().collect())
+            });
+            Ok(rows.filter(|row| self.share.contains(row.index)).collect())
+        })
     }
-}
 
-/// The folder's study must be this one; without a file it becomes it.
-fn check_study(path: &Path, study: &StudyIdentity) -> Result<(), SweepError> {
-    let reason = |reason: String| StoreFault::Reason(reason).with_path(path);
-    match fs::read_to_string(path) {
-        Ok(text) => {
-            let stored: Result<HashMap<String, String>, _> = toml::from_str(&text);
-            let stored = stored.map_err(|e| {
-                reason(format!(
-                    "it is not the definition of a study: {}",
-                    e.message()
-                ))
-            })?;
-            match study_difference(&stored, study) {
-                None => Ok(()),
-                Some(difference) => Err(difference.with_path(path)),
-            }
-        }
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            let entries = study.iter();
-            let entries =
-                entries.map(|(key, value)| ((*key).to_owned(), toml::Value::from(value.as_str())));
-            let table: toml::Table = entries.collect();
-            // Shards may write it at the same time, with the same content.
-            let unfinished = unfinished(path);
-            let text = toml::to_string_pretty(&table).map_err(|e| reason(e.to_string()))?;
-            let written = fs::write(&unfinished, text).and_then(|()| fs::rename(&unfinished, path));
-            written.map_err(|e| reason(format!("cannot be written: {e}")))
-        }
-        Err(error) => Err(reason(format!("cannot be read: {error}"))),
+    /// The rows of a whole part that are of this run.
+    fn whole_rows(&self, points: &Range<u64>) -> Result<Vec<Row>, SweepError> {
+        self.rows(&self.file(points), points)
     }
-}
-
-/// Where this process writes a file before it has its name.
-fn unfinished(path: &Path) -> PathBuf {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let name = name.trim_start_matches('_');
-    path.with_file_name(format!("_{name}.{}.{UNFINISHED}", std::process::id()))
-}
-
-/// The hash of a study's definition, by which its parts are known.
-fn study_hash(study: &StudyIdentity) -> String {
-    let mut digest = Sha256::new();
-    // The scene's text is known by its hash, which is independent of line ends.
-    for (key, value) in study.iter().filter(|(key, _)| *key != SCENE_TEXT) {
-        digest.update(format!("{key}={value}\n"));
-    }
-    let hash = digest.finalize();
-    hash.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -85,20 +85,13 @@ impl Design {
     }
 }
 
-/// A part of a study: point k belongs to part k mod `of` + 1.
+/// A part of a study: every n-th block of its points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     /// Number of the part, from 1.
     pub part: u64,
     /// Number of parts.
     pub of: u64,
-}
-
-impl Shard {
-    /// Whether it contains a point.
-    pub fn contains(self, k: u64) -> bool {
-        k % self.of == self.part - 1
-    }
 }
 
 impl std::str::FromStr for Shard {

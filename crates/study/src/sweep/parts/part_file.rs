@@ -1,9 +1,11 @@
-//! One part of a study: a Parquet file with the rows of consecutive points.
+//! One file of a study: a Parquet file with rows in the order of their points.
 //!
 //! Doubles are stored split by bytes and compressed: sign and exponent are nearly constant along a column, the mantissa is not.
 //! Each column has a checksum in the file's metadata, because a reader accepts many damaged files.
 
+use crate::explain::SweepError;
 use crate::sweep::compute::Row;
+use crate::sweep::identity::StoreFault;
 use parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as Physical, ZstdLevel};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
@@ -16,6 +18,7 @@ use parquet::schema::types::{ColumnPath, Type, TypePtr};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
+use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -25,8 +28,8 @@ const CHECKSUMS: &str = "dwell.checksums";
 const INDEX: &str = "index";
 const MESSAGE: &str = "message";
 
-/// The columns of every part of a study: the index, inputs, results (null where there is none) and the message.
-pub(crate) struct PartFormat {
+/// The columns of every file of a study: the index, inputs, results (null where there is none) and the message.
+pub(super) struct PartFormat {
     schema: TypePtr,
     properties: WriterPropertiesPtr,
     inputs: usize,
@@ -39,7 +42,7 @@ type Cells = Vec<Option<f64>>;
 
 impl PartFormat {
     /// `headings` are those of the inputs and of the results.
-    pub(crate) fn new(headings: [&[String]; 2], study_hash: String) -> Result<Self, ParquetError> {
+    pub(super) fn new(headings: [&[String]; 2], study_hash: String) -> Result<Self, ParquetError> {
         let index = Type::primitive_type_builder(INDEX, Physical::INT64);
         let index = index.with_repetition(Repetition::REQUIRED);
         let mut columns = vec![Arc::new(index.build()?)];
@@ -75,8 +78,8 @@ impl PartFormat {
         })
     }
 
-    /// Writes the rows of a part, on the disk when it returns.
-    pub(crate) fn write(&self, path: &Path, rows: &[Row]) -> Result<(), ParquetError> {
+    /// Writes the rows of a file, on the disk when it returns.
+    pub(super) fn write(&self, path: &Path, rows: &[Row]) -> Result<(), ParquetError> {
         let file = BufWriter::new(File::create(path)?);
         let (schema, properties) = (Arc::clone(&self.schema), Arc::clone(&self.properties));
         let mut writer = SerializedFileWriter::new(file, schema, properties)?;
@@ -85,12 +88,12 @@ impl PartFormat {
         let mut checksums = vec![of_indices(&indices)];
         write_column::<Int64Type>(&mut group, &indices, None)?;
         for k in 0..self.inputs {
-            let cells: Vec<f64> = rows.iter().map(|row| row.inputs[k]).collect();
+            let cells: Vec<f64> = rows.iter().map(|row| unsigned(row.inputs[k])).collect();
             write_column::<DoubleType>(&mut group, &cells, None)?;
             checksums.push(of_numbers(&cells.into_iter().map(Some).collect::<Cells>()));
         }
         for k in 0..self.results {
-            let cell = |row: &Row| Some(row.result.values[k]).filter(|v| !v.is_nan());
+            let cell = |row: &Row| Some(unsigned(row.result.values[k])).filter(|v| !v.is_nan());
             let cells: Cells = rows.iter().map(cell).collect();
             let values: Vec<f64> = cells.iter().copied().flatten().collect();
             let levels: Vec<i16> = cells.iter().map(|v| i16::from(v.is_some())).collect();
@@ -115,8 +118,12 @@ impl PartFormat {
         Ok(())
     }
 
-    /// Opens a part, whose file says that it is one of this study.
-    pub(crate) fn open(&self, path: &Path, rows: usize) -> Result<PartFile, PartFault> {
+    /// Opens a file that says that it is one of this study; `expected` is how many rows it may have.
+    pub(super) fn open(
+        &self,
+        path: &Path,
+        expected: RangeInclusive<usize>,
+    ) -> Result<PartFile, PartFault> {
         let reader = SerializedFileReader::new(File::open(path)?)?;
         let metadata = reader.metadata().file_metadata();
         let entry = |name: &str| {
@@ -129,14 +136,18 @@ impl PartFormat {
         }
         let checksums = entry(CHECKSUMS).unwrap_or_default();
         let checksums: Vec<String> = checksums.split(' ').map(str::to_owned).collect();
-        let groups = reader.metadata().row_groups();
-        let has_all = groups.len() == 1 && groups[0].num_rows() == rows as i64;
+        let rows = match reader.metadata().row_groups() {
+            [group] => usize::try_from(group.num_rows()).ok(),
+            _ => None,
+        };
+        let rows = rows.filter(|rows| expected.contains(rows));
         let columns = 2 + self.inputs + self.results;
-        if !has_all || metadata.schema() != &*self.schema || checksums.len() != columns {
+        let has_columns = metadata.schema() == &*self.schema && checksums.len() == columns;
+        let (Some(rows), true) = (rows, has_columns) else {
             return Err(PartFault::Damaged(
                 "it has not the rows and columns of its part",
             ));
-        }
+        };
         Ok(PartFile {
             reader,
             rows,
@@ -146,8 +157,8 @@ impl PartFormat {
     }
 }
 
-/// A part that is open for reading.
-pub(crate) struct PartFile {
+/// A file that is open for reading.
+pub(super) struct PartFile {
     reader: SerializedFileReader<File>,
     rows: usize,
     checksums: Vec<String>,
@@ -158,7 +169,7 @@ pub(crate) struct PartFile {
 const OTHER_TYPE: PartFault = PartFault::Damaged("a column has another type");
 
 impl PartFile {
-    pub(crate) fn indices(&self) -> Result<Vec<i64>, PartFault> {
+    pub(super) fn indices(&self) -> Result<Vec<i64>, PartFault> {
         let ColumnReader::Int64ColumnReader(column) = self.column(0)? else {
             return Err(OTHER_TYPE);
         };
@@ -167,12 +178,12 @@ impl PartFile {
         Ok(indices)
     }
 
-    pub(crate) fn input(&self, input: usize) -> Result<Vec<f64>, PartFault> {
+    pub(super) fn input(&self, input: usize) -> Result<Vec<f64>, PartFault> {
         self.numbers(1 + input)
     }
 
     /// A result, NaN where there is none.
-    pub(crate) fn result(&self, result: usize) -> Result<Vec<f64>, PartFault> {
+    pub(super) fn result(&self, result: usize) -> Result<Vec<f64>, PartFault> {
         self.numbers(1 + self.columns[0] + result)
     }
 
@@ -185,7 +196,7 @@ impl PartFile {
         Ok(cells.into_iter().map(|v| v.unwrap_or(f64::NAN)).collect())
     }
 
-    pub(crate) fn messages(&self) -> Result<Vec<Option<String>>, PartFault> {
+    pub(super) fn messages(&self) -> Result<Vec<Option<String>>, PartFault> {
         let column = 1 + self.columns[0] + self.columns[1];
         let ColumnReader::ByteArrayColumnReader(reader) = self.column(column)? else {
             return Err(OTHER_TYPE);
@@ -232,6 +243,11 @@ impl PartFile {
     }
 }
 
+/// A number without the sign of a zero, which says nothing of a result.
+pub(super) fn unsigned(value: f64) -> f64 {
+    value + 0.0
+}
+
 /// Writes the next column; `levels` are 0 for null and 1 for a value.
 fn write_column<T: DataType>(
     group: &mut SerializedRowGroupWriter<'_, BufWriter<File>>,
@@ -274,11 +290,28 @@ fn checksum(cells: impl Iterator<Item = impl AsRef<[u8]>>) -> String {
     bytes.map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Why a part cannot be read.
-pub(crate) enum PartFault {
+/// Why a file cannot be read.
+pub(super) enum PartFault {
     OtherStudy,
     Damaged(&'static str),
     Unreadable(String),
+}
+
+impl PartFault {
+    /// The error of a file.
+    pub(super) fn with_path(self, path: &Path) -> SweepError {
+        let remedy = "remove it, and its points are computed again";
+        let fault = match self {
+            Self::OtherStudy => StoreFault::Differs("the part is of another study".to_owned()),
+            Self::Damaged(what) => {
+                StoreFault::Reason(format!("the file is damaged ({what}): {remedy}"))
+            }
+            Self::Unreadable(why) => {
+                StoreFault::Reason(format!("the file cannot be read ({why}): {remedy}"))
+            }
+        };
+        fault.with_path(path)
+    }
 }
 
 impl From<ParquetError> for PartFault {

@@ -45,7 +45,7 @@ const SPECS: [Spec; 86] = [
     ("written-sweep", Check::WrittenTwice, "extrema of m in rows of `sweep` with `reduce` of each changed scene", 1e-13),
     ("written-sweep-draws", Check::WrittenLaws, "varied numbers of `sweep` with a second generator of random numbers and the grid", 1e-14),
     ("written-sweep-distribution", Check::WrittenTotals, "random numbers of `sweep` with their distribution function (Kolmogorov and Smirnov)", 1.0),
-    ("written-sweep-files", Check::WrittenTwice, "archive, database and Parquet files of `sweep` with its table", 1e-15),
+    ("written-sweep-files", Check::WrittenTwice, "archive and Parquet files of `sweep` with its table", 1e-15),
     ("written-sweep-summary", Check::WrittenTotals, "statistics of the summary of `sweep` with its rows", 1e-13),
     ("written-sweep-motion", Check::WrittenTwice, "end, largest size, mean and root mean square of columns of motions in `sweep` with rows of `simulate` of the changed scene", 1e-14),
     ("written-sweep-sentences", Check::WrittenSentences, "numbers that `sweep` prints with its summary, to their digits", 1e-12),

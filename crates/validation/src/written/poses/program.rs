@@ -1,6 +1,6 @@
 //! Runs the program as a user does: a process, a scene in a folder of its own, and the files that it leaves there.
 
-use super::read_files::{add_parquet_rows, csv_rows, npz_rows, sqlite_rows};
+use super::read_files::{add_parquet_rows, csv_rows, npz_rows};
 use super::rows::Rows;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -107,12 +107,7 @@ impl Run {
         npz_rows(&bytes).ok_or_else(|| format!("{}{end} is no archive of arrays", self.name))
     }
 
-    /// The columns of numbers of a table of an SQLite file; the units in brackets are not part of the names.
-    pub(crate) fn sqlite(&self, end: &str, table: &str) -> Result<Rows, String> {
-        sqlite_rows(&self.path(end), table).map_err(|e| format!("{}{end}: {e}", self.name))
-    }
-
-    /// The columns of numbers of the Parquet files in a folder.
+    /// The columns of numbers of the Parquet files in a folder; the units in brackets are not part of the names.
     pub(crate) fn parquet(&self, end: &str) -> Result<Rows, String> {
         let entries = fs::read_dir(self.path(end)).map_err(|e| self.fault(end, &e))?;
         let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));

@@ -1,12 +1,10 @@
-//! Readers of written tables: CSV and NumPy's archives by code that shares nothing with their writers, SQLite by SQLite itself, and Parquet files by the crate
-//! that wrote them (`just designs` reads them by other programs).
+//! Readers of written tables: CSV and NumPy's archives by code that shares nothing with their writers, Parquet files by the crate that wrote them (`just designs`
+//! reads them by other programs).
 
 use super::rows::Rows;
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::record::Field;
-use rusqlite::types::ValueRef;
-use rusqlite::{Connection, OpenFlags};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::Path;
@@ -45,29 +43,6 @@ pub(crate) fn csv_rows(text: &str) -> Option<Rows> {
         count,
         ..Rows::default()
     })
-}
-
-/// The columns of numbers of a table of an SQLite file, in the order of its first column; what is NULL is no number.
-pub(crate) fn sqlite_rows(path: &Path, table: &str) -> rusqlite::Result<Rows> {
-    let connection = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
-    let mut statement = connection.prepare(&format!("SELECT * FROM {table} ORDER BY 1"))?;
-    let heads = statement.column_names();
-    let names = heads.map(|head| head.split(" [").next().unwrap_or(""));
-    let names: Vec<String> = names.map(str::to_owned).collect();
-    let mut rows = Rows::default();
-    let mut found = statement.query(())?;
-    while let Some(row) = found.next()? {
-        for (k, name) in names.iter().enumerate() {
-            let value = match row.get_ref(k)? {
-                ValueRef::Integer(number) => number as f64,
-                ValueRef::Real(number) => number,
-                ValueRef::Null | ValueRef::Text(_) | ValueRef::Blob(_) => f64::NAN,
-            };
-            rows.columns.entry(name.clone()).or_default().push(value);
-        }
-        rows.count += 1;
-    }
-    Ok(rows)
 }
 
 /// Adds the columns of numbers of a Parquet file to those of the files before it; what is null is no number.

@@ -1,9 +1,9 @@
-//! The files of `sweep`: its drawn and listed numbers, rows, database, statistics and sentences.
+//! The files of `sweep`: its drawn and listed numbers, rows, Parquet files, statistics and sentences.
 //!
 //! ```text
 //! drawn variations ── sweep ── CSV ──┬── draws (a second generator, the distribution itself)
 //!                                    ├── statistics (of the rows) ── summary, sentences
-//!                                    └── database, NPZ ───────────────────────────────────── findings
+//!                                    └── Parquet, NPZ ────────────────────────────────────── findings
 //! ```
 
 mod draws;

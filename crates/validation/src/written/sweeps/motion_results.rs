@@ -29,8 +29,8 @@ pub(super) fn motion_differences(
     let vary = format!("{}.mass={first:?},{second:?}", mass.body);
     let arguments = ["sweep", "--result", "motion", "--vary", &vary];
     let run = program.run("sweep-motion", &text_of(scene)?, &arguments)?;
-    // Messages have commas: the database has them in a column of their own.
-    let swept = run.sqlite("-sweep.sqlite", "points")?;
+    // Messages have commas: the Parquet files have them in a column of their own.
+    let swept = run.parquet("-sweep")?;
     let changed = with_number(scene, &["bodies", mass.body, "mass"], second);
     let changed = changed.ok_or("the body has no mass")?;
     let single = program.run("point-motion", &text_of(&changed)?, &["simulate"])?;

@@ -60,12 +60,14 @@ pub(crate) fn compare(
     let counts = [SAMPLES.to_string(), seed.to_string()];
     arguments.extend(["--samples", &counts[0], "--seed", &counts[1]].map(str::to_owned));
     let mut arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    arguments.extend(["--export", "csv"]);
     let run = program.run("sweep", &text_of(&everything)?, &arguments)?;
     let rows = run.csv("-sweep.csv")?;
     compare_draws(compared, &variations, &rows, seed);
-    arguments.extend(["--store", "parquet"]);
-    let stored = program.run("sweep-parts", &text_of(&everything)?, &arguments)?;
-    compared.merge("written-sweep-files", same_files([&run, &stored], &rows)?);
+    // A second run, in another folder.
+    *arguments.last_mut().ok_or("no arguments")? = "npz";
+    let stored = program.run("sweep-again", &text_of(&everything)?, &arguments)?;
+    compared.merge("written-sweep-files", same_files(&stored, &rows)?);
     let summary = run.json("-sweep.json")?;
     let mut results = ["m.min", "m.max"].into_iter();
     let is_whole = results.all(|name| rows.column(name).iter().all(|value| value.is_finite()));
@@ -132,8 +134,8 @@ fn compare_dimension(
     let vary = format!("{body}.points.{point}[0]={low:?},{high:?}");
     let arguments = ["sweep", "--result", "m", "--vary", &vary];
     let run = program.run("sweep-dimension", &text_of(scene)?, &arguments)?;
-    // Messages have commas: the database has them in a column of their own.
-    let rows = run.sqlite("-sweep.sqlite", "points")?;
+    // Messages have commas: the Parquet files have them in a column of their own.
+    let rows = run.parquet("-sweep")?;
     for (row, value) in values.into_iter().enumerate() {
         if rows.get(row, "m.min").is_some_and(f64::is_finite) {
             let changed = with_number(scene, &["bodies", body, "points", point, "0"], value);
@@ -288,15 +290,12 @@ fn compare_draws(compared: &mut Compared, variations: &[Variation], rows: &Rows,
     }
 }
 
-/// The archive, the database and the Parquet files of a second run, each with the table.
-fn same_files([run, stored]: [&Run; 2], rows: &Rows) -> Result<Differences, String> {
+/// The archive and the Parquet files of a second run, each with the table of the first.
+fn same_files(run: &Run, rows: &Rows) -> Result<Differences, String> {
     let mut same = Differences::default();
-    let database = run.sqlite("-sweep.sqlite", "points")?;
-    let parts = stored.parquet("-sweep")?;
     for (file, other) in [
         ("NPZ", run.npz("-sweep.npz")?),
-        ("SQLite", database),
-        ("Parquet", parts),
+        ("Parquet", run.parquet("-sweep")?),
     ] {
         for (name, column) in rows.columns.iter().filter(|(name, _)| *name != "message") {
             let Some(values) = other.columns.get(name).filter(|v| v.len() == column.len()) else {
