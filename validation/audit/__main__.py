@@ -1,0 +1,76 @@
+"""The independent reader and judge of what the commands write: `python3 validation/audit SCENE FOLDER`."""
+
+import argparse
+import json
+import sys
+import traceback
+
+from files import Folder
+from judge import Judge
+from motion import Motion, Unplaced
+from scene import Scene
+import poses
+
+
+def pose_files(judge, scene, folder):
+    """Files of `kinematics`, `statics` and `kinetostatics`."""
+    found = False
+    for command in ("kinematics", "statics", "kinetostatics"):
+        rows = folder.csv(command)
+        if rows is None:
+            continue
+        found, judge.file = True, command
+        try:
+            motion = Motion(scene, rows)
+        except Unplaced as body:
+            judge.skip("positions and forces", f"no columns say where `{body}` is")
+            continue
+        poses.closure(judge, motion)
+        poses.laws(judge, motion, "prescribed")
+        corners = [c for law, _ in scene.laws("prescribed").values() for c in law.corners]
+        poses.between_rows(judge, rows, corners + poses.corner_times(motion))
+        if command != "kinematics":
+            poses.equilibrium(judge, motion, command == "statics")
+    return found
+
+
+PARTS = [pose_files]
+
+
+def audit(scene_path, folder_path, name=None):
+    """Judges all files of a scene in a folder; none are found where the list of checks is empty."""
+    judge, folder = Judge(), Folder(scene_path, folder_path, name)
+    with open(scene_path, encoding="utf-8") as file:
+        scene = Scene(file.read())
+    for part in PARTS:
+        judge.file = ""
+        part(judge, scene, folder)
+    return judge
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="validation/audit", description=__doc__)
+    parser.add_argument("scene", help="the scene file that the command was given")
+    parser.add_argument("folder", help="the folder of its --out")
+    parser.add_argument("--name", help="base name of the files, if it is not that of the scene")
+    parser.add_argument("--json", help="also write all checks to this file")
+    options = parser.parse_args()
+    try:
+        judge = audit(options.scene, options.folder, options.name)
+    except Exception as error:  # whatever the files hold, the audit says that it cannot read them
+        traceback.print_exc()
+        print(f"cannot be read: {error!r}")
+        return 2
+    for line in judge.lines():
+        print(line)
+    if options.json:
+        with open(options.json, "w", encoding="utf-8") as file:
+            json.dump({"checks": judge.data(), "not_judged": judge.skipped}, file, indent=1)
+    if not judge.checks:
+        print("nothing to judge: the folder has no file of this scene")
+        return 2
+    return 1 if judge.has_failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

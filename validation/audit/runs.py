@@ -1,0 +1,68 @@
+"""Scenes that request everything and move, and the product's commands on them, for the self-test and its measurements."""
+
+import re
+import subprocess
+from pathlib import Path
+
+from scene import Scene
+
+AMPLITUDES = (0.25, 0.2, 0.15, 0.1)  # of a prescribed motion that the scene does not give, rad or parts of its size
+
+
+def without_section(text, name):
+    """A scene's text without a section and its subsections."""
+    lines, kept, inside = text.splitlines(keepends=True), [], False
+    for line in lines:
+        header = re.match(r"\s*\[([A-Za-z_][^\]\[,=]*)\]\s*(#.*)?$", line)
+        if header:
+            inside = header.group(1) == name or header.group(1).startswith(f"{name}.")
+        if not inside:
+            kept.append(line)
+    return "".join(kept)
+
+
+def forced(text):
+    """The scene with a prescribed motion of every actuator where it prescribes none."""
+    scene = Scene(text)
+    if "prescribed" in scene.keys or "coordinate-sweep" in scene.keys:
+        return text
+    added = "\n[prescribed]\nduration = 1.0\n"
+    for k, actuator in enumerate(scene.actuators):
+        part = AMPLITUDES[k % len(AMPLITUDES)]
+        amplitude = part / scene.angle if actuator.measure.is_angle else part * scene.size / scene.length
+        added += f'[prescribed."{actuator.name}"]\nsinusoid = {{ amplitude = {float(amplitude)!r}, period = 1.0 }}\n'
+    return text + added
+
+
+def run(program, command, scene, folder, *options):
+    """Runs a command; its status, and what it printed."""
+    arguments = [str(program), *command.split(), str(scene), *options, "--out", str(folder), "--pictures", "none"]
+    done = subprocess.run(["nice", *arguments], capture_output=True, text=True, check=False, env=environment())
+    return done.returncode, done.stdout, done.stderr
+
+
+def environment():
+    import os
+
+    return {**os.environ, "RAYON_NUM_THREADS": "1"}
+
+
+def prepare(program, scene_path, folder):
+    """The files of all commands on a scene, in folders `forced`, `plain` and `free`; the scene of each is beside them."""
+    scene_path, folder = Path(scene_path), Path(folder)
+    name = scene_path.parent.name if scene_path.name == "scene.toml" else scene_path.stem
+    text = without_section(scene_path.read_text(encoding="utf-8"), "requests")
+    texts = {"forced": forced(text), "plain": text}
+    made = []
+    for kind, commands in (("forced", ("kinematics", "kinetostatics")), ("plain", PLAIN)):
+        here = folder / f"{name}-{kind}"
+        here.mkdir(parents=True, exist_ok=True)
+        (here / f"{name}.toml").write_text(texts[kind], encoding="utf-8")
+        for command in commands:
+            options = ("--points", "61") if command in ("kinematics", "kinetostatics", "statics") else ()
+            status, _, _ = run(program, command, here / f"{name}.toml", here, *options)
+            made.append((kind, command, status))
+    return made
+
+
+PLAIN = ("kinematics", "statics", "reduce", "runs", "simulate", "cycle", "equilibria", "linearise")

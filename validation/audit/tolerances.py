@@ -1,0 +1,28 @@
+"""The checks: what is compared, relative to what, how large a difference may be, and why."""
+
+from typing import NamedTuple
+
+
+class Check(NamedTuple):
+    comparison: str
+    scale: str
+    tolerance: float
+    reason: str
+
+
+ROUNDING = "rounding of the written numbers, measured over all cases"
+KIND = "the largest of its kind in the file"
+
+CHECKS = {
+    "closure": Check("joints, points and coordinates of every row with the scene's text", KIND, 1e-12, ROUNDING),
+    "laws": Check("prescribed coordinates with their laws", KIND, 1e-12, ROUNDING),
+    "rates": Check("changes between rows with the integrals of their rates", KIND, 1e-7, "the rule's error beyond four times its estimate"),
+    "equilibrium": Check("Newton's and Euler's equations of every body with the written forces", KIND, 1e-12, ROUNDING),
+    "free-directions": Check("what joints transmit along the directions that they leave free", KIND, 1e-12, ROUNDING),
+    "loads": Check("forces of loads with the expressions and tables of the scene", KIND, 1e-12, ROUNDING),
+    "friction": Check("friction with its law and the written reactions", KIND, 1e-12, ROUNDING),
+    "powers": Check("powers with forces along the written motion", KIND, 1e-12, ROUNDING),
+    "known-reactions": Check("reactions that the scene gives over an angle", KIND, 1e-12, ROUNDING),
+    "totals": Check("shaking forces, powers and energies with sums over all bodies", KIND, 1e-12, ROUNDING),
+    "joint-forces": Check("magnitudes, directions and components of joint forces with the components along the ground", KIND, 1e-12, ROUNDING),
+}
