@@ -9,6 +9,7 @@ from files import Folder
 from judge import Judge
 from motion import Motion, Unplaced
 from scene import Scene
+import motions
 import poses
 
 
@@ -28,13 +29,29 @@ def pose_files(judge, scene, folder):
         poses.closure(judge, motion)
         poses.laws(judge, motion, "prescribed")
         corners = [c for law, _ in scene.laws("prescribed").values() for c in law.corners]
-        poses.between_rows(judge, rows, corners + poses.corner_times(motion))
+        poses.between_rows(judge, rows, corners + poses.switch_times(motion))
         if command != "kinematics":
             poses.equilibrium(judge, motion, command == "statics")
     return found
 
 
-PARTS = [pose_files]
+def motion_files(judge, scene, folder):
+    """Files of `simulate`."""
+    rows, events, summary = folder.csv("motion"), folder.csv("motion-events"), folder.summary("simulate")
+    if rows is None:
+        return
+    judge.file = "motion"
+    try:
+        motions.judge_motion(judge, Motion(scene, rows), events)
+    except Unplaced as body:
+        judge.skip("positions and forces", f"no columns say where `{body}` is")
+    motions.missing_events(judge, scene, rows, events)
+    if summary is not None:
+        motions.judge_summary(judge, scene, rows, events, summary)
+        motions.events_are_met(judge, scene, events, summary)
+
+
+PARTS = [pose_files, motion_files]
 
 
 def audit(scene_path, folder_path, name=None):

@@ -22,6 +22,7 @@ class Expression:
 
     def __init__(self, text):
         self.text, self.names, self.tokens = text, set(), []
+        self.switches = []  # quantities at whose zeros the value or a derivative may jump
         at = 0
         while text[at:].strip():
             found = TOKEN.match(text, at)
@@ -54,7 +55,12 @@ class Expression:
         return left
 
     def comparison(self):
-        return self.chain(self.sum, COMPARISONS)
+        left = self.sum()
+        while sign := self.take(*COMPARISONS):
+            right = self.sum()
+            self.switches.append(operation(lambda a, b: a - b, left, right))
+            left = operation(COMPARISONS[sign], left, right)
+        return left
 
     def sum(self):
         return self.chain(self.term, {"+": lambda a, b: a + b, "-": lambda a, b: a - b})
@@ -83,11 +89,21 @@ class Expression:
                 arguments.append(self.comparison())
             self.need(")")
             function = FUNCTIONS[text]
+            self.add_switches(text, arguments)
             return lambda names: function(*(argument(names) for argument in arguments))
         if kind in ("name", "quoted"):
             self.names.add(text)
             return lambda names: variable(text, names(text))
         raise ValueError(f"expression `{self.text}` cannot be read at `{text}`")
+
+    def add_switches(self, name, arguments):
+        """Where a function switches: between its arguments, or at zero or whole numbers of its only one."""
+        if name in ("min", "max", "clamp"):
+            self.switches += [operation(lambda a, b: a - b, arguments[0], other) for other in arguments[1:]]
+        elif name in ("abs", "sign", "step"):
+            self.switches += arguments
+        elif name == "floor":
+            self.switches.append(lambda names: sin(arguments[0](names) * np.pi))
 
     def need(self, sign):
         if not self.take(sign):

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from jets import Jet
 from joints import Wrench, along, axis_of, pair
 
 
@@ -17,6 +16,15 @@ def load_magnitude(load, motion, names):
         return amount
     coordinate = motion.measure(load.measure)
     return -amount * (coordinate.value - load.free if load.source == "spring" else coordinate.first)
+
+
+def load_terms(load, motion, names):
+    """The size of the terms of a load's magnitude: that of a spring is a difference of lengths."""
+    amount = np.abs(value_of(load.magnitude, names, motion.count))
+    if load.source == "given":
+        return amount
+    coordinate = motion.measure(load.measure)
+    return amount * (np.abs(coordinate.value) + abs(load.free) if load.source == "spring" else np.abs(coordinate.first))
 
 
 def value_of(magnitude, names, count):
@@ -176,12 +184,3 @@ def stop_forces(stop, motion):
             push = stop["stiffness"] * depth - stop["damping"] * sign * coordinate.first
             total += sign * np.where(depth > 0.0, np.maximum(push, 0.0), 0.0)
     return coordinate, total
-
-
-def at_rest_names(motion, time):
-    """The signals of rows without velocities."""
-    return motion.names(time)
-
-
-def no_derivatives(values):
-    return Jet(values)

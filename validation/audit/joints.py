@@ -190,6 +190,13 @@ class Wrench:
         velocity = frame.origin.first + np.cross(frame.omega, self.point - frame.origin.value)
         return (self.force * velocity).sum(-1) + (self.couple * frame.omega).sum(-1)
 
+    def power_terms(self, motion):
+        """The size of its power, whatever the directions are."""
+        frame = motion.frames[self.body]
+        speed = np.linalg.norm(frame.origin.first + np.cross(frame.omega, self.point - frame.origin.value), axis=-1)
+        spin = np.linalg.norm(frame.omega, axis=-1)
+        return np.linalg.norm(self.force, axis=-1) * speed + np.linalg.norm(self.couple, axis=-1) * spin
+
 
 def pair(bodies, force, point, couple):
     """A force and couple of the first body on the second at a point, with their opposites."""

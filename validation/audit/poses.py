@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from forces import FrictionForces, load_magnitude, unit_load, value_of
+from forces import FrictionForces, load_magnitude, load_terms, unit_load
 from jets import Jet, dot, jet, without_turns
 from joints import SPACE_COMPONENTS, along, free_directions, residuals, separating, unit_reactions
 from judge import largest
@@ -87,16 +87,36 @@ def laws(judge, motion, section):
             judge.compare("laws", np.where(inside, order, 0.0), scales[k] or 1.0, "SI", f"{name}{RATES[k]}")
 
 
-def corner_times(motion):
-    """Times between which a coupling passes a corner of its law, by both rows."""
-    time, found = motion.rows.get("t"), []
-    for joint in motion.scene.joints:
-        if joint.kind == "coupling" and time is not None:
+def switch_times(motion):
+    """Times of the rows between which a coupling, a load, a drive or the sign of a friction may switch."""
+    time, scene = motion.rows.get("t"), motion.scene
+    if time is None:
+        return []
+    names, quantities = motion.names(time), []
+    for joint in scene.joints:
+        if joint.kind == "coupling":
             variable = motion.measure(joint.measures[1]).value
-            for corner in joint.law.corners:
-                rows = np.nonzero((variable[:-1] - corner) * (variable[1:] - corner) <= 0.0)[0]
-                found += [*time[rows], *time[rows + 1]]
-    return found
+            quantities += [variable - corner for corner in joint.law.corners]
+    for magnitude in [of.magnitude for of in [*scene.loads, *scene.drives] if of.magnitude]:
+        quantities += [np.broadcast_to(switch(names).value, time.shape) for switch in magnitude.switches]
+    for drive in scene.drives:
+        if "limit" in drive.numbers:
+            state, force = rows_of(motion, f"{drive.name}.integral"), drive.numbers["integral"]
+            error = drive.magnitude(names).value - motion.measure(scene.coordinate(drive.coordinate).measure).first
+            wanted = force * state + drive.numbers["proportional"] * error
+            quantities += [wanted - drive.numbers["limit"], wanted + drive.numbers["limit"]]
+    for friction in scene.frictions:
+        joint = scene.joints[friction.joint]
+        kinds = {"revolute": ("angle",), "cylindrical": ("angle", "travel")}.get(joint.kind, ("travel",))
+        quantities += [motion.measure(scene.measure_of(joint, kind)).first for kind in kinds]
+        normal, moment = (rows_of(motion, f"{joint.name}.{end}") for end in ("normal", "moment"))
+        lever = moment / (friction.distance or np.inf)  # each end of a guide presses on one side or the other
+        quantities += [0.5 * normal + lever, 0.5 * normal - lever]
+    found = set()
+    for values in quantities:
+        rows = np.nonzero((values[:-1] * values[1:] <= 0.0) & ((values[:-1] != 0.0) | (values[1:] != 0.0)))[0]
+        found |= {*time[rows], *time[rows + 1]}
+    return sorted(found)
 
 
 # Between rows.
@@ -305,6 +325,11 @@ def zero_if_none(column, count):
     return np.zeros(count) if column is None else column
 
 
+def rows_of(motion, name):
+    """A column, or zeros."""
+    return zero_if_none(motion.rows.get(name), motion.count)
+
+
 def add_free_directions(judge, balance, joint, vectors, unknown, suffix):
     """A joint transmits no force along what it leaves free, and no moment about it."""
     force, moment = vectors
@@ -345,11 +370,11 @@ def loads(judge, motion, time):
         found[load.name] = [w.times(magnitude) for w in unit_load(load, motion)]
         column = written(motion.rows, load.name)
         if column is not None and load.kind != "gravity":
-            judge.compare("loads", column - magnitude, largest(magnitude, column), "SI", f"load {load.name}")
+            judge.compare("loads", column - magnitude, largest(column, load_terms(load, motion, names)), "SI", f"load {load.name}")
         power = motion.rows.get(f"{load.name}.power")
         if power is not None:
             powers = [w.power(motion) for w in found[load.name]]
-            scale = largest(sum(map(np.abs, powers), np.zeros(motion.count)))
+            scale = largest(sum((w.power_terms(motion) for w in found[load.name]), np.zeros(motion.count)))
             judge.compare("powers", power - sum(powers), max(scale, largest(power)), "W", f"{load.name}.power")
     return found
 
@@ -495,12 +520,14 @@ def shaking(motion, of_loads):
         couple = turned(frame.alpha) + np.cross(frame.omega, turned(frame.omega))
         if body.varying:
             inertia, half_slope = body.varying.at(frame.angle)
-            couple = couple + np.outer(inertia * frame.alpha[:, 2] + half_slope * frame.omega[:, 2] ** 2, Z)
+            parts = inertia * frame.alpha[:, 2], half_slope * frame.omega[:, 2] ** 2
+            couple = couple + np.outer(sum(parts), Z)
+            sizes[1] += np.abs(parts[0]) + np.abs(parts[1])
         add(-body.mass * center.second, center.value, -couple)
     return force, moment, sizes
 
 
-def totals(judge, motion, of_loads, of_friction, actuator_powers):
+def totals(judge, motion, of_loads, of_friction, actuator_powers, drives=()):
     """Shaking force and moment, powers and energies with sums over bodies and loads."""
     rows, scene = motion.rows, motion.scene
     joint_force = largest(*(v for j in scene.joints for v in [rows.get(f"{j.name}.magnitude")] if v is not None))
@@ -515,6 +542,7 @@ def totals(judge, motion, of_loads, of_friction, actuator_powers):
     load_powers = [w.power(motion) for wrenches in of_loads.values() for w in wrenches]
     is_known = all(w is not None for w in of_friction.values())
     load_powers += [w.power(motion) for wrenches in of_friction.values() if wrenches for w in wrenches]
+    load_powers += [drives[name].net() * drives[name].coordinate.first for name in drives]
     driven = [p for p in actuator_powers if p is not None]
     speed = max((largest(f.omega) for f in motion.frames), default=0.0)
     p_scale = max(largest(terms), largest(*load_powers), largest(*driven), largest(energy) * speed)

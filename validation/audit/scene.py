@@ -79,10 +79,11 @@ class Coordinate:
 
 @dataclass
 class Magnitude:
-    """A number, an expression or a table of one signal, as a function of the signals of a row."""
+    """A number, an expression or a table, as a function of the signals of a row."""
 
     at: object
-    names: set
+    switches: list = field(default_factory=list)  # quantities at whose zeros it may switch
+    is_constant: bool = False
 
     def __call__(self, names):
         return self.at(names)
@@ -282,14 +283,15 @@ class Scene:
         """A magnitude; of a number or the values of a table the unit is given, expressions are in SI units."""
         if isinstance(value, str):
             expression = Expression(value)
-            return Magnitude(expression, expression.names)
+            return Magnitude(expression, expression.switches, not expression.names - {"pi", "tau"})
         if isinstance(value, dict):
             signal = value.get("of", "t")
             coordinate = self.coordinate(signal.removesuffix(".velocity"))
             variable = self.unit_of(coordinate.measure) if coordinate else 1.0
             curve = Table(read_points(value["table"], (variable, unit)), value.get("interpolation", "monotone"))
-            return Magnitude(lambda names: curve(names(signal)), {signal})
-        return Magnitude(lambda names: jet(value * unit), set())
+            knots = [lambda names, knot=knot: names(signal) - knot for knot in curve.x]
+            return Magnitude(lambda names: curve(names(signal)), knots)
+        return Magnitude(lambda names: jet(value * unit), [], True)
 
     def read_load(self, name, table):
         magnitude = lambda key: self.read_magnitude(table[key])
