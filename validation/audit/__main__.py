@@ -11,6 +11,7 @@ from motion import Motion, Unplaced
 from scene import Scene
 import motions
 import poses
+import reduced
 
 
 def pose_files(judge, scene, folder):
@@ -51,7 +52,30 @@ def motion_files(judge, scene, folder):
         motions.events_are_met(judge, scene, events, summary)
 
 
-PARTS = [pose_files, motion_files]
+def reduced_files(judge, scene, folder):
+    """Files of `reduce` and `runs`."""
+    rows, runs, both = folder.csv("reduced"), folder.csv("runs"), [folder.csv("run-i"), folder.csv("run-ii")]
+    for run in both:
+        if run is not None:
+            judge.file = run.label
+            try:
+                motion = Motion(scene, run)
+            except Unplaced as body:
+                judge.skip("positions and forces", f"no columns say where `{body}` is")
+                continue
+            poses.closure(judge, motion)
+            poses.between_rows(judge, run, poses.switch_times(motion))
+            poses.equilibrium(judge, motion, is_loaded=False)
+    if runs is not None:
+        judge.file = "runs"
+        reduced.judge_runs(judge, runs, *both, scene.actuators[0].name)
+    if rows is not None:
+        judge.file = "reduced"
+        moving = [*both, folder.csv("kinematics"), folder.csv("kinetostatics")]
+        reduced.judge_reduced(judge, scene, rows, moving, folder.summary("reduce"))
+
+
+PARTS = [pose_files, motion_files, reduced_files]
 
 
 def audit(scene_path, folder_path, name=None):

@@ -21,7 +21,8 @@ class Law:
 class Table:
     """The curve through the points of a table, as cubic pieces with a slope at both ends of each."""
 
-    def __init__(self, points, interpolation):
+    def __init__(self, points, interpolation, goes_on=False):
+        self.goes_on = goes_on  # along the tangents at both ends
         self.x, self.y = np.asarray(points, float).T
         self.is_step = interpolation == "step"
         secants = np.diff(self.y) / np.diff(self.x)
@@ -33,7 +34,7 @@ class Table:
             self.slopes = np.stack([secants, secants])
 
     def __call__(self, x):
-        """The value; not a number beyond the points."""
+        """The value; beyond the points along the tangents, or no number."""
         at = x.value
         piece = np.clip(np.searchsorted(self.x, at, side="right") - 1, 0, len(self.x) - 2)
         y0, y1 = self.y[piece], self.y[piece + 1]
@@ -45,7 +46,9 @@ class Table:
         rest = 1.0 - u
         m0, m1 = self.slopes[:, piece]
         curve = rest * rest * (1.0 + 2.0 * u) * y0 + u * u * (3.0 - 2.0 * u) * y1 + u * rest * (rest * m0 - u * m1) * h
-        return choose(outside, jet(np.nan * at), curve)
+        end = np.where(at < self.x[0], 0, -1)
+        tangent = (x - self.x[end]) * self.slopes[end, end] + self.y[end]
+        return choose(outside, tangent if self.goes_on else jet(np.nan * at), curve)
 
 
 def spline_slopes(x, y):
@@ -112,8 +115,11 @@ def read_points(table, units):
     return [[x * units[0], y * units[1]] for x, y in table]
 
 
-def read_law(table, start, value_unit, variable_unit, angle_unit):
-    """The law of a table of the scene; `start`, in SI units, is where speeds, sinusoids and rises begin."""
+def read_law(table, start, value_unit, variable_unit, angle_unit, goes_on=False):
+    """The law of a table of the scene; `start`, in SI units, is where speeds, sinusoids and rises begin.
+
+    The table of a coupling goes on along its tangents; that of a motion has no value beyond its points.
+    """
     if "speed" in table:
         speed = table["speed"] * value_unit
         return Law(lambda x, names: start + speed * x, [])
@@ -127,7 +133,7 @@ def read_law(table, start, value_unit, variable_unit, angle_unit):
         return Law(lambda x, names: expression(lambda name: x if name == "x" else names(name)), [])
     if "table" in table:
         points = read_points(table["table"], (variable_unit, value_unit))
-        curve = Table(points, table.get("interpolation", "spline"))
+        curve = Table(points, table.get("interpolation", "spline"), goes_on)
         return Law(lambda x, names: curve(x), list(curve.x))
     shape = next(name for name in RISES if name in table)
     keys = table[shape]

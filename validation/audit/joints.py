@@ -139,7 +139,10 @@ def keeps_height(joint, motion):
 
 def follows_law(joint, motion):
     value, variable = (motion.measure(measure) for measure in joint.measures)
-    return [Residual(value - joint.law.at(variable, lambda name: None), joint.measures[0].is_angle)]
+    open_jet = value - joint.law.at(variable, lambda name: None)
+    for corner in joint.law.corners:  # where the second derivative has two values
+        open_jet.second = np.where(np.abs(variable.value - corner) <= 1e-12 * (1.0 + abs(corner)), 0.0, open_jet.second)
+    return [Residual(open_jet, joint.measures[0].is_angle)]
 
 
 def teeth_touch(joint, motion):

@@ -167,7 +167,7 @@ class Between:
             self.judge.compare(key, np.where(self.inside, excess, 0.0), scale or self.scale, "J", place)
 
 
-def potentials(judge, motion, names, potential, scale):
+def potentials(judge, motion, names, potential, scale, key="energies"):
     """The potential of loads whose magnitudes are constant, up to a constant."""
     total, at = np.zeros(motion.count), motion.names(motion.time())
     for load in motion.scene.loads:
@@ -187,7 +187,7 @@ def potentials(judge, motion, names, potential, scale):
             total -= amount * motion.measure(load.measure).value
         else:
             return
-    judge.compare("energies", (potential - potential[0]) - (total - total[0]), scale, "J", "energy.potential by the loads")
+    judge.compare(key, (potential - potential[0]) - (total - total[0]), scale, "J", "potential energy by the loads")
 
 
 def states(judge, motion, drives, between):

@@ -88,10 +88,14 @@ def laws(judge, motion, section):
 
 
 def switch_times(motion):
-    """Times of the rows between which a coupling, a load, a drive or the sign of a friction may switch."""
-    time, scene = motion.rows.get("t"), motion.scene
-    if time is None:
-        return []
+    """Times of the rows between which something may switch; none of a file without a time."""
+    time = motion.rows.get("t")
+    return [] if time is None else switch_places(motion, time)
+
+
+def switch_places(motion, abscissa):
+    """Places of the rows between which a coupling, a load, a drive or the sign of a friction may switch."""
+    time, scene = motion.time(), motion.scene
     names, quantities = motion.names(time), []
     for joint in scene.joints:
         if joint.kind == "coupling":
@@ -115,7 +119,7 @@ def switch_times(motion):
     found = set()
     for values in quantities:
         rows = np.nonzero((values[:-1] * values[1:] <= 0.0) & ((values[:-1] != 0.0) | (values[1:] != 0.0)))[0]
-        found |= {*time[rows], *time[rows + 1]}
+        found |= {*abscissa[rows], *abscissa[rows + 1]}
     return sorted(found)
 
 
@@ -297,8 +301,8 @@ class Balance:
         return value, row
 
 
-def add_reactions(judge, balance, suffix=""):
-    """The reactions of all joints, as columns with this ending have them."""
+def add_reactions(judge, balance, suffix="", parts_teeth=True):
+    """The reactions of all joints, as columns with this ending have them; with what parts teeth, which counts as a load."""
     motion = balance.motion
     rows = motion.rows
     for joint in motion.scene.joints:
@@ -310,7 +314,7 @@ def add_reactions(judge, balance, suffix=""):
                 unknown.append((balance.add_unknown(wrenches), k))
             else:
                 balance.add(wrenches, columns[name])
-        apart, slope = separating(joint, motion)
+        apart, slope = separating(joint, motion) if parts_teeth else (None, 0.0)
         if apart and columns["tooth"] is None:
             balance.add_unknown(apart)
         elif apart:
@@ -435,15 +439,15 @@ def actuator_forces(balance, of_free, prescribed):
     return powers
 
 
-def equilibrium(judge, motion, at_rest=False):
-    """The forces of a file of `statics` or `kinetostatics`."""
+def equilibrium(judge, motion, at_rest=False, is_loaded=True):
+    """The forces of a file of `statics` or `kinetostatics`; of `runs` without loads and friction."""
     motion = motion.at_rest() if at_rest else motion
-    of_loads = loads(judge, motion, motion.time())
+    of_loads = loads(judge, motion, motion.time()) if is_loaded else {}
     balance = Balance(motion)
     for wrenches in of_loads.values():
         balance.add(wrenches)
-    add_reactions(judge, balance)
-    of_friction = {} if at_rest else frictions(judge, motion, False)
+    add_reactions(judge, balance, parts_teeth=is_loaded)
+    of_friction = {} if at_rest or not is_loaded else frictions(judge, motion, False)
     powers = actuator_forces(balance, False, ())
     if not at_rest:
         balance.add_inertia()
@@ -511,7 +515,7 @@ def shaking(motion, of_loads):
         sizes[1] += size * np.linalg.norm(at, axis=-1) + np.linalg.norm(couple, axis=-1)
 
     for load in motion.scene.loads:
-        if load.kind in ("gravity", "force"):
+        if load.kind in ("gravity", "force") and load.name in of_loads:
             for w in of_loads[load.name]:
                 add(w.force, w.point, w.couple)
     for k, body in enumerate(motion.scene.bodies):

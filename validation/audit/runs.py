@@ -59,7 +59,8 @@ def prepare(program, scene_path, folder):
         here.mkdir(parents=True, exist_ok=True)
         (here / f"{name}.toml").write_text(texts[kind], encoding="utf-8")
         for command in commands:
-            options = ("--points", "61") if command in ("kinematics", "kinetostatics", "statics") else ()
+            points = "721" if (kind, command) == ("plain", "kinematics") else "61"  # those of `reduce`
+            options = ("--points", points) if command in ("kinematics", "kinetostatics", "statics") else ()
             status, _, _ = run(program, command, here / f"{name}.toml", here, *options)
             made.append((kind, command, status))
     return made

@@ -253,7 +253,7 @@ class Scene:
     def read_coupling(self, name, table):
         value, variable = (self.coordinate(c).measure for c in table["coupling"])
         start = table.get("start", 0.0) * self.unit_of(value)
-        law = read_law(table, start, self.unit_of(value), self.unit_of(variable), self.angle)
+        law = read_law(table, start, self.unit_of(value), self.unit_of(variable), self.angle, goes_on=True)
         origin = Place(self.ground or 0, np.zeros(3))
         return Joint(name, "coupling", [origin, origin], [Z, Z], None, law=law, measures=[value, variable])
 

@@ -14,7 +14,7 @@ ROUNDING = "rounding of the written numbers, measured over all cases"
 KIND = "the largest of its kind in the file"
 
 CHECKS = {
-    "closure": Check("joints, points and coordinates of every row with the scene's text", KIND, 1e-12, ROUNDING),
+    "closure": Check("joints, points and coordinates of every row with the scene's text", KIND, 5e-11, ROUNDING),
     "laws": Check("prescribed coordinates with their laws", KIND, 1e-12, ROUNDING),
     "rates": Check("changes between rows with the integrals of their rates", KIND, 1e-7, "the rule's error beyond four times its estimate"),
     "equilibrium": Check("Newton's and Euler's equations of every body with the written forces", KIND, 1e-12, ROUNDING),
@@ -34,4 +34,8 @@ CHECKS = {
     "energy-balance": Check("the balance of energy of every row with zero", KIND, 1e-5, "the tolerance of the integration"),
     "summary": Check("energies and events of the summary with rows and events", KIND, 1e-6, "the tolerance of the integration"),
     "events": Check("changes of sign between rows with events, and events with their values", "the value, or 1", 1e-9, "an event is located to the tolerance of the integration"),
+    "reduced": Check("m, ½m′, w and V of `reduce` with sums over all bodies", "the largest of the column and its terms", 1e-11, ROUNDING),
+    "coefficients": Check("a, b and c of `reduce` in the equations of every body", KIND, 1e-11, ROUNDING),
+    "slopes": Check("m and V of `reduce` with the integrals of ½m′ and w between rows", "the change between rows at the largest slope", 1e-7, "the rule's error beyond four times its estimate"),
+    "runs": Check("m, ½m′, a and b of `runs` with both runs and with those of `reduce`", KIND, 2e-10, ROUNDING),
 }
