@@ -12,6 +12,14 @@ from scene import Scene
 import motions
 import poses
 import reduced
+import repeated
+
+
+def whole_file(judge, scene, folder, rows, end, command, corners=()):
+    """What is judged of every table: its archive, its headings, and the extrema of its summary."""
+    repeated.archive(judge, rows, folder.npz(end))
+    repeated.headings(judge, scene, rows)
+    repeated.extrema(judge, rows, folder.summary(command), corners)
 
 
 def pose_files(judge, scene, folder):
@@ -31,6 +39,14 @@ def pose_files(judge, scene, folder):
         poses.laws(judge, motion, "prescribed")
         corners = [c for law, _ in scene.laws("prescribed").values() for c in law.corners]
         poses.between_rows(judge, rows, corners + poses.switch_times(motion))
+        over = ((folder.summary(command) or {}).get("extrema_over") or {}).get("name", "t")
+        corners = corners if over == "t" else []
+        corners += poses.switch_places(motion, rows.get(over)) if over in rows else []
+        whole_file(judge, scene, folder, rows, command, command, corners)
+        repeated.quotients(judge, motion)
+        if command == "kinematics":
+            repeated.extents(judge, rows, folder.summary(command))
+            repeated.dwell(judge, scene, rows, folder.summary(command))
         if command != "kinematics":
             poses.equilibrium(judge, motion, command == "statics")
     return found
@@ -43,7 +59,8 @@ def motion_files(judge, scene, folder):
         return
     judge.file = "motion"
     try:
-        motions.judge_motion(judge, Motion(scene, rows), events)
+        corners = motions.judge_motion(judge, Motion(scene, rows), events)
+        whole_file(judge, scene, folder, rows, "motion", "simulate", corners)
     except Unplaced as body:
         judge.skip("positions and forces", f"no columns say where `{body}` is")
     motions.missing_events(judge, scene, rows, events)
@@ -65,12 +82,14 @@ def reduced_files(judge, scene, folder):
                 continue
             poses.closure(judge, motion)
             poses.between_rows(judge, run, poses.switch_times(motion))
+            whole_file(judge, scene, folder, run, run.label, run.label)
             poses.equilibrium(judge, motion, is_loaded=False)
     if runs is not None:
         judge.file = "runs"
         reduced.judge_runs(judge, runs, *both, scene.actuators[0].name)
     if rows is not None:
         judge.file = "reduced"
+        whole_file(judge, scene, folder, rows, "reduced", "reduce")
         moving = [*both, folder.csv("kinematics"), folder.csv("kinetostatics")]
         reduced.judge_reduced(judge, scene, rows, moving, folder.summary("reduce"))
 

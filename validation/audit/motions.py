@@ -23,6 +23,7 @@ def judge_motion(judge, motion, events):
     motors(judge, motion, forces["drives"])
     poses.repeated(judge, motion)
     stops_hold(judge, motion)
+    return corners
 
 
 def event_times(events):

@@ -38,4 +38,10 @@ CHECKS = {
     "coefficients": Check("a, b and c of `reduce` in the equations of every body", KIND, 1e-11, ROUNDING),
     "slopes": Check("m and V of `reduce` with the integrals of ½m′ and w between rows", "the change between rows at the largest slope", 1e-7, "the rule's error beyond four times its estimate"),
     "runs": Check("m, ½m′, a and b of `runs` with both runs and with those of `reduce`", KIND, 2e-10, ROUNDING),
+    "archive": Check("the table with the archive of the same name", "each number", 0.0, "the same bits"),
+    "extrema": Check("extrema of the summary with the rows around them", "the largest extremum of the unit", 1e-6, "a polynomial through rows beyond its own error"),
+    "places": Check("slopes at the places of extrema, over one row", "the largest extremum of the unit", 1e-5, "a polynomial through rows beyond its own error"),
+    "quotients": Check("velocity ratios and transmission angles with velocities and places", KIND, 1e-12, ROUNDING),
+    "extents": Check("by how much bodies turn and slides travel, and dwells, with the rows", "the extent, or 1", 1e-9, "the error of extrema between rows"),
+    "headings": Check("units of columns with what their names say", "nothing: words", 0.0, "words"),
 }
