@@ -10,9 +10,11 @@ from judge import Judge
 from motion import Motion, Unplaced
 from scene import Scene
 import motions
+import points
 import poses
 import reduced
 import repeated
+import sweeps
 
 
 def whole_file(judge, scene, folder, rows, end, command, corners=()):
@@ -94,14 +96,39 @@ def reduced_files(judge, scene, folder):
         reduced.judge_reduced(judge, scene, rows, moving, folder.summary("reduce"))
 
 
-PARTS = [pose_files, motion_files, reduced_files]
+def point_files(judge, scene, folder):
+    """Files of `cycle`, `equilibria` and `linearise`."""
+    rows = folder.csv("reduced")
+    model = points.Reduced(scene, rows) if rows is not None and "m" in rows else None
+    summary = folder.summary("cycle")
+    for end, prefix in (("cycle", ""), ("cycle-flywheel", "flywheel.")):
+        cycle, judge.file = folder.csv(end), end
+        if cycle is not None:
+            whole_file(judge, scene, folder, cycle, end, "")
+            points.judge_cycle(judge, scene, cycle, summary, prefix, model)
+    table, summary, judge.file = folder.csv("equilibria"), folder.summary("equilibria"), "equilibria"
+    if table is not None:
+        points.judge_equilibria(judge, scene, table, summary, model, folder.csv("statics"))
+    text, judge.file = folder.text("linear.csv"), "linear"
+    if text is not None:
+        points.judge_linear(judge, text, folder.npz("linear"), folder.summary("linearise"))
+
+
+def sweep_files(judge, scene, folder):
+    """Files of `sweep`."""
+    rows, judge.file = folder.csv("sweep"), "sweep"
+    if rows is not None:
+        moving = [folder.csv(end) for end in ("run-i", "kinematics", "kinetostatics")]
+        sweeps.judge_sweep(judge, scene, folder.scene_text, rows, folder.study(), folder.summary("sweep"), moving)
+
+
+PARTS = [pose_files, motion_files, reduced_files, point_files, sweep_files]
 
 
 def audit(scene_path, folder_path, name=None):
     """Judges all files of a scene in a folder; none are found where the list of checks is empty."""
     judge, folder = Judge(), Folder(scene_path, folder_path, name)
-    with open(scene_path, encoding="utf-8") as file:
-        scene = Scene(file.read())
+    scene = Scene(folder.scene_text)
     for part in PARTS:
         judge.file = ""
         part(judge, scene, folder)

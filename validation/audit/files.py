@@ -3,6 +3,8 @@
 import csv
 import hashlib
 import json
+import sqlite3
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -65,6 +67,7 @@ class Folder:
         scene_path, self.path = Path(scene_path), Path(folder)
         usual = scene_path.resolve().parent.name if scene_path.name == "scene.toml" else scene_path.stem
         self.name = name or usual
+        self.scene_text = scene_path.read_text(encoding="utf-8")
         self.sha256 = hashlib.sha256(scene_path.read_bytes()).hexdigest()
 
     def file(self, end):
@@ -91,6 +94,16 @@ class Folder:
     def text(self, end):
         path = self.file(end)
         return path.read_text(encoding="utf-8") if path.exists() else None
+
+    def study(self):
+        """What a sweep is about, by the database or the folder of its rows; empty without both."""
+        database, parts = self.file("sweep.sqlite"), self.file("sweep") / "_study.toml"
+        if database.exists():
+            with sqlite3.connect(f"file:{database}?mode=ro", uri=True) as connection:
+                return {key: str(value) for key, value in connection.execute("select key, value from study")}
+        if parts.exists():
+            return {key: str(value) for key, value in tomllib.loads(parts.read_text(encoding="utf-8")).items()}
+        return {}
 
     def other_names(self, ends):
         """Names of other scenes whose files are here."""

@@ -118,12 +118,9 @@ class FrictionForces:
 class DriveForces:
     """A drive in every row: its force on the coordinate, and the state of its circuit."""
 
-    def __init__(self, drive, motion, names, rows):
-        self.drive, self.numbers = drive, drive.numbers
-        measure = motion.scene.coordinate(drive.coordinate).measure
-        self.unit, self.coordinate = along(motion, measure), motion.measure(measure)
-        self.magnitude = None if drive.magnitude is None else value_of(drive.magnitude, names, motion.count)
-        self.written_current = rows.get(f"{drive.name}.current")
+    def __init__(self, drive, coordinate, magnitude, rows):
+        self.drive, self.numbers, self.coordinate, self.magnitude = drive, drive.numbers, coordinate, magnitude
+        self.written_current, self.integral = rows.get(f"{drive.name}.current"), rows.get(f"{drive.name}.integral")
         self.written = next((rows.get(f"{drive.name}.load_{end}") for end in ("moment", "force")
                              if f"{drive.name}.load_{end}" in rows), None)
 
@@ -151,17 +148,22 @@ class DriveForces:
         return (self.magnitude - self.numbers["resistance"] * self.current - self.induced) / inductance
 
     @property
-    def reference_error(self):
-        """Of a controller: the reference speed less the velocity."""
-        return self.magnitude - self.coordinate.first
+    def unlimited(self):
+        """Of a controller: its force without the limit; none where its integral is in no file."""
+        integral = self.numbers["integral"]
+        if integral and self.integral is None:
+            return None
+        error = self.magnitude - self.coordinate.first
+        return self.numbers["proportional"] * error + (integral * self.integral if integral else 0.0)
 
     def force(self):
-        """Before what accelerates its rotor; of a controller the written one, for its integral is in no file."""
+        """Before what accelerates its rotor; of a controller whose integral is in no file the written one."""
         ratio = self.numbers["ratio"]
         if self.drive.kind == "applied-force":
             return self.magnitude
         if self.drive.kind == "speed-controller":
-            return self.written
+            limit = self.numbers.get("limit", np.inf)
+            return self.written if self.unlimited is None else np.clip(self.unlimited, -limit, limit)
         if self.has_circuit:
             current = self.current
             return None if current is None else ratio * self.numbers["torque-constant"] * current

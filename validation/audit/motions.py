@@ -4,7 +4,7 @@ import numpy as np
 
 import poses
 from files import result
-from forces import DriveForces, stop_forces
+from forces import DriveForces, stop_forces, value_of
 from joints import along
 from judge import largest
 from poses import Balance, beyond_estimate, even_rows, simpson
@@ -65,12 +65,14 @@ def drive_forces(judge, motion, balance, powers):
     scene, rows, found = motion.scene, motion.rows, {}
     names = motion.names(motion.time())
     for drive in scene.drives:
-        of = found[drive.name] = DriveForces(drive, motion, names, rows)
+        measure = scene.coordinate(drive.coordinate).measure
+        magnitude = None if drive.magnitude is None else value_of(drive.magnitude, names, motion.count)
+        of = found[drive.name] = DriveForces(drive, motion.measure(measure), magnitude, rows)
         net = of.net()
         if net is None:
             judge.skip(f"drive {drive.name}", "its force depends on a state without a column")
             return None
-        balance.add(of.unit, net)
+        balance.add(along(motion, measure), net)
         if of.written is not None:
             judge.compare("drives", of.written - net, largest(of.force(), of.written), "SI", f"drive {drive.name}")
         power = rows.get(f"{drive.name}.power")
@@ -198,6 +200,10 @@ def states(judge, motion, drives, between):
         current, rate = rows.get(f"{name}.current"), of.current_rate
         if current is not None and rate is not None:
             between.integral("energy", current, rate, f"{name}.current", largest(current))
+        if of.integral is not None and of.unlimited is not None:  # while the force is at its limit the integral waits
+            error = of.magnitude - of.coordinate.first
+            held = np.abs(of.unlimited) > of.numbers.get("limit", np.inf)
+            between.integral("energy", of.integral, np.where(held, 0.0, error), f"{name}.integral", largest(of.integral) or 1.0)
 
 
 def motors(judge, motion, drives):

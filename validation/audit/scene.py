@@ -129,7 +129,7 @@ class Scene:
     """All of a scene that decides numbers."""
 
     def __init__(self, text):
-        self.keys = keys = tomllib.loads(text)
+        self.keys = keys = tomllib.loads(text) if isinstance(text, str) else text
         units = keys.get("units", {})
         self.length = LENGTHS[units.get("length", "m")]
         self.mass = MASSES[units.get("mass", "kg")]

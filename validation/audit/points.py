@@ -1,0 +1,325 @@
+"""Steady cycles, equilibria and linearised motions, as `cycle`, `equilibria` and `linearise` write them."""
+
+import csv
+
+import numpy as np
+
+from files import result, split_heading
+from forces import DriveForces
+from jets import Jet
+from judge import largest
+from poses import beyond_estimate, even_rows, simpson
+
+
+class Unknown(Exception):
+    """A load or drive of which the reduced model does not say enough."""
+
+
+# The reduced model between its rows.
+
+
+class Reduced:
+    """The columns of `reduce` and their slopes between its rows, by polynomials through the eight nearest ones."""
+
+    def __init__(self, scene, rows):
+        self.scene, self.rows, self.name = scene, rows, scene.actuators[0].name
+        self.q = rows.get(self.name)
+        self.is_whole = scene.actuators[0].measure.is_angle and abs(self.q[-1] - self.q[0] - 2.0 * np.pi) < 1e-9
+
+    def at(self, column, q):
+        """Values and slopes at places; of a whole revolution also beyond it."""
+        values = self.rows.get(column)
+        if values is None or len(self.q) < 8:
+            raise Unknown(f"no column {column} of eight rows or more")
+        if self.is_whole and abs(values[-1] - values[0]) <= 1e-9 * largest(values):
+            q = self.q[0] + np.mod(np.asarray(q) - self.q[0], 2.0 * np.pi)
+        elif np.any((q < self.q[0]) | (q > self.q[-1])):
+            raise Unknown("the rows of `reduce` do not reach there")
+        places = np.clip(np.searchsorted(self.q, q) - 4, 0, len(self.q) - 8)
+        window = places[:, None] + np.arange(8)
+        x, y = self.q[window] - np.asarray(q)[:, None], values[window]
+        scale = np.abs(x).max(1, keepdims=True)
+        powers = (x / scale)[:, :, None] ** np.arange(8)
+        polynomial = np.linalg.solve(powers, y[:, :, None])[:, :, 0]
+        return polynomial[:, 0], polynomial[:, 1] / scale[:, 0]
+
+    def force(self, q, velocity, time):
+        """Σ w F of all loads, and the size of its terms."""
+        if self.scene.frictions:
+            raise Unknown("friction needs the reactions")
+        total, terms = np.zeros_like(q), np.zeros_like(q)
+        signals = {self.name: q, f"{self.name}.velocity": velocity, "t": time}
+        for load in self.scene.loads:
+            w, _ = self.at(f"{load.name}.w", q)
+            amount = known(load.magnitude, signals, q)
+            part = w * amount * (-w * velocity if load.source == "damper" else 1.0)
+            total, terms = total + part, terms + np.abs(part)
+        return total, terms
+
+    def drives(self, coordinate, time, rows):
+        """The forces of all drives on the coordinate, without what accelerates their rotors; and the inertia of these."""
+        total, rotor = np.zeros_like(coordinate.value), 0.0
+        signals = {self.name: coordinate.value, f"{self.name}.velocity": coordinate.first, "t": time}
+        for drive in self.scene.drives:
+            if drive.coordinate != self.name:
+                raise Unknown(f"drive {drive.name} acts on another coordinate")
+            magnitude = None if drive.magnitude is None else known(drive.magnitude, signals, coordinate.value)
+            force = DriveForces(drive, coordinate, magnitude, rows).force()
+            if force is None:
+                raise Unknown(f"the state of {drive.name} has no column")
+            total, rotor = total + force, rotor + drive.numbers["rotor"]
+        return total, rotor
+
+
+def known(magnitude, signals, q):
+    """A magnitude by the signals that are known along the coordinate."""
+    try:
+        return np.broadcast_to(magnitude(lambda name: Jet(signals[name]) if name in signals else None).value, q.shape)
+    except (ValueError, AttributeError, TypeError) as error:
+        raise Unknown("a magnitude depends on other coordinates") from error
+
+
+# Cycles.
+
+
+def judge_cycle(judge, scene, rows, summary, prefix, reduced):
+    """Rows of a cycle: rates, the same state at both ends, and speeds, fluctuation and works of the summary."""
+    name = scene.actuators[0].name if f"{scene.actuators[0].name}.velocity" in rows else \
+        next(n for n, _ in rows.ending(".velocity") if n in rows)
+    time, q, speed, acceleration = (rows.get(n) for n in ("t", name, f"{name}.velocity", f"{name}.acceleration"))
+    if len(q) >= 5:
+        for values, rate, what in ((time, 1.0 / speed, "t"), (0.5 * speed**2, acceleration, "speed")):
+            excess = beyond_estimate(*simpson(q, values, rate), 5)
+            key = "cycle-rates-friction" if scene.frictions else "cycle-rates"
+            judge.compare(key, np.where(even_rows(q), excess, 0.0), largest(values), "SI", what)
+    fastest, change = largest(speed), lambda values: values[-1] - values[0]
+    of = lambda key: result(summary, prefix + key)
+    mean, turns = change(q) / change(time), result(summary, "revolutions") or 1.0
+    judge.compare("cycle", change(speed), fastest, "SI", "speed at both ends")
+    for state in ("current", "integral"):
+        for n, values in rows.ending(f".{state}"):
+            judge.compare("cycle", change(values), max(largest(values), state_scale(scene, n, fastest)), "SI", f"{n}.{state} at both ends")
+    judge.compare("cycle", of("mean_speed") - mean, fastest, "SI", "mean speed")
+    judge.compare("cycle", abs(change(q)) - 2.0 * np.pi * turns, 2.0 * np.pi, "rad", "revolutions")
+    if not prefix:
+        judge.compare("cycle", of("period") - change(time), change(time), "s", "period")
+    step = largest(np.diff(speed))  # between rows the motion may be faster or slower by no more than that
+    for beyond, what in ((np.abs(speed).min() - abs(of("slowest_speed")), "slowest speed"), (abs(of("fastest_speed")) - fastest, "fastest speed")):
+        judge.compare("cycle", max(-beyond, beyond - step, 0.0), fastest, "SI", what)
+    fluctuation = (abs(of("fastest_speed")) - abs(of("slowest_speed"))) / abs(mean)
+    if of("coefficient_of_fluctuation") is not None:
+        judge.compare("cycle", of("coefficient_of_fluctuation") - fluctuation, 1.0, "", "coefficient of fluctuation")
+    works = rows.ending(".work")
+    for n, work in works:
+        stated = result(summary, f"{prefix}{n}.work")
+        if stated is not None:
+            judge.compare("cycle", stated - change(work), largest(*(w for _, w in works)) or 1.0, "J", f"{n}.work of a cycle")
+    added = of("inertia") if prefix else 0.0
+    cycle_equation(judge, reduced, rows, (time, Jet(q, speed, acceleration)), added or 0.0)
+
+
+def cycle_equation(judge, reduced, rows, motion, added):
+    """m q̈ + ½m′ q̇² = Σ w F and the drives' forces, where `reduce` has written m, ½m′ and w; with a flywheel's inertia."""
+    if reduced is None:
+        judge.skip("the equation of motion", "no file of `reduce`")
+        return
+    time, q = motion
+    try:
+        m, _ = reduced.at("m", q.value)
+        half, _ = reduced.at("half_dm", q.value)
+        loads, terms = reduced.force(q.value, q.first, time)
+        drives, rotor = reduced.drives(q, time, rows)
+    except Unknown as reason:
+        judge.skip("the equation of motion", str(reason))
+        return
+    left = (m + rotor + added) * q.second + half * q.first**2 - loads - drives
+    scale = max(largest(terms), largest(drives), largest(m * q.second), largest(half * q.first**2), 1e-3 * largest(m * q.first**2))
+    judge.compare("cycle-equation", left, scale or 1.0, "N m", "the equation of motion")
+
+
+def state_scale(scene, name, fastest):
+    """A natural size of a drive's state: the current of the induced voltage, or an integral of a revolution."""
+    numbers = next(drive.numbers for drive in scene.drives if drive.name == name)
+    if "resistance" in numbers:
+        return abs(numbers["torque-constant"] * numbers["ratio"] * fastest / numbers["resistance"])
+    return 2.0 * np.pi
+
+
+# Equilibria and linearised motions.
+
+
+def eigenvalues(summary, name):
+    found = []
+    while (re := result(summary, f"{name}.eigenvalue.{len(found) + 1}.re")) is not None:
+        found.append(complex(re, result(summary, f"{name}.eigenvalue.{len(found) + 1}.im")))
+    return found
+
+
+def modes(judge, summary, name):
+    """|λ| = ω = 2π f and ζ = −Re λ/|λ| of each mode."""
+    values = eigenvalues(summary, name)
+    scale = max(map(abs, values), default=0.0)
+    for k, value in enumerate(values, 1):
+        of = lambda what: result(summary, f"{name}.eigenvalue.{k}.{what}")
+        for what, factor, wanted in (("angular_frequency", 1.0, abs(value)), ("frequency", 2.0 * np.pi, abs(value)),
+                                     ("damping_ratio", abs(value), -value.real)):
+            if of(what) is not None:
+                judge.compare("modes", factor * of(what) - wanted, scale, "1/s", f"{name}, eigenvalue {k}, {what}")
+
+
+def judge_equilibria(judge, scene, rows, summary, reduced, statics):
+    """The table of equilibria with its summary, distances from the start, and forces and stiffness by `reduce`."""
+    count = int(result(summary, "equilibria") or 0)
+    judge.compare("equilibria", rows.count - count, 1.0, "", "number of equilibria")
+    free = [c for c in scene.actuators if c.name not in scene.laws("motion")]
+    for k in range(min(count, rows.count)):
+        name = f"equilibrium.{k + 1}"
+        modes(judge, summary, name)
+        table_row(judge, rows, k, summary, name, free)
+        from_start(judge, scene, summary, name, free)
+    neighbours(judge, rows, summary, count, free)
+    if len(free) != 1 or len(scene.actuators) != 1:
+        return
+    places = rows.get(free[0].name)
+    if count and reduced is not None:
+        by_reduced(judge, reduced, places, summary)
+    sign_changes(judge, scene, places, statics, summary, free[0].name)
+
+
+def table_row(judge, rows, k, summary, name, free):
+    """Coordinates, the largest real part and the modes of a row with the summary."""
+    values = eigenvalues(summary, name)
+    scale = max(map(abs, values), default=0.0) or 1.0
+    for coordinate in free:
+        stated, from_row = result(summary, f"{name}.{coordinate.name}"), rows.get(coordinate.name)
+        if stated is not None and from_row is not None:
+            judge.compare("equilibria", from_row[k] - stated, max(1.0, abs(stated)), "SI", f"{name}, {coordinate.name}")
+    column = rows.get("max_real_eigenvalue")
+    error = 2.0 * (result(summary, f"{name}.error.eigenvalues") or 0.0)  # what is zero within it is written as zero
+    if column is not None and values:
+        excess = max(abs(column[k] - max(v.real for v in values)) - error, 0.0)
+        judge.compare("equilibria", excess, scale, "1/s", f"{name}, max_real_eigenvalue")
+    frequencies = {j: result(summary, f"{name}.eigenvalue.{j}.angular_frequency") for j in range(1, len(values) + 1)}
+    oscillating = sorted((j for j in frequencies if frequencies[j] is not None), key=frequencies.get)
+    for mode, j in enumerate(oscillating, 1):
+        for what in ("angular_frequency", "frequency", "damping_ratio"):
+            column, stated = rows.get(f"mode{mode}.{what}"), result(summary, f"{name}.eigenvalue.{j}.{what}")
+            if column is not None and stated is not None:
+                judge.compare("equilibria", column[k] - stated, scale, "SI", f"{name}, mode{mode}.{what}")
+
+
+def from_start(judge, scene, summary, name, free):
+    """Each coordinate less that of the start of the motion."""
+    for coordinate in free:
+        start = scene.initial("initial-coordinate", coordinate)
+        start = scene.start_of(coordinate) if start is None else start
+        at, stated = result(summary, f"{name}.{coordinate.name}"), result(summary, f"{name}.{coordinate.name}.from_start")
+        if None not in (start, at, stated):
+            judge.compare("equilibria", stated - (at - start), max(1.0, abs(start)), "SI", f"{name}, {coordinate.name} from the start")
+
+
+def neighbours(judge, rows, summary, count, free):
+    """Along one coordinate the force at rest crosses zero upwards and downwards in turn."""
+    if len(free) != 1 or count < 2 or any(".neutral" in key for key in summary["results"]):
+        return
+    values = [eigenvalues(summary, f"equilibrium.{k + 1}") for k in range(count)]
+    products = [(a * b).real if len(pair) == 2 else 0.0 for pair in values for a, b in [(*pair, 0, 0)[:2]]]
+    order = np.argsort(rows.get(free[0].name)[:count])
+    for a, b in zip(order[:-1], order[1:]):
+        if products[a] and products[b]:
+            judge.require("stability", products[a] * products[b] < 0.0, f"equilibria {a + 1} and {b + 1} are neighbours of the same stability")
+
+
+def by_reduced(judge, reduced, places, summary):
+    """Σ w F is zero at rest, and λ² = (Σ w F)′/m where there is no damping."""
+    zero, scene = np.zeros_like(places), reduced.scene
+    if scene.drives or scene.stops:
+        judge.skip("forces at equilibria", "drives and stops act there")
+        return
+    try:
+        near = np.linspace(-2.0, 2.0, 5)[:, None] * 1e-3 + places  # slopes by differences of fourth order
+        force, terms = zip(*(reduced.force(q, zero, zero) for q in near))
+        m, _ = reduced.at("m", places)
+    except Unknown as reason:
+        judge.skip("forces at equilibria", str(reason))
+        return
+    judge.compare("rest", force[2], largest(*terms) or 1.0, "N m", "static force at equilibria")
+    slope = (force[0] - 8.0 * force[1] + 8.0 * force[3] - force[4]) / 12e-3
+    for k, (stiffness, inertia) in enumerate(zip(slope, m)):
+        values = eigenvalues(summary, f"equilibrium.{k + 1}")
+        if len(values) == 2 and all(load.source != "damper" for load in scene.loads) and not scene.frictions:
+            product = (values[0] * values[1]).real
+            scale = max(abs(product), largest(slope / m))
+            judge.compare("stiffness", product + stiffness / inertia, scale or 1.0, "1/s2", f"equilibrium {k + 1}: λ₁ λ₂")
+
+
+def sign_changes(judge, scene, places, statics, summary, name):
+    """Between two rows of `statics` with forces of different sign is an equilibrium."""
+    if statics is None or f"{name}.actuator_force" not in statics or scene.drives or scene.frictions or scene.stops:
+        return
+    q, force = statics.get(name), statics.get(f"{name}.actuator_force")
+    low, high = result(summary, f"searched.{name}.from"), result(summary, f"searched.{name}.to")
+    if low is None or high is None or any(".neutral" in key for key in summary["results"]):
+        return
+    turns = [0.0, -2.0 * np.pi, 2.0 * np.pi] if scene.actuators[0].measure.is_angle else [0.0]
+    clear = 1e-9 * largest(force)
+    for a, b, f, g in zip(q[:-1], q[1:], force[:-1], force[1:]):
+        if f * g < 0.0 and min(abs(f), abs(g)) > clear and any(low <= a + t and b + t <= high for t in turns):
+            slack = 1e-6 * abs(b - a)
+            met = any(min(a, b) - slack <= p - t <= max(a, b) + slack for p in places for t in turns)
+            judge.require("stability", met, f"no equilibrium between {a} and {b}, where the static force changes its sign")
+
+
+def read_matrices(text):
+    """A, B, C and D of `linearise` by the names of their rows and columns."""
+    matrices, columns = {}, []
+    for line in csv.reader(text.splitlines()):
+        if line[0] == "matrix":
+            columns = [split_heading(head)[0] for head in line[2:]]
+        else:
+            row = split_heading(line[1])[0]
+            matrices.setdefault(line[0], {})[row] = {c: float(v) for c, v in zip(columns, line[2:])}
+    return matrices
+
+
+def judge_linear(judge, text, npz, summary):
+    """Eigenvalues in the characteristic polynomial of the written A; matrices in both files; rows that are states."""
+    matrices = read_matrices(text)
+    rates = list(matrices["A"])
+    states = list(matrices["A"][rates[0]])
+    for name, rows in matrices.items():
+        if npz is not None and name in npz:
+            table = np.array([[rows[r][c] for c in rows[r]] for r in rows]).reshape(npz[name].shape)
+            judge.compare("archive", (table - npz[name]).ravel(), 1.0, "SI", f"matrix {name}")
+    # A coordinate changes by its velocity, and an output that is a state is that state.
+    for matrix, row, wanted in [("A", f"d({s.removesuffix('.velocity')})/dt", s) for s in states if s.endswith(".velocity")] + \
+            [("C", s, s) for s in states if s in matrices["C"]]:
+        entries = np.array([matrices[matrix][row][s] - (s == wanted) for s in states])
+        judge.compare("matrices", entries, 1.0, "SI", f"row {row} of {matrix}")
+    if npz is not None and "rates" in npz and "state" in npz:
+        state = dict(zip(map(str, npz["states"]), npz["state"].ravel()))
+        for rate, value in zip(rates, npz["rates"].ravel()):
+            of = rate[2:].split(")/dt")[0]
+            if f"{of}.velocity" in state:
+                judge.compare("matrices", value - state[f"{of}.velocity"], max(1.0, abs(value)), "SI", f"rate {rate}")
+    a = np.array([[matrices["A"][r][s] for s in states] for r in rates])
+    for name in ("equilibrium", "initial"):
+        values = eigenvalues(summary, name)
+        if not values:
+            continue
+        modes(judge, summary, name)
+        judge.require("eigenvalues", len(values) == len(a), f"{len(values)} eigenvalues of {len(a)} states")
+        size = max(*map(abs, values), np.linalg.norm(a) * 1e-8, 1e-300)
+        error = (result(summary, f"{name}.error.eigenvalues") or 0.0) * 4.0
+        for k, value in enumerate(values, 1):
+            judge.compare("eigenvalues", max(distance_of_root(a, value, size) - error, 0.0), size, "1/s", f"{name}, eigenvalue {k}")
+        judge.compare("eigenvalues", sum(values).real - np.trace(a), size, "1/s", f"{name}: their sum with the trace of A")
+
+
+def distance_of_root(a, value, size):
+    """How far a number is from a root of det(A − λ), by a step of Newton's method."""
+    aside = 1e-6 * size * (1.0 + 1.0j)
+    determinant = lambda at: np.linalg.det((a - at * np.eye(len(a))) / size)
+    here = determinant(value)
+    change = determinant(value + aside) - here
+    return 0.0 if here == 0.0 else abs(here) / abs(change) * abs(aside)
