@@ -14,6 +14,7 @@ import points
 import poses
 import reduced
 import repeated
+import sections
 import sweeps
 
 
@@ -51,6 +52,8 @@ def pose_files(judge, scene, folder):
             repeated.dwell(judge, scene, rows, folder.summary(command))
         if command != "kinematics":
             poses.equilibrium(judge, motion, command == "statics")
+            still = motion.at_rest() if command == "statics" else motion
+            sections.judge_sections(judge, still, folder, folder.summary(command), command)
     return found
 
 

@@ -34,6 +34,15 @@ def forced(text):
     return text + added
 
 
+def requested_sections(scene):
+    """Internal forces of two links of a scene in the plane, for its end; they leave all columns as they are."""
+    if not scene.is_plane:
+        return ""
+    links = [(b.name, *list(b.points)[:2]) for b in scene.bodies if b.mass > 0.0 and len(b.points) > 1]
+    lines = [f'{{ body = "{body}", from = "{start}", to = "{end}" }}' for body, start, end in links[:2]]
+    return f"\n[requests]\nsections = [{', '.join(lines)}]\n" if lines else ""
+
+
 def run(program, command, scene, folder, *options):
     """Runs a command; its status, and what it printed."""
     arguments = [str(program), *command.split(), str(scene), *options, "--out", str(folder), "--pictures", "none"]
@@ -52,7 +61,7 @@ def prepare(program, scene_path, folder):
     scene_path, folder = Path(scene_path), Path(folder)
     name = scene_path.parent.name if scene_path.name == "scene.toml" else scene_path.stem
     text = without_section(scene_path.read_text(encoding="utf-8"), "requests")
-    texts = {"forced": forced(text), "plain": text}
+    texts = {"forced": forced(text) + requested_sections(Scene(text)), "plain": text}
     made = []
     for kind, commands in (("forced", ("kinematics", "kinetostatics")), ("plain", PLAIN)):
         here = folder / f"{name}-{kind}"

@@ -44,6 +44,7 @@ CHECKS = {
     "quotients": Check("velocity ratios and transmission angles with velocities and places", KIND, 1e-12, ROUNDING),
     "extents": Check("by how much bodies turn and slides travel, and dwells, with the rows", "the extent, or 1", 1e-9, "the error of extrema between rows"),
     "headings": Check("units of columns with what their names say", "nothing: words", 0.0, "words"),
+    "sections": Check("internal forces of links with equilibrium of the part beyond each cut, and with their envelopes", KIND, 1e-11, ROUNDING),
     "cycle": Check("speeds, fluctuation, works and both ends of a cycle with its rows", KIND, 1e-7, "the tolerance of the integration"),
     "cycle-rates": Check("times and speeds of a cycle with the integrals of their rates over the coordinate", KIND, 1e-7, "the tolerance of the integration"),
     "cycle-rates-friction": Check("the same where friction turns with the sliding velocity", KIND, 1e-5, "rows do not meet the instants at which friction turns"),
