@@ -9,6 +9,7 @@ from files import Folder
 from judge import Judge
 from motion import Motion, Unplaced
 from scene import Scene
+import linear
 import motions
 import points
 import poses
@@ -114,7 +115,7 @@ def point_files(judge, scene, folder):
         points.judge_equilibria(judge, scene, table, summary, model, folder.csv("statics"))
     text, judge.file = folder.text("linear.csv"), "linear"
     if text is not None:
-        points.judge_linear(judge, text, folder.npz("linear"), folder.summary("linearise"))
+        linear.judge_linear(judge, text, folder.npz("linear"), folder.summary("linearise"), model, folder.summary("equilibria"))
 
 
 def sweep_files(judge, scene, folder):

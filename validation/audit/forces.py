@@ -167,8 +167,8 @@ class DriveForces:
         if self.has_circuit:
             current = self.current
             return None if current is None else ratio * self.numbers["torque-constant"] * current
-        share = 1.0 - ratio * self.coordinate.first / self.numbers["no-load-speed"]
-        return ratio * self.numbers["stall-torque"] * share
+        voltage = 1.0 if self.magnitude is None else self.magnitude
+        return ratio * self.numbers["stall-torque"] * (voltage - ratio * self.coordinate.first / self.numbers["no-load-speed"])
 
     def net(self):
         """What is left for the mechanism beside what accelerates the rotor."""

@@ -1,10 +1,8 @@
-"""Steady cycles, equilibria and linearised motions, as `cycle`, `equilibria` and `linearise` write them."""
-
-import csv
+"""Steady cycles and equilibria, as `cycle` and `equilibria` write them, by the reduced model of `reduce`."""
 
 import numpy as np
 
-from files import result, split_heading
+from files import result
 from forces import DriveForces
 from jets import Jet
 from judge import largest
@@ -48,27 +46,33 @@ class Reduced:
         if self.scene.frictions:
             raise Unknown("friction needs the reactions")
         total, terms = np.zeros_like(q), np.zeros_like(q)
-        signals = {self.name: q, f"{self.name}.velocity": velocity, "t": time}
-        for load in self.scene.loads:
-            w, _ = self.at(f"{load.name}.w", q)
-            amount = known(load.magnitude, signals, q)
-            part = w * amount * (-w * velocity if load.source == "damper" else 1.0)
+        for name, number in self.load_numbers(q, velocity, time).items():
+            part = self.at(f"{name}.w", q)[0] * number
             total, terms = total + part, terms + np.abs(part)
         return total, terms
 
-    def drives(self, coordinate, time, rows):
-        """The forces of all drives on the coordinate, without what accelerates their rotors; and the inertia of these."""
-        total, rotor = np.zeros_like(coordinate.value), 0.0
-        signals = {self.name: coordinate.value, f"{self.name}.velocity": coordinate.first, "t": time}
+    def load_numbers(self, q, velocity, time):
+        """F of every load; of a damper the resistance, positive where it opposes growth."""
+        signals, found = {self.name: q, f"{self.name}.velocity": velocity, "t": time}, {}
+        for load in self.scene.loads:
+            amount = known(load.magnitude, signals, q)
+            rate = -self.at(f"{load.name}.w", q)[0] * velocity if load.source == "damper" else 1.0
+            found[load.name] = amount * rate
+        return found
+
+    def drives(self, coordinate, time, rows, inputs=None):
+        """All drives on the coordinate; an input is added to their magnitudes."""
+        signals, found = {self.name: coordinate.value, f"{self.name}.velocity": coordinate.first, "t": time}, {}
         for drive in self.scene.drives:
             if drive.coordinate != self.name:
                 raise Unknown(f"drive {drive.name} acts on another coordinate")
-            magnitude = None if drive.magnitude is None else known(drive.magnitude, signals, coordinate.value)
-            force = DriveForces(drive, coordinate, magnitude, rows).force()
-            if force is None:
+            # A motor that is given by its line always has its full voltage: 1.
+            magnitude = known(drive.magnitude, signals, coordinate.value) if drive.magnitude else np.ones_like(coordinate.value)
+            magnitude = magnitude + (inputs or {}).get(drive.name, 0.0)
+            found[drive.name] = DriveForces(drive, coordinate, magnitude, rows)
+            if found[drive.name].force() is None:
                 raise Unknown(f"the state of {drive.name} has no column")
-            total, rotor = total + force, rotor + drive.numbers["rotor"]
-        return total, rotor
+        return found
 
 
 def known(magnitude, signals, q):
@@ -128,10 +132,11 @@ def cycle_equation(judge, reduced, rows, motion, added):
         m, _ = reduced.at("m", q.value)
         half, _ = reduced.at("half_dm", q.value)
         loads, terms = reduced.force(q.value, q.first, time)
-        drives, rotor = reduced.drives(q, time, rows)
+        drives = reduced.drives(q, time, rows).values()
     except Unknown as reason:
         judge.skip("the equation of motion", str(reason))
         return
+    rotor, drives = sum(of.numbers["rotor"] for of in drives), sum((of.force() for of in drives), np.zeros_like(m))
     left = (m + rotor + added) * q.second + half * q.first**2 - loads - drives
     scale = max(largest(terms), largest(drives), largest(m * q.second), largest(half * q.first**2), 1e-3 * largest(m * q.first**2))
     judge.compare("cycle-equation", left, scale or 1.0, "N m", "the equation of motion")
@@ -145,7 +150,7 @@ def state_scale(scene, name, fastest):
     return 2.0 * np.pi
 
 
-# Equilibria and linearised motions.
+# Equilibria.
 
 
 def eigenvalues(summary, name):
@@ -268,58 +273,3 @@ def sign_changes(judge, scene, places, statics, summary, name):
             slack = 1e-6 * abs(b - a)
             met = any(min(a, b) - slack <= p - t <= max(a, b) + slack for p in places for t in turns)
             judge.require("stability", met, f"no equilibrium between {a} and {b}, where the static force changes its sign")
-
-
-def read_matrices(text):
-    """A, B, C and D of `linearise` by the names of their rows and columns."""
-    matrices, columns = {}, []
-    for line in csv.reader(text.splitlines()):
-        if line[0] == "matrix":
-            columns = [split_heading(head)[0] for head in line[2:]]
-        else:
-            row = split_heading(line[1])[0]
-            matrices.setdefault(line[0], {})[row] = {c: float(v) for c, v in zip(columns, line[2:])}
-    return matrices
-
-
-def judge_linear(judge, text, npz, summary):
-    """Eigenvalues in the characteristic polynomial of the written A; matrices in both files; rows that are states."""
-    matrices = read_matrices(text)
-    rates = list(matrices["A"])
-    states = list(matrices["A"][rates[0]])
-    for name, rows in matrices.items():
-        if npz is not None and name in npz:
-            table = np.array([[rows[r][c] for c in rows[r]] for r in rows]).reshape(npz[name].shape)
-            judge.compare("archive", (table - npz[name]).ravel(), 1.0, "SI", f"matrix {name}")
-    # A coordinate changes by its velocity, and an output that is a state is that state.
-    for matrix, row, wanted in [("A", f"d({s.removesuffix('.velocity')})/dt", s) for s in states if s.endswith(".velocity")] + \
-            [("C", s, s) for s in states if s in matrices["C"]]:
-        entries = np.array([matrices[matrix][row][s] - (s == wanted) for s in states])
-        judge.compare("matrices", entries, 1.0, "SI", f"row {row} of {matrix}")
-    if npz is not None and "rates" in npz and "state" in npz:
-        state = dict(zip(map(str, npz["states"]), npz["state"].ravel()))
-        for rate, value in zip(rates, npz["rates"].ravel()):
-            of = rate[2:].split(")/dt")[0]
-            if f"{of}.velocity" in state:
-                judge.compare("matrices", value - state[f"{of}.velocity"], max(1.0, abs(value)), "SI", f"rate {rate}")
-    a = np.array([[matrices["A"][r][s] for s in states] for r in rates])
-    for name in ("equilibrium", "initial"):
-        values = eigenvalues(summary, name)
-        if not values:
-            continue
-        modes(judge, summary, name)
-        judge.require("eigenvalues", len(values) == len(a), f"{len(values)} eigenvalues of {len(a)} states")
-        size = max(*map(abs, values), np.linalg.norm(a) * 1e-8, 1e-300)
-        error = (result(summary, f"{name}.error.eigenvalues") or 0.0) * 4.0
-        for k, value in enumerate(values, 1):
-            judge.compare("eigenvalues", max(distance_of_root(a, value, size) - error, 0.0), size, "1/s", f"{name}, eigenvalue {k}")
-        judge.compare("eigenvalues", sum(values).real - np.trace(a), size, "1/s", f"{name}: their sum with the trace of A")
-
-
-def distance_of_root(a, value, size):
-    """How far a number is from a root of det(A − λ), by a step of Newton's method."""
-    aside = 1e-6 * size * (1.0 + 1.0j)
-    determinant = lambda at: np.linalg.det((a - at * np.eye(len(a))) / size)
-    here = determinant(value)
-    change = determinant(value + aside) - here
-    return 0.0 if here == 0.0 else abs(here) / abs(change) * abs(aside)

@@ -56,6 +56,8 @@ CHECKS = {
     "stiffness": Check("eigenvalues of equilibria with the slope of the static force over m by `reduce`", "the largest of all equilibria", 1e-7, "differences of polynomials through rows"),
     "matrices": Check("rows of A and C that are states", "1", 1e-13, ROUNDING),
     "eigenvalues": Check("eigenvalues in the characteristic polynomial of the written A", "the largest eigenvalue", 1e-9, ROUNDING),
+    "nearest": Check("the equilibrium of `linearise` with the one of `equilibria` that is nearest to the start", KIND, 1e-12, ROUNDING),
+    "linear": Check("A, B, C and D with differences of the equation of motion and of R = a q̈ + b q̇² + Σ c F", "the largest change of the row", 1e-7, "differences of polynomials through rows of `reduce`"),
     "draws": Check("varied numbers with the grid and the generator of random numbers", "each number", 1e-13, ROUNDING),
     "statistics": Check("statistics of the summary with the rows", KIND, 1e-12, ROUNDING),
     "variants": Check("extrema of m of variants by sums over bodies", "the largest m", 1e-12, ROUNDING),
