@@ -9,6 +9,7 @@ from files import Folder
 from judge import Judge
 from motion import Motion, Unplaced
 from scene import Scene
+import copies
 import linear
 import motions
 import points
@@ -126,7 +127,24 @@ def sweep_files(judge, scene, folder):
         sweeps.judge_sweep(judge, scene, folder.scene_text, rows, folder.study(), folder.summary("sweep"), moving)
 
 
-PARTS = [pose_files, motion_files, reduced_files, point_files, sweep_files]
+def copied_files(judge, scene, folder):
+    """Files of `check`, `calibrate`, and the table of `reduce`."""
+    tables = {end: folder.csv(end) for end in ("kinematics", "statics", "kinetostatics", "run-i", "motion", "reduced")}
+    moving = [tables[end] for end in ("run-i", "kinematics", "kinetostatics")]
+    summary, judge.file, name = folder.summary("check"), "check", scene.actuators[0].name if scene.actuators else ""
+    if summary is not None:
+        copies.judge_contents(judge, scene, summary, list(tables.values())[:5])
+        if tables["reduced"] is not None:
+            copies.judge_range(judge, summary, tables["reduced"], name)
+    summary, judge.file = folder.summary("calibrate"), "calibrate"
+    if summary is not None:
+        copies.judge_calibration(judge, scene, folder.scene_text, summary, moving)
+    path, judge.file = folder.path / f"{folder.name}.table", "table"
+    if path.exists() and tables["reduced"] is not None:
+        copies.judge_table(judge, path.read_text(encoding="utf-8"), tables["reduced"], name)
+
+
+PARTS = [pose_files, motion_files, reduced_files, point_files, sweep_files, copied_files]
 
 
 def audit(scene_path, folder_path, name=None):
