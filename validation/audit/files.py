@@ -67,6 +67,7 @@ class Folder:
         scene_path, self.path = Path(scene_path), Path(folder)
         usual = scene_path.resolve().parent.name if scene_path.name == "scene.toml" else scene_path.stem
         self.name = name or usual
+        self.tables = {}  # those that have been read
         self.scene_text = scene_path.read_text(encoding="utf-8")
         self.sha256 = hashlib.sha256(scene_path.read_bytes()).hexdigest()
 
@@ -75,8 +76,10 @@ class Folder:
 
     def csv(self, end):
         """A table, or none."""
-        path = self.file(f"{end}.csv")
-        return read_csv(path, end) if path.exists() else None
+        if end not in self.tables:
+            path = self.file(f"{end}.csv")
+            self.tables[end] = read_csv(path, end) if path.exists() else None
+        return self.tables[end]
 
     def npz(self, end):
         """An archive by the names of its arrays, or none."""
@@ -105,10 +108,12 @@ class Folder:
             return {key: str(value) for key, value in tomllib.loads(parts.read_text(encoding="utf-8")).items()}
         return {}
 
-    def other_names(self, ends):
-        """Names of other scenes whose files are here."""
-        found = {p.name.removesuffix(f"-{end}.csv") for end in ends for p in self.path.glob(f"*-{end}.csv")}
-        return sorted(found - {self.name})
+    def notes(self):
+        """Summaries of another text of the scene than the one that is read."""
+        for path in sorted(self.path.glob(f"{self.name}-*.json")):
+            scene = json.loads(path.read_text(encoding="utf-8")).get("scene") or {}
+            if scene.get("sha256") not in (None, self.sha256):
+                yield f"note: {path.name} is of another text of the scene"
 
 
 def result(summary, name):

@@ -26,6 +26,8 @@ CHECKS = {
     "totals": Check("shaking forces, powers and energies with sums over all bodies", KIND, 1e-12, ROUNDING),
     "joint-forces": Check("magnitudes, directions and components of joint forces with the components along the ground", KIND, 1e-12, ROUNDING),
     "motion-equilibrium": Check("Newton's and Euler's equations of every body with loads, drives, friction and reactions", KIND, 1e-11, ROUNDING),
+    "wanted": Check("where rows begin and end, and their speed, with the scene", "the number, or 1", 1e-9, ROUNDING),
+    "impacts": Check("speeds after impacts with restitution times those before", "the largest speed", 1e-4, "speeds before impacts are extrapolated from rows"),
     "drives": Check("forces of drives with the scene", KIND, 1e-12, ROUNDING),
     "motors": Check("currents, electrical powers and efficiencies of motors with the circuit of the scene", KIND, 1e-12, ROUNDING),
     "stops": Check("coordinates with the ends that rigid stops leave", "one radian or metre, or more", 1e-14, "an impact is located to rounding"),
