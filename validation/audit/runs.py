@@ -1,6 +1,8 @@
 """Scenes that request everything and move, and the product's commands on them, for the self-test and its measurements."""
 
+import os
 import re
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -45,14 +47,13 @@ def requested_sections(scene):
 
 def run(program, command, scene, folder, *options):
     """Runs a command; its status, and what it printed."""
-    arguments = [str(program), *command.split(), str(scene), *options, "--out", str(folder), "--pictures", "none"]
+    pictures = [] if command == "check" else ["--pictures", "none"]
+    arguments = [str(program), command, str(scene), *options, "--out", str(folder), *pictures]
     done = subprocess.run(["nice", *arguments], capture_output=True, text=True, check=False, env=environment())
     return done.returncode, done.stdout, done.stderr
 
 
 def environment():
-    import os
-
     return {**os.environ, "RAYON_NUM_THREADS": "1"}
 
 
@@ -72,7 +73,16 @@ def prepare(program, scene_path, folder):
             options = ("--points", points) if command in ("kinematics", "kinetostatics", "statics") else ()
             status, _, _ = run(program, command, here / f"{name}.toml", here, *options)
             made.append((kind, command, status))
+    scene = Scene(text)
+    masses = [body.name for body in scene.bodies if body.mass > 0.0 and not body.is_ground]
+    if masses and len(scene.actuators) == 1:
+        vary = ["--vary", f"{masses[0]}.mass±5%", "--samples", "12", "--seed", "7", "--result", "m"]
+        made.append(("plain", "sweep", run(program, "sweep", folder / f"{name}-plain" / f"{name}.toml", folder / f"{name}-plain", *vary)[0]))
     return made
 
 
-PLAIN = ("kinematics", "statics", "reduce", "runs", "simulate", "cycle", "equilibria", "linearise")
+PLAIN = ("check", "kinematics", "statics", "reduce", "runs", "simulate", "cycle", "equilibria", "linearise")
+
+
+def remove(folder):
+    shutil.rmtree(folder)
