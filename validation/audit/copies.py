@@ -21,9 +21,18 @@ def judge_contents(judge, scene, summary, others):
     stated |= {f"mass.{body.name}": body.mass for body in moving}
     if scene.is_plane:
         stated |= {f"inertia.{body.name}": body.inertia[2, 2] for body in moving if not body.varying}
+    axes = "xyz"
+    pairs = [(i, j) for i in range(3) for j in range(i, 3)]
+    stated |= {f"inertia.{b.name}.{axes[i]}{axes[j]}": b.inertia[i, j] for b in moving for i, j in pairs if not scene.is_plane}
+    stated |= {f"start.{c.name}": scene.start_of(c) for c in scene.actuators if scene.start_of(c) is not None}
+    stated |= {"prescribed.duration": scene.keys.get("prescribed", {}).get("duration"), "free_motion.duration": scene.keys.get("motion", {}).get("duration")}
+    for c in (c for c in scene.actuators if c.name not in scene.laws("motion")):
+        q, v = scene.initial("initial-coordinate", c), scene.initial("initial-velocity", c)
+        stated |= {f"free_motion.{c.name}": scene.start_of(c) if q is None else q, f"free_motion.{c.name}.velocity": v or 0.0}
+    stated = {name: value for name, value in stated.items() if value is not None}
     for stop in scene.stops:
-        if stop["stiffness"] is not None:
-            stated |= {f"stop.{stop['name']}.{key}": stop[key] for key in ("stiffness", "damping")}
+        keys = ("min", "max", *(("stiffness", "damping") if stop["stiffness"] is not None else ("restitution",)))
+        stated |= {f"stop.{stop['name']}.{key}": stop[key] for key in keys if key in stop}
     for name, value in stated.items():
         written = result(summary, name)
         if written is not None:

@@ -149,7 +149,9 @@ class DriveForces:
 
     @property
     def unlimited(self):
-        """Of a controller: its force without the limit; none where its integral is in no file."""
+        """Of a controller: its force without the limit; none where its integral is in no file, and of other drives."""
+        if self.drive.kind != "speed-controller":
+            return None
         integral = self.numbers["integral"]
         if integral and self.integral is None:
             return None

@@ -55,7 +55,8 @@ def forces_of_rows(judge, motion):
         judge.skip("equilibrium", "a drive or friction has no columns")
     poses.known_reactions(judge, motion)
     outside = {**of_friction} if complete else {"": None}
-    of_stops = [powers.get(stop["name"]) for stop in scene.stops]  # none of a rigid one
+    still = np.zeros(motion.count)  # on a rigid stop nothing moves
+    of_stops = [powers.get(stop["name"], still) for stop in scene.stops]
     poses.totals(judge, motion, of_loads, outside, actuators + of_stops, drives or {})
     return {"powers": powers, "drives": drives or {}, "complete": complete, "actuators": actuators}
 
@@ -132,7 +133,7 @@ def energies(judge, motion, forces, corners):
     potential = rows.get("energy.potential")
     potential = np.zeros_like(time) if potential is None else potential
     scale = largest(kinetic, potential - potential[0], *works.values()) or 1.0
-    judge.compare("energies", rows.get("energy.kinetic") - kinetic, scale, "J", "energy.kinetic")
+    judge.compare("energy-columns", rows.get("energy.kinetic") - kinetic, scale, "J", "energy.kinetic")
     between = Between(judge, time, corners, scale)
     powers, actuators = forces["powers"], forces["actuators"]
     if forces["complete"] and all(p is not None for p in actuators):
@@ -153,7 +154,7 @@ def energies(judge, motion, forces, corners):
     balance = rows.get("energy.balance_error")
     if balance is not None:
         total = kinetic + potential - sum(works.values(), np.zeros_like(time))
-        judge.compare("energies", balance - (total - total[0]), scale, "J", "energy.balance_error")
+        judge.compare("energy-columns", balance - (total - total[0]), scale, "J", "energy.balance_error")
         judge.compare("energy-balance", balance, scale, "J", "energy.balance_error itself")
 
 
@@ -170,7 +171,7 @@ class Between:
             self.judge.compare(key, np.where(self.inside, excess, 0.0), scale or self.scale, "J", place)
 
 
-def potentials(judge, motion, names, potential, scale, key="energies"):
+def potentials(judge, motion, names, potential, scale, key="energy-columns"):
     """The potential of loads whose magnitudes are constant, up to a constant."""
     total, at = np.zeros(motion.count), motion.names(motion.time())
     for load in motion.scene.loads:
@@ -236,6 +237,9 @@ def motors(judge, motion, drives):
 def judge_summary(judge, scene, rows, events, summary):
     """Energies, the end and the events of the summary with rows and events."""
     time, kinetic = rows.get("t"), rows.get("energy.kinetic")
+    duration = scene.keys.get("motion", {}).get("duration")
+    if duration is not None and result(summary, "duration") is not None:
+        judge.compare("summary", result(summary, "duration") - duration, duration, "s", "duration")
     stated = result(summary, "end")
     if stated is not None:
         judge.compare("summary", stated - time[-1], time[-1], "s", "end")

@@ -15,11 +15,15 @@ from motion import Motion, Unplaced
 from scene import Scene
 
 
-def whole_file(judge, scene, folder, rows, end, command, corners=()):
-    """What is judged of every table: its archive, its headings, and the extrema of its summary."""
+def whole_file(judge, scene, folder, rows, end, command, corners=(), of_positions=None):
+    """What is judged of every table: its archive, its headings, and the extrema of its summary, away from corners."""
     repeated.archive(judge, rows, folder.npz(end))
+    abscissa = "t" if "t" in rows else scene.actuators[0].name if scene.actuators else ""
+    repeated.ascends(judge, rows, abscissa)
+    if summary := folder.summary(command):
+        repeated.summary_of_table(judge, rows, summary)
     repeated.headings(judge, scene, rows)
-    repeated.extrema(judge, rows, folder.summary(command), corners)
+    repeated.extrema(judge, rows, folder.summary(command), corners, corners if of_positions is None else of_positions)
 
 
 def pose_files(judge, scene, folder):
@@ -41,8 +45,8 @@ def pose_files(judge, scene, folder):
         poses.between_rows(judge, rows, corners + poses.switch_times(motion))
         over = ((folder.summary(command) or {}).get("extrema_over") or {}).get("name", "t")
         corners = corners if over == "t" else []
-        corners += poses.switch_places(motion, rows.get(over)) if over in rows else []
-        whole_file(judge, scene, folder, rows, command, command, corners)
+        places = [poses.switch_places(motion, rows.get(over), of_forces) if over in rows else [] for of_forces in (True, False)]
+        whole_file(judge, scene, folder, rows, command, command, *(corners + p for p in places))
         wanted.positions(judge, scene, rows, folder.summary(command), command == "statics")
         repeated.quotients(judge, motion)
         if command == "kinematics":
@@ -87,9 +91,12 @@ def reduced_files(judge, scene, folder):
             poses.closure(judge, motion)
             poses.between_rows(judge, run, poses.switch_times(motion))
             whole_file(judge, scene, folder, run, run.label, run.label)
+            repeated.quotients(judge, motion)
+            reduced.uniform(judge, run, scene.actuators[0].name)
             poses.equilibrium(judge, motion, is_loaded=False)
     if runs is not None:
         judge.file = "runs"
+        whole_file(judge, scene, folder, runs, "runs", "runs")
         reduced.judge_runs(judge, runs, *both, scene.actuators[0].name)
     if rows is not None:
         judge.file = "reduced"
@@ -110,6 +117,7 @@ def point_files(judge, scene, folder):
             points.judge_cycle(judge, scene, cycle, summary, prefix, model)
     table, summary, judge.file = folder.csv("equilibria"), folder.summary("equilibria"), "equilibria"
     if table is not None:
+        repeated.archive(judge, table, folder.npz("equilibria"))
         points.judge_equilibria(judge, scene, table, summary, model, folder.csv("statics"))
     text, judge.file = folder.text("linear.csv"), "linear"
     if text is not None:

@@ -108,18 +108,51 @@ def judge_cycle(judge, scene, rows, summary, prefix, reduced):
     if not prefix:
         judge.compare("cycle", of("period") - change(time), change(time), "s", "period")
     step = largest(np.diff(speed))  # between rows the motion may be faster or slower by no more than that
+    for what, place in (("slowest_speed", np.abs(speed).argmin()), ("fastest_speed", np.abs(speed).argmax())):
+        at, row = of(f"{what}.at"), q[place]
+        if at is not None and np.ptp(speed) > 1e-9 * fastest:  # it is the place of the row, or near it
+            gap = np.abs(np.mod(at - row + np.pi, 2.0 * np.pi) - np.pi)
+            judge.compare("cycle", max(gap - 2.0 * largest(np.diff(q)), 0.0), 1.0, "SI", f"{what}.at")
     for beyond, what in ((np.abs(speed).min() - abs(of("slowest_speed")), "slowest speed"), (abs(of("fastest_speed")) - fastest, "fastest speed")):
         judge.compare("cycle", max(-beyond, beyond - step, 0.0), fastest, "SI", what)
     fluctuation = (abs(of("fastest_speed")) - abs(of("slowest_speed"))) / abs(mean)
     if of("coefficient_of_fluctuation") is not None:
         judge.compare("cycle", of("coefficient_of_fluctuation") - fluctuation, 1.0, "", "coefficient of fluctuation")
     works = rows.ending(".work")
+    total = result(summary, f"{prefix}work_sum")
+    if total is not None:
+        judge.compare("cycle", total - sum(change(w) for _, w in works), largest(*(w for _, w in works)) or 1.0, "J", "work_sum")
     for n, work in works:
         stated = result(summary, f"{prefix}{n}.work")
         if stated is not None:
             judge.compare("cycle", stated - change(work), largest(*(w for _, w in works)) or 1.0, "J", f"{n}.work of a cycle")
+    states_of_cycle(judge, scene, rows, name, (time, Jet(q, speed, acceleration)))
     added = of("inertia") if prefix else 0.0
     cycle_equation(judge, reduced, rows, (time, Jet(q, speed, acceleration)), added or 0.0)
+
+
+def states_of_cycle(judge, scene, rows, name, motion):
+    """Works, currents and integrals of drives change over the coordinate by what the scene says."""
+    time, q = motion
+    signals = {name: q.value, f"{name}.velocity": q.first, "t": time}
+    for drive in (d for d in scene.drives if d.coordinate == name):
+        try:
+            magnitude = known(drive.magnitude, signals, q.value) if drive.magnitude else np.ones_like(q.value)
+        except Unknown:
+            continue
+        of = DriveForces(drive, q, magnitude, rows)
+        held = of.unlimited is not None and np.abs(of.unlimited) > of.numbers.get("limit", np.inf)
+        rates = {"work": of.force(), "current": of.current_rate, "integral": None if of.unlimited is None else np.where(held, 0.0, magnitude - q.first)}
+        for state, rate in rates.items():
+            values = rows.get(f"{drive.name}.{state}")
+            if values is not None and rate is not None:
+                rate = rate if state == "work" else rate / q.first
+                gain = drive.numbers.get("proportional", drive.numbers.get("torque-constant", drive.numbers.get("stall-torque", 0.0)))
+                gain = 1e-3 * abs(gain * drive.numbers["ratio"]) * max(1.0, largest(q.first))  # where all forces are zero
+                scale = max(largest(values), largest(rate), gain) if state == "work" else max(largest(values), state_scale(scene, drive.name, largest(q.first)))
+                key = "cycle-rates-friction" if scene.frictions else "cycle-rates"
+                excess = beyond_estimate(*simpson(q.value, values, rate), 5)
+                judge.compare(key, np.where(even_rows(q.value), excess, 0.0), scale or 1.0, "SI", f"{drive.name}.{state}")
 
 
 def cycle_equation(judge, reduced, rows, motion, added):
@@ -137,6 +170,12 @@ def cycle_equation(judge, reduced, rows, motion, added):
         judge.skip("the equation of motion", str(reason))
         return
     rotor, drives = sum(of.numbers["rotor"] for of in drives), sum((of.force() for of in drives), np.zeros_like(m))
+    for load, number in reduced.load_numbers(q.value, q.first, time).items():
+        values = rows.get(f"{load}.work")
+        if values is not None:
+            rate = number * reduced.at(f"{load}.w", q.value)[0]
+            excess = beyond_estimate(*simpson(q.value, values, rate), 5)
+            judge.compare("cycle-rates", np.where(even_rows(q.value), excess, 0.0), max(largest(values), largest(rate)) or 1.0, "J", f"{load}.work")
     left = (m + rotor + added) * q.second + half * q.first**2 - loads - drives
     scale = max(largest(terms), largest(drives), largest(m * q.second), largest(half * q.first**2), 1e-3 * largest(m * q.first**2))
     judge.compare("cycle-equation", left, scale or 1.0, "N m", "the equation of motion")
@@ -189,6 +228,7 @@ def judge_equilibria(judge, scene, rows, summary, reduced, statics):
     if count and reduced is not None:
         by_reduced(judge, reduced, places, summary)
     sign_changes(judge, scene, places, statics, summary, free[0].name)
+    static_forces(judge, scene, statics, summary, free[0].name)
 
 
 def table_row(judge, rows, k, summary, name, free):
@@ -256,6 +296,20 @@ def by_reduced(judge, reduced, places, summary):
             product = (values[0] * values[1]).real
             scale = max(abs(product), largest(slope / m))
             judge.compare("stiffness", product + stiffness / inertia, scale or 1.0, "1/s2", f"equilibrium {k + 1}: λ₁ λ₂")
+
+
+def static_forces(judge, scene, statics, summary, name):
+    """The smallest and the largest static force by rows of `statics`, where only loads act."""
+    low, high = (result(summary, f"static_force.{end}") for end in ("min", "max"))
+    ends = [result(summary, f"searched.{name}.{end}") for end in ("from", "to")]
+    force = None if statics is None else statics.get(f"{name}.actuator_force")
+    if None in (low, high, *ends) or force is None or scene.drives or scene.frictions or scene.stops:
+        return
+    q, step = statics.get(name), largest(np.diff(force))
+    if abs(abs(q[-1] - q[0]) - abs(ends[1] - ends[0])) > 1e-2 * abs(ends[1] - ends[0]):
+        return
+    for stated, found in ((low, (-force).min()), (high, (-force).max())):  # the actuator holds what the loads do
+        judge.compare("equilibria", max(abs(stated - found) - step, 0.0), max(abs(low), abs(high)), "SI", "extent of the static force")
 
 
 def sign_changes(judge, scene, places, statics, summary, name):

@@ -71,7 +71,7 @@ def laws(judge, motion, section):
     values = {}
     for name, (law, knows_start) in prescribed.items():
         written = column_jet(motion.rows, name)
-        if written is None or not motion.has_rates:
+        if written is None:
             continue
         expected = law.at(Jet(time, np.ones_like(time), 0.0 * time), lambda name: Jet(time, np.ones_like(time)) if name == "t" else None)
         expected = Jet(*(np.broadcast_to(order, time.shape) for order in jet(expected).orders))
@@ -82,7 +82,7 @@ def laws(judge, motion, section):
         difference = written - expected
         if not knows_start:  # the length at assembly, which the scene does not give
             difference = difference - difference.value[0]
-        for k, order in enumerate(difference.orders):
+        for k, order in enumerate(difference.orders if motion.has_rates else difference.orders[:1]):
             inside = ~at_corner if k == 2 else np.ones_like(at_corner)  # a second derivative has two values at a corner
             judge.compare("laws", np.where(inside, order, 0.0), scales[k] or 1.0, "SI", f"{name}{RATES[k]}")
 
@@ -93,23 +93,24 @@ def switch_times(motion):
     return [] if time is None else switch_places(motion, time)
 
 
-def switch_places(motion, abscissa):
-    """Places of the rows between which a coupling, a load, a drive or the sign of a friction may switch."""
+def switch_places(motion, abscissa, of_forces=True):
+    """Places of the rows between which a coupling may switch; of forces also a load, a drive or the sign of a friction."""
     time, scene = motion.time(), motion.scene
     names, quantities = motion.names(time), []
     for joint in scene.joints:
         if joint.kind == "coupling":
             variable = motion.measure(joint.measures[1]).value
             quantities += [variable - corner for corner in joint.law.corners]
-    for magnitude in [of.magnitude for of in [*scene.loads, *scene.drives] if of.magnitude]:
+    sources = [*scene.loads, *scene.drives] if of_forces else []
+    for magnitude in [of.magnitude for of in sources if of.magnitude]:
         quantities += [np.broadcast_to(switch(names).value, time.shape) for switch in magnitude.switches]
-    for drive in scene.drives:
+    for drive in scene.drives if of_forces else []:
         if "limit" in drive.numbers:
             state, force = rows_of(motion, f"{drive.name}.integral"), drive.numbers["integral"]
             error = drive.magnitude(names).value - motion.measure(scene.coordinate(drive.coordinate).measure).first
             wanted = force * state + drive.numbers["proportional"] * error
             quantities += [wanted - drive.numbers["limit"], wanted + drive.numbers["limit"]]
-    for friction in scene.frictions:
+    for friction in scene.frictions if of_forces and motion.has_rates else []:
         joint = scene.joints[friction.joint]
         kinds = {"revolute": ("angle",), "cylindrical": ("angle", "travel")}.get(joint.kind, ("travel",))
         quantities += [motion.measure(scene.measure_of(joint, kind)).first for kind in kinds]
@@ -448,6 +449,8 @@ def equilibrium(judge, motion, at_rest=False, is_loaded=True):
         balance.add(wrenches)
     add_reactions(judge, balance, parts_teeth=is_loaded)
     of_friction = {} if at_rest or not is_loaded else frictions(judge, motion, False)
+    if at_rest:
+        no_friction(judge, motion)
     powers = actuator_forces(balance, False, ())
     if not at_rest:
         balance.add_inertia()
@@ -461,6 +464,16 @@ def equilibrium(judge, motion, at_rest=False, is_loaded=True):
     known_reactions(judge, motion)
     totals(judge, motion, of_loads, of_friction, powers)
     repeated(judge, motion)
+
+
+def no_friction(judge, motion):
+    """At rest the files have no friction."""
+    for friction in motion.scene.frictions:
+        name = motion.scene.joints[friction.joint].name
+        for what in ("friction", "viscous"):
+            column = written(motion.rows, f"{name}.{what}")
+            if column is not None:
+                judge.compare("friction", column, 1.0, "SI", f"{name}.{what} at rest")
 
 
 def varying_is_known(judge, motion):

@@ -16,6 +16,8 @@ from poses import Balance, beyond_estimate, even_rows, simpson
 def judge_reduced(judge, scene, rows, moving, summary):
     """The rows of `reduce` by the motion of the same positions in another file."""
     name = scene.actuators[0].name
+    q = rows.get(name)
+    judge.compare("wanted", np.diff(q) - (q[-1] - q[0]) / max(len(q) - 1, 1), max(1.0, largest(q)), "SI", f"steps of {name}")
     extent(judge, rows, summary)
     motion = None
     for other in moving:
@@ -190,6 +192,18 @@ def extent(judge, rows, summary):
                 judge.compare("summary", stated - value, scale, "kg m2", f"{name}.{end}")
 
 
+def uniform(judge, run, name):
+    """A run has one acceleration, and time, coordinate and speed are those of it."""
+    time, q, speed, acceleration = (run.get(n) for n in ("t", name, f"{name}.velocity", f"{name}.acceleration"))
+    if any(column is None for column in (time, q, speed, acceleration)):
+        return
+    since, a = time - time[0], acceleration[0]
+    scale = max(largest(speed), abs(a) * largest(since), 1e-300)
+    judge.compare("wanted", acceleration - a, max(abs(a), scale / (largest(since) or 1.0)), "SI", f"{name}.acceleration")
+    judge.compare("wanted", speed - speed[0] - a * since, scale, "SI", f"{name}.velocity")
+    judge.compare("wanted", q - q[0] - speed[0] * since - 0.5 * a * since**2, max(1.0, largest(q)), "SI", name)
+
+
 def judge_runs(judge, rows, run_i, run_ii, name):
     """m and ½m′, a and b in the file of `runs` with the forces of both runs, and its columns with each other."""
     both = [("m_1", "half_m_1q1", "m", "half_dm", f"{name}.actuator_force")]
@@ -202,6 +216,9 @@ def judge_runs(judge, rows, run_i, run_ii, name):
             if of_runs in rows and of_reduce in rows:
                 judge.compare("runs", rows.get(of_runs) - rows.get(of_reduce), scale, "SI", of_runs)
         pairs = [(run, force, f"{name}.velocity", f"{name}.acceleration") for run in (run_i, run_ii)]
+        for run in (run_i, run_ii):
+            if run is not None and run.count == rows.count and name in run and name in rows:
+                judge.compare("runs", rows.get(name) - run.get(name), 1.0 + largest(run.get(name)), "SI", f"{name} of {run.label}")
         for run, *columns in pairs:
             if run is not None and run.count == rows.count and all(c in run for c in columns) and first in rows:
                 force_column, speed, acceleration = (run.get(c) for c in columns)

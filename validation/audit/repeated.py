@@ -4,6 +4,7 @@ import numpy as np
 
 from jets import dot, length
 from judge import largest
+from poses import beyond_estimate, even_rows, simpson
 
 # Columns whose extrema are those of the rows: errors, what is infinite in some positions, rotations in space.
 OF_ROWS = ("mechanical_advantage", "pole", "balance", "residual", ".rotation.")
@@ -28,11 +29,14 @@ def archive(judge, rows, npz):
         judge.require("archive", listed == rows.units, "names and units of the archive are not those of the table")
 
 
-def extrema(judge, rows, summary, corners=()):
+POSITIONS = ("rad", "m", "rad/s", "m/s", "rad/s2", "m/s2", "")  # units of what a prescribed motion has without forces
+
+
+def extrema(judge, rows, summary, corners=(), of_positions=()):
     """Extrema of the summary: no row is beyond them, and a polynomial through rows reaches them where it is said."""
     if not summary or not summary.get("extrema"):
         return
-    corners = [*corners, *(event["t"] for event in summary.get("events") or [] if isinstance(event.get("t"), float))]
+    events = [event["t"] for event in summary.get("events") or [] if isinstance(event.get("t"), float)]
     x = rows.get((summary.get("extrema_over") or {}).get("name", "t"))
     scales = {}
     for entry in summary["extrema"]:
@@ -46,7 +50,8 @@ def extrema(judge, rows, summary, corners=()):
         is_zero = entry["min"]["value"] == 0.0 == entry["max"]["value"]  # zero but for rounding is written as zero
         scale = max(scales[entry["unit"]], 1.0 if is_zero else 0.0) or 1.0
         for end, sign in (("min", -1.0), ("max", 1.0)):
-            extremum(judge, (x, y), entry, (end, sign), scale, corners, is_zero)
+            near = of_positions if entry["unit"] in POSITIONS else corners
+            extremum(judge, (x, y), entry, (end, sign), scale, [*near, *events], is_zero)
 
 
 def extremum(judge, curve, entry, side, scale, corners, is_zero):
@@ -57,23 +62,27 @@ def extremum(judge, curve, entry, side, scale, corners, is_zero):
     k = int(np.clip(np.searchsorted(x, at, side="right"), 1, len(x) - 1)) if x[0] <= x[-1] else None
     if k is None or is_zero or any(part in quantity for part in JUMPS):
         return
+    if at in (x[0], x[-1]):
+        judge.compare("extrema", value - y[0 if at == x[0] else -1], scale, entry["unit"], f"{place}, in a row")
+        return
     if quantity.endswith("magnitude"):  # the square of a length is smooth where the length is not
         value, y, scale, place = value**2, y**2, scale**2, f"{place} (its square)"
     # At the start of a motion a transient may be faster than the rows.
-    is_smooth = not any(part in quantity for part in NOT_SMOOTH) and (k > 2 or at == x[0])
+    is_smooth = not any(part in quantity for part in NOT_SMOOTH) and k > 2
     near = [through(x, y, at, k, half, corners) for half in (2, 3, 4)] if is_smooth else [None]
     if None not in near:
-        estimates = [[abs(a - b) for a, b in zip(near[j], near[j + 1])] for j in (0, 1)]
-        error, error_of_slope = (10.0 * max(pair) for pair in zip(*estimates))
+        # The change by two more rows, or a part of that before, which may be small by chance.
+        few, more = ([abs(a - b) for a, b in zip(near[j], near[j + 1])] for j in (0, 1))
+        error, error_of_slope = (10.0 * max(more[k], few[k] / 3.0) for k in (0, 1))
         many, slope = near[2]
-        if error < 1e-3 * scale:
+        if error < 1e-5 * scale:  # otherwise the rows are too far apart for a polynomial
             judge.compare("extrema", max(abs(value - many) - error, 0.0), scale, entry["unit"], place)
-            if x[0] < at < x[-1] and error_of_slope < 1e-3 * scale and not any(part in quantity for part in OF_ROWS):
+            if x[0] < at < x[-1] and error_of_slope < 1e-4 * scale and not any(part in quantity for part in OF_ROWS):
                 judge.compare("places", max(abs(slope) - error_of_slope, 0.0), scale, entry["unit"], place)
             return
-    # Elsewhere it is not much farther from the rows around its place than rows change by there.
+    # Elsewhere it is not much farther from the rows around its place than a curve bends there.
     around = y[max(k - 3, 0) : k + 3]
-    change = 2.0 * np.nanmax(np.abs(np.diff(around))) if len(around) > 1 else 0.0
+    change = 1.5 * np.nanmax(np.abs(np.diff(around, 2))) if len(around) > 2 else np.inf
     excess = max(np.nanmin(np.abs(around - value)) - change, 0.0)
     judge.compare("extrema", excess, scale, entry["unit"], f"{place}, by the rows around it")
 
@@ -84,7 +93,7 @@ def through(x, y, at, k, half, corners):
     rows = slice(start, start + 2 * half)
     xs, ys = x[rows], y[rows]
     low, high = x[max(k - 4, 0)], x[min(k + 3, len(x) - 1)]
-    if len(xs) < 2 * half or start < 0 or np.any(np.abs(np.diff(ys)) > np.pi) or any(low <= c <= high for c in corners):
+    if len(xs) < 2 * half or start < 0 or any(low <= c <= high for c in corners):
         return None
     distance = (xs[-1] - xs[0]) / (2 * half - 1)
     if not np.all(np.diff(xs) > 0.0):
@@ -97,12 +106,40 @@ def through(x, y, at, k, half, corners):
     return value(at), (value(at + step) - value(at - step)) / 2e-3
 
 
+def ascends(judge, rows, name):
+    """The abscissa of a table grows from row to row, or falls."""
+    steps = np.diff(rows.get(name)) if name in rows else np.zeros(0)
+    judge.require("order", bool(np.all(steps >= 0.0) or np.all(steps <= 0.0)), f"{name} neither grows nor falls all the time")
+
+
+def summary_of_table(judge, rows, summary):
+    """The number of rows and columns, where they begin and end, and extremes of transmission angles."""
+    over = (summary.get("extrema_over") or {}).get("name")
+    found = {"positions": rows.count, "columns": len(rows.columns) + len(rows.words)}
+    if over in rows:
+        found |= {"from": rows.get(over)[0], "to": rows.get(over)[-1]}
+    results = summary.get("results", {})
+    for name, value in found.items():
+        if name in results:
+            judge.compare("summary", results[name]["value"] - value, max(1.0, abs(value)), "SI", name)
+            if summary.get("status") == 0 and f"wanted_{name}" in results:
+                judge.compare("summary", results[f"wanted_{name}"]["value"] - value, max(1.0, abs(value)), "SI", f"wanted_{name}")
+    extrema = {entry["quantity"]: entry for entry in summary.get("extrema") or []}
+    for name, entry in results.items():
+        stem, _, end = name.rpartition(".")
+        if stem.endswith(".transmission_angle") and stem in extrema:
+            judge.compare("summary", entry["value"] - extrema[stem][end]["value"], np.pi, "rad", name)
+
+
 def quotients(judge, motion):
     """Velocity ratios and transmission angles."""
     rows, scene = motion.rows, motion.scene
     if not scene.actuators:
         return
-    speed = rows.get(f"{scene.actuators[0].name}.velocity")
+    name = scene.actuators[0].name
+    speed = rows.get(f"{name}.velocity")
+    if speed is None and len(scene.actuators) == 1 and name in rows and rows.count >= 5:
+        ratios_between_rows(judge, rows, rows.get(name))
     for stem, ratios in rows.ending(".velocity_ratio"):
         velocity = next((rows.get(f"{stem}.{end}") for end in ("angular_velocity", "velocity") if f"{stem}.{end}" in rows), None)
         if velocity is not None and speed is not None:
@@ -118,6 +155,17 @@ def quotients(judge, motion):
             cosine = dot(a, b).value / (length(a).value * length(b).value)
         sine = np.linalg.norm(np.cross(a.value, b.value), axis=1) / (length(a).value * length(b).value)
         judge.compare("quotients", angles - np.arctan2(sine, cosine), np.pi, "rad", f"{stem}.transmission_angle")
+
+
+def ratios_between_rows(judge, rows, q):
+    """At rest an angle or a travel changes by the integral of its velocity ratio over the coordinate."""
+    inside = even_rows(q)
+    for stem, ratios in rows.ending(".velocity_ratio"):
+        values = next((rows.get(n) for n in (f"{stem}.angle", f"{stem}.travel", stem) if n in rows), None)
+        if values is not None:
+            excess = beyond_estimate(*simpson(q, values, ratios), 5)
+            scale = max(largest(ratios), 1e-3) * np.abs(np.diff(q)[1:-2])
+            judge.compare("ratios", np.where(inside, excess, 0.0), np.where(inside, scale, 1.0), "SI", f"{stem}.velocity_ratio")
 
 
 def links(scene, pin):

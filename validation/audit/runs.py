@@ -1,5 +1,6 @@
 """Scenes that request everything and move, and the product's commands on them, for the self-test and its measurements."""
 
+import json
 import os
 import re
 import shutil
@@ -36,6 +37,22 @@ def forced(text):
     return text + added
 
 
+def options(kind, command):
+    """The number of positions: without a prescribed motion `kinematics` has those of `reduce`."""
+    points = "721" if (kind, command) == ("plain", "kinematics") else "361" if command == "kinetostatics" else "181"
+    return ("--points", points) if command in ("kinematics", "kinetostatics", "statics") else ()
+
+
+def toml_text(value, top=True):
+    """A scene as TOML, all of it in inline tables."""
+    if isinstance(value, dict):
+        pairs = [f"{json.dumps(key, ensure_ascii=False)} = {toml_text(inner, False)}" for key, inner in value.items()]
+        return "\n".join(pairs) + "\n" if top else "{ " + ", ".join(pairs) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(toml_text(inner, False) for inner in value) + "]"
+    return json.dumps(value, ensure_ascii=False) if not isinstance(value, float) else repr(float(value))
+
+
 def requested_sections(scene):
     """Internal forces of two links of a scene in the plane, for its end; they leave all columns as they are."""
     if not scene.is_plane:
@@ -69,9 +86,7 @@ def prepare(program, scene_path, folder):
         here.mkdir(parents=True, exist_ok=True)
         (here / f"{name}.toml").write_text(texts[kind], encoding="utf-8")
         for command in commands:
-            points = "721" if (kind, command) == ("plain", "kinematics") else "61"  # those of `reduce`
-            options = ("--points", points) if command in ("kinematics", "kinetostatics", "statics") else ()
-            status, _, _ = run(program, command, here / f"{name}.toml", here, *options)
+            status, _, _ = run(program, command, here / f"{name}.toml", here, *options(kind, command))
             made.append((kind, command, status))
     scene = Scene(text)
     masses = [body.name for body in scene.bodies if body.mass > 0.0 and not body.is_ground]

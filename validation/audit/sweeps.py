@@ -84,6 +84,10 @@ def judge_sweep(judge, scene, text, rows, study, summary, moving):
     else:
         judge.skip("drawn numbers", "no study says which numbers are varied")
     inputs = [path for path, _, _ in axes]
+    for name, value in (("points", rows.count), ("rows", rows.count), ("points.missing", 0), ("samples", study.get("samples")), ("seed", study.get("seed"))):
+        stated = result(summary, name)
+        if stated is not None and value not in (None, ""):
+            judge.compare("statistics", stated - float(value), 1.0, "", name)
     for name in rows.columns:
         if result(summary, f"{name}.smallest") is not None:
             statistics(judge, rows, name, inputs, summary)
@@ -97,7 +101,8 @@ def drawn(judge, rows, axes, samples, seed):
     samples = samples if is_random else 1
     combinations = int(np.prod([len(grid) for grid in grids]))
     judge.compare("draws", rows.count - combinations * samples, 1.0, "", "number of points")
-    index = rows.get("index").astype(int)
+    judge.compare("draws", rows.get("index") - np.arange(rows.count), 1.0, "", "index")
+    index = np.arange(rows.count)
     combination, sample = index // samples, index % samples
     for axis, (path, grid, law) in enumerate(axes):
         if grid is not None:
