@@ -95,7 +95,7 @@ class Folder:
         return json.loads(path.read_text(encoding="utf-8")) if path.exists() else None
 
     def text(self, end):
-        path = self.file(end)
+        path = self.path / f"{self.name}.table" if end == "table" else self.file(end)
         return path.read_text(encoding="utf-8") if path.exists() else None
 
     def study(self):

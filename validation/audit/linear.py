@@ -41,7 +41,9 @@ def judge_linear(judge, text, npz, summary, reduced, equilibria):
             of = rate[2:].split(")/dt")[0]
             if f"{of}.velocity" in state:
                 judge.compare("matrices", value - state[f"{of}.velocity"], max(1.0, abs(value)), "SI", f"rate {rate}")
-        by_reduced(judge, matrices, {s: float(state[s]) for s in states}, reduced)
+    state = {s: result(summary, f"state.{s}") for s in states}
+    if all(value is not None for value in state.values()):
+        by_reduced(judge, matrices, state, reduced)
     a = np.array([[matrices["A"][r][s] for s in states] for r in rates])
     for name in ("equilibrium", "initial"):
         values = eigenvalues(summary, name)

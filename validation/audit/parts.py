@@ -144,9 +144,9 @@ def copied_files(judge, scene, folder):
     summary, judge.file = folder.summary("calibrate"), "calibrate"
     if summary is not None:
         copies.judge_calibration(judge, scene, folder.scene_text, summary, moving)
-    path, judge.file = folder.path / f"{folder.name}.table", "table"
-    if path.exists() and tables["reduced"] is not None:
-        copies.judge_table(judge, path.read_text(encoding="utf-8"), tables["reduced"], name)
+    text, judge.file = folder.text("table"), "table"
+    if text is not None and tables["reduced"] is not None:
+        copies.judge_table(judge, text, tables["reduced"], name)
 
 
 PARTS = [pose_files, motion_files, reduced_files, point_files, sweep_files, copied_files]

@@ -40,7 +40,8 @@ def forced(text):
 def options(kind, command):
     """The number of positions: without a prescribed motion `kinematics` has those of `reduce`."""
     points = "721" if (kind, command) == ("plain", "kinematics") else "361" if command == "kinetostatics" else "181"
-    return ("--points", points) if command in ("kinematics", "kinetostatics", "statics") else ()
+    known = {"cycle": ("--fluctuation", "0.02"), "reduce": ("--table-accuracy", "1e-7")}
+    return ("--points", points) if command in ("kinematics", "kinetostatics", "statics") else known.get(command, ())
 
 
 def toml_text(value, top=True):
@@ -87,6 +88,8 @@ def prepare(program, scene_path, folder):
         (here / f"{name}.toml").write_text(texts[kind], encoding="utf-8")
         for command in commands:
             status, _, _ = run(program, command, here / f"{name}.toml", here, *options(kind, command))
+            if command == "reduce" and status == 2:  # not every mechanism has a table
+                status, _, _ = run(program, command, here / f"{name}.toml", here)
             made.append((kind, command, status))
     scene = Scene(text)
     masses = [body.name for body in scene.bodies if body.mass > 0.0 and not body.is_ground]
