@@ -7,6 +7,7 @@ import numpy as np
 from expressions import Expression
 from jets import Jet, choose, jet, sin
 
+
 RISES = ("polynomial345", "polynomial4567", "cycloidal", "trapezoidal")
 
 

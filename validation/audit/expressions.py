@@ -11,6 +11,7 @@ import numpy as np
 
 from jets import Jet, atan, atan2, choose, cos, exp, jet, log, power, sin, sqrt
 
+
 TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|`(?P<quoted>[^`]+)`"
     r"|(?P<name>[^\W\d][\w.'′]*)|(?P<sign>\*\*|<=|>=|[-+*/^<>(),]))"

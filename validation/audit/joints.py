@@ -10,6 +10,7 @@ import numpy as np
 from jets import Jet, atan2, cross, dot, jet, length, scaled, without_turns
 from scene import Z
 
+
 # Parts of the kinds that are made of points, axes and normals.
 PARTS = {
     "revolute": ("point", "axes"),

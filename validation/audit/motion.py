@@ -5,6 +5,7 @@ import numpy as np
 from jets import Jet, atan2, cross, dot, length, without_turns
 from scene import Z, across
 
+
 # Ends of the columns of a body and of its points, for each derivative: in the plane and in space.
 PLANE_ROTATION = ("angle", "angular_velocity", "angular_acceleration")
 SPACE_ROTATION = ("rotation", "angular_velocity", "angular_acceleration")

@@ -2,22 +2,24 @@
 
 import numpy as np
 
+import kinematics
 import poses
+from balance import Balance, actuator_forces, add_reactions
 from files import result
 from forces import DriveForces, stop_forces, value_of
 from joints import along
 from judge import largest
-from poses import Balance, beyond_estimate, even_rows, simpson
+from kinematics import beyond_estimate, even_rows, simpson
 
 
 def judge_motion(judge, motion, events):
     """All rows of a motion."""
     rows, scene = motion.rows, motion.scene
-    corners = [*poses.switch_times(motion), *event_times(events)]
+    corners = [*kinematics.switch_times(motion), *event_times(events)]
     corners += [c for law, _ in scene.laws("motion").values() for c in law.corners]
-    poses.closure(judge, motion)
-    poses.laws(judge, motion, "motion")
-    poses.between_rows(judge, rows, corners)
+    kinematics.closure(judge, motion)
+    kinematics.laws(judge, motion, "motion")
+    kinematics.between_rows(judge, rows, corners)
     forces = forces_of_rows(judge, motion)
     energies(judge, motion, forces, corners)
     motors(judge, motion, forces["drives"])
@@ -32,17 +34,17 @@ def event_times(events):
 
 def forces_of_rows(judge, motion):
     """Newton's and Euler's equations of every row with loads, drives, friction and stops; powers by their names."""
-    scene, rows = motion.scene, motion.rows
+    scene = motion.scene
     of_loads = poses.loads(judge, motion, motion.time())
     balance, powers = Balance(motion), {}
     for name, wrenches in of_loads.items():
         balance.add(wrenches)
         powers[name] = sum(w.power(motion) for w in wrenches) if wrenches else np.zeros(motion.count)
-    poses.add_reactions(judge, balance)
+    add_reactions(judge, balance)
     drives = drive_forces(judge, motion, balance, powers)
     of_friction = poses.frictions(judge, motion, True)
     prescribed = scene.laws("motion")
-    actuators = poses.actuator_forces(balance, True, prescribed)
+    actuators = actuator_forces(balance, True, prescribed)
     add_stops(motion, balance, powers)
     balance.add_inertia()
     complete = drives is not None and all(w is not None for w in of_friction.values())

@@ -25,6 +25,7 @@ from judge import Judge
 from parts import judge_folder
 from selftest import Altered
 
+
 TOP = Path(__file__).resolve().parents[1]
 
 
@@ -202,7 +203,7 @@ def larger_rates(u, order, factor):
     return Jet(*orders)
 
 
-curves_sin, curves_rise, jet_product = curves.sin, curves.rise, expressions.Expression.term
+curves_sin, curves_rise = curves.sin, curves.rise
 
 
 def bent_rise(shape, u, ramp):
@@ -228,6 +229,7 @@ MIXED = patch.object(expressions.Expression, "term", without_mixed_term)
 SQUARE = patch.object(varying.VaryingInertia, "reactions_at", speed_for_its_square)
 BENT = patch.object(curves, "rise", bent_rise)
 MILLIMETRES = patch.dict("scene.LENGTHS", {"mm": 1.0 / 1001.0})
+DEGREES = patch.dict("scene.ANGLES", {"deg": np.pi / 181.0})
 REVERSED = patch.object(DriveForces, "induced", property(lambda self: -self.numbers["torque-constant"] * self.coordinate.first))
 ALL = with_keys(lambda keys: None)
 
@@ -248,6 +250,7 @@ NAMED = [
     ("reader-phase", "coupling-laws/plain", with_keys(each("joints", "phase", lambda c: 0.0)), NOTHING),
     ("reader-rotor", "press/plain", with_keys(each("drives", "inertia", lambda c: 0.0)), NOTHING),
     ("unit-of-lengths", "teeth-in-turn/plain", ALL, (MILLIMETRES,)),
+    ("unit-of-angles", "press/forced", ALL, (DEGREES,)),
     ("sinusoid-speed", "teeth-in-turn/forced", ALL, (FASTER,)),
     ("expression-product-rule", "product/forced", ALL, (MIXED,)),
     ("back-emf-sign", "motor/plain", ALL, (REVERSED,)),
@@ -279,7 +282,6 @@ NAMED = [
     ("check-center-of-mass", "four-bar/plain", number("check", "mass.center.y", -1.0, "motion", "kinematics", "kinetostatics"), NOTHING),
 ]
 ELSEWHERE = {
-    "unit-of-angles": "angles in degrees are read in the same way; `prescribed-laws` in degrees shows it",
     "printed-numbers": "sentences: `validation/written` has them",
     "printed-extrema-of-m": "sentences: `validation/written` has them",
     "variant-number-slope": "no number of the cases changes",

@@ -1,6 +1,7 @@
 """Which files are judged by which checks."""
 
 import copies
+import kinematics
 import linear
 import motions
 import points
@@ -39,13 +40,13 @@ def pose_files(judge, scene, folder):
         except Unplaced as body:
             judge.skip("positions and forces", f"no columns say where `{body}` is")
             continue
-        poses.closure(judge, motion)
-        poses.laws(judge, motion, "prescribed")
+        kinematics.closure(judge, motion)
+        kinematics.laws(judge, motion, "prescribed")
         corners = [c for law, _ in scene.laws("prescribed").values() for c in law.corners]
-        poses.between_rows(judge, rows, corners + poses.switch_times(motion))
+        kinematics.between_rows(judge, rows, corners + kinematics.switch_times(motion))
         over = ((folder.summary(command) or {}).get("extrema_over") or {}).get("name", "t")
         corners = corners if over == "t" else []
-        places = [poses.switch_places(motion, rows.get(over), of_forces) if over in rows else [] for of_forces in (True, False)]
+        places = [kinematics.switch_places(motion, rows.get(over), of_forces) if over in rows else [] for of_forces in (True, False)]
         whole_file(judge, scene, folder, rows, command, command, *(corners + p for p in places))
         wanted.positions(judge, scene, rows, folder.summary(command), command == "statics")
         repeated.quotients(judge, motion)
@@ -88,8 +89,8 @@ def reduced_files(judge, scene, folder):
             except Unplaced as body:
                 judge.skip("positions and forces", f"no columns say where `{body}` is")
                 continue
-            poses.closure(judge, motion)
-            poses.between_rows(judge, run, poses.switch_times(motion))
+            kinematics.closure(judge, motion)
+            kinematics.between_rows(judge, run, kinematics.switch_times(motion))
             whole_file(judge, scene, folder, run, run.label, run.label)
             repeated.quotients(judge, motion)
             reduced.uniform(judge, run, scene.actuators[0].name)

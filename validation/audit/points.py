@@ -6,7 +6,7 @@ from files import result
 from forces import DriveForces
 from jets import Jet
 from judge import largest
-from poses import beyond_estimate, even_rows, simpson
+from kinematics import beyond_estimate, even_rows, simpson
 
 
 class Unknown(Exception):

@@ -2,15 +2,17 @@
 
 import numpy as np
 
+import kinematics
 import poses
+from balance import Balance, add_reactions
 from files import Rows, result
 from forces import coefficient, unit_load
 from jets import Jet
 from joints import along, separating
 from judge import largest
+from kinematics import beyond_estimate, even_rows, simpson
 from motion import Frame, Motion
 from motions import potentials
-from poses import Balance, beyond_estimate, even_rows, simpson
 
 
 def judge_reduced(judge, scene, rows, moving, summary):
@@ -133,7 +135,7 @@ def bodies(judge, motion):
         return
     for end, force, order in ((".a", "m", 1), (".b", "half_dm", 2)):
         balance = Balance(motion)
-        poses.add_reactions(judge, balance, end, False)
+        add_reactions(judge, balance, end, False)
         balance.add(drive, rows.get(force))
         balance.add_inertia(order)
         balance.judge(judge, "coefficients", f"{end[1:]}: ")
@@ -141,8 +143,8 @@ def bodies(judge, motion):
         if not any(f".c.{name}" in column for column in rows.columns):
             continue
         balance = Balance(motion)
-        poses.add_reactions(judge, balance, f".c.{name}", False)
-        balance.add(drive, -poses.rows_of(motion, f"{name}.w"))
+        add_reactions(judge, balance, f".c.{name}", False)
+        balance.add(drive, -kinematics.rows_of(motion, f"{name}.w"))
         balance.add(wrenches)
         balance.judge(judge, "coefficients", f"c of {name}: ")
 
@@ -168,7 +170,7 @@ def slopes(judge, scene, rows, name, motion):
     if motion is None and any(joint.kind == "coupling" and joint.law.corners for joint in scene.joints):
         judge.skip("slopes of m and V", "no rows say where couplings pass the corners of their laws")
         return
-    corners = [] if motion is None else poses.switch_places(motion, motion.rows.get(name))
+    corners = [] if motion is None else kinematics.switch_places(motion, motion.rows.get(name))
     span, inside = abs(q[-1] - q[0]), even_rows(q, corners)
     pairs = [("m", rows.get("m"), 2.0 * rows.get("half_dm"))]
     constant = [load for load in scene.loads if load.magnitude.is_constant and (load.kind in ("gravity", "force") and not load.in_body

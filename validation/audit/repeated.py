@@ -4,7 +4,8 @@ import numpy as np
 
 from jets import dot, length
 from judge import largest
-from poses import beyond_estimate, even_rows, simpson
+from kinematics import beyond_estimate, even_rows, simpson
+
 
 # Columns whose extrema are those of the rows: errors, what is infinite in some positions, rotations in space.
 OF_ROWS = ("mechanical_advantage", "pole", "balance", "residual", ".rotation.")

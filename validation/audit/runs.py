@@ -9,6 +9,7 @@ from pathlib import Path
 
 from scene import Scene
 
+
 AMPLITUDES = (0.25, 0.2, 0.15, 0.1)  # of a prescribed motion that the scene does not give, rad or parts of its size
 
 

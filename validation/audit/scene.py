@@ -11,8 +11,9 @@ import numpy as np
 
 from curves import Table, read_law, read_points
 from expressions import Expression
-from jets import Jet, jet
+from jets import jet
 from varying import VaryingInertia
+
 
 LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "km": 1e3, "in": 0.0254, "ft": 0.3048}
 MASSES = {"kg": 1.0, "g": 1e-3, "t": 1e3, "lb": 0.45359237, "oz": 0.45359237 / 16.0}

@@ -2,11 +2,13 @@
 
 import numpy as np
 
+from balance import reaction
 from files import result
 from forces import FrictionForces, load_magnitude, unit_load
 from joints import along, unit_reactions
 from judge import largest
-from poses import reaction, rows_of
+from kinematics import rows_of
+
 
 GAUSS = ((-np.sqrt(0.6), 5.0 / 9.0), (0.0, 8.0 / 9.0), (np.sqrt(0.6), 5.0 / 9.0))  # exact for the cubic of the moment
 # Stations that differ by less than this part of the length are one.

@@ -20,6 +20,7 @@ import unfound
 from files import Folder, Rows
 from parts import judge_folder
 
+
 TOP = Path(__file__).resolve().parents[1]
 SCENES = [
     "four-bar/scene.toml", "slider-crank-friction/scene.toml", "press/scene.toml", "single-dwell/scene.toml", "rack-pinion/scene.toml",

@@ -11,6 +11,7 @@ from judge import largest
 from reduced import unit_motion
 from scene import Scene
 
+
 WEYL, FACTORS = (0x9E3779B9, 0xBB67AE85), (0xD2511F53, 0xCD9E8D57)
 LOWER = 0xFFFFFFFF
 

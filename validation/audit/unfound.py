@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 
+
 ESTIMATE = "an estimate that a program makes of its own error, or a count of its work"
 PRODUCT = "it takes another run of the program: `validation/written` has it"
 PATTERNS = [
