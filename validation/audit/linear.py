@@ -42,6 +42,10 @@ def judge_linear(judge, text, npz, summary, reduced, equilibria):
             if f"{of}.velocity" in state:
                 judge.compare("matrices", value - state[f"{of}.velocity"], max(1.0, abs(value)), "SI", f"rate {rate}")
     state = {s: result(summary, f"state.{s}") for s in states}
+    for name, value in state.items():
+        at = result(summary, f"equilibrium.{name}")
+        if at is not None and value is not None:
+            judge.compare("matrices", value - at, max(1.0, abs(at)), "SI", f"state {name}")
     if all(value is not None for value in state.values()):
         by_reduced(judge, matrices, state, reduced)
     a = np.array([[matrices["A"][r][s] for s in states] for r in rates])
@@ -83,7 +87,7 @@ def nearest(judge, values, summary, equilibria):
     # Of two at the same distance either is nearest.
     excess = max(np.linalg.norm(of(summary, "equilibrium", ".from_start")) - min(away), 0.0)
     judge.compare("nearest", excess, max(1.0, min(away)), "SI", "distance of the equilibrium from the start")
-    if np.allclose(this, of(equilibria, best), rtol=0.0, atol=1e-6):
+    if len(away) == 1 or np.partition(away, 1)[1] > (1.0 + 1e-6) * min(away) or np.allclose(this, of(equilibria, best), rtol=0.0, atol=1e-6):
         judge.compare("nearest", np.abs(this - of(equilibria, best)), max(1.0, np.abs(this).max()), "SI", f"place of {best}")
         others = eigenvalues(equilibria, best)
         scale = max([*map(abs, values), 1e-300])

@@ -203,6 +203,8 @@ def modes(judge, summary, name):
     """|λ| = ω = 2π f and ζ = −Re λ/|λ| of each mode."""
     values = eigenvalues(summary, name)
     scale = max(map(abs, values), default=0.0)
+    if values:
+        judge.compare("modes", sum(values).imag, scale or 1.0, "1/s", f"{name}: conjugate pairs")
     for k, value in enumerate(values, 1):
         of = lambda what: result(summary, f"{name}.eigenvalue.{k}.{what}")
         for what, factor, wanted in (("angular_frequency", 1.0, abs(value)), ("frequency", 2.0 * np.pi, abs(value)),
@@ -220,7 +222,7 @@ def judge_equilibria(judge, scene, rows, summary, reduced, statics):
         name = f"equilibrium.{k + 1}"
         modes(judge, summary, name)
         table_row(judge, rows, k, summary, name, free)
-        from_start(judge, scene, summary, name, free)
+        from_start(judge, scene, rows, summary, name, free)
     neighbours(judge, rows, summary, count, free)
     if len(free) != 1 or len(scene.actuators) != 1:
         return
@@ -244,21 +246,27 @@ def table_row(judge, rows, k, summary, name, free):
     if column is not None and values:
         excess = max(abs(column[k] - max(v.real for v in values)) - error, 0.0)
         judge.compare("equilibria", excess, scale, "1/s", f"{name}, max_real_eigenvalue")
+    stability, largest_real = rows.get("stability"), max((v.real for v in values), default=0.0)
+    if stability is not None and not np.isnan(stability[k]) and (abs(largest_real) > error or largest_real == 0.0):
+        judge.compare("stability", stability[k] + np.sign(largest_real), 1.0, "", f"{name}: stable 1, centre 0, unstable -1")
     frequencies = {j: result(summary, f"{name}.eigenvalue.{j}.angular_frequency") for j in range(1, len(values) + 1)}
     oscillating = sorted((j for j in frequencies if frequencies[j] is not None), key=frequencies.get)
     for mode, j in enumerate(oscillating, 1):
         for what in ("angular_frequency", "frequency", "damping_ratio"):
             column, stated = rows.get(f"mode{mode}.{what}"), result(summary, f"{name}.eigenvalue.{j}.{what}")
             if column is not None and stated is not None:
-                judge.compare("equilibria", column[k] - stated, scale, "SI", f"{name}, mode{mode}.{what}")
+                judge.compare("equilibria", column[k] - stated, 1.0 if what == "damping_ratio" else scale, "SI", f"{name}, mode{mode}.{what}")
 
 
-def from_start(judge, scene, summary, name, free):
+def from_start(judge, scene, rows, summary, name, free):
     """Each coordinate less that of the start of the motion."""
     for coordinate in free:
         start = scene.initial("initial-coordinate", coordinate)
         start = scene.start_of(coordinate) if start is None else start
         at, stated = result(summary, f"{name}.{coordinate.name}"), result(summary, f"{name}.{coordinate.name}.from_start")
+        column, k = rows.get(f"{coordinate.name}.deflection"), int(name.split(".")[1]) - 1
+        if None not in (start, at) and column is not None:
+            judge.compare("equilibria", column[k] - (at - start), max(1.0, abs(start)), "SI", f"{name}, {coordinate.name}.deflection")
         if None not in (start, at, stated):
             judge.compare("equilibria", stated - (at - start), max(1.0, abs(start)), "SI", f"{name}, {coordinate.name} from the start")
 

@@ -5,7 +5,9 @@ import numpy as np
 from balance import Balance, actuator_forces, add_reactions, reaction, written
 from forces import FrictionForces, load_magnitude, load_terms, unit_load
 from jets import jet, without_turns
+from joints import SPACE_COMPONENTS
 from judge import largest
+from kinematics import zero_if_none
 from scene import Z
 
 
@@ -207,9 +209,12 @@ def repeated(judge, motion):
     vectors = {}
     for joint in scene.joints:
         of = reaction(motion, joint)
+        if of is None and not scene.is_plane:
+            of = determined_parts(rows, joint.name)
         if of is not None:
             vectors[joint.name] = of
-    f_scale, m_scale = largest(*(v[0] for v in vectors.values())), largest(*(v[1] for v in vectors.values()))
+    f_scale = largest(*(v[0] for v in vectors.values()))
+    m_scale = max(largest(*(v[1] for v in vectors.values())), f_scale * scene.size)
     for joint in scene.joints:
         if joint.name not in vectors:
             continue
@@ -223,13 +228,23 @@ def repeated(judge, motion):
             found |= joint_axes(joint, motion, force, moment, f_scale, m_scale)
         for name, (values, scale) in found.items():
             column = rows.get(f"{joint.name}.{name}")
-            if column is not None:
+            if column is not None and not np.isnan(values).any():
                 judge.compare("joint-forces", column - values, scale or 1.0, "SI", f"{joint.name}.{name}")
         direction = rows.get(f"{joint.name}.direction")
-        if direction is not None:
+        if direction is not None and scene.is_plane:
             turned = without_turns(jet(direction - np.arctan2(force[:, 1], force[:, 0]))).value
             judge.compare("joint-forces", turned * np.linalg.norm(force, axis=1), f_scale or 1.0, "N", f"{joint.name}.direction")
     friction_powers(judge, motion)
+
+
+def determined_parts(rows, name):
+    """Force and moment in space whose magnitudes are columns: components without a column are then zero."""
+    count, found = rows.count, []
+    for end, components in (("magnitude", SPACE_COMPONENTS[:3]), ("moment-magnitude", SPACE_COMPONENTS[3:])):
+        columns = [rows.get(f"{name}.{c}") for c in components]
+        is_known = f"{name}.{end}" in rows
+        found.append(np.stack([zero_if_none(c, count) for c in columns], -1) if is_known else np.full((count, 3), np.nan))
+    return found
 
 
 def joint_axes(joint, motion, force, moment, f_scale, m_scale):

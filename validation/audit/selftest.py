@@ -40,7 +40,7 @@ SUMMARIES = {"kinematics": "kinematics", "statics": "statics", "kinetostatics": 
              "cycle": "cycle", "equilibria": "equilibria", "linearise": "linear", "sweep": "sweep", "check": "check", "calibrate": "calibrate"}
 COMMANDS = {"kinematics": "kinematics", "statics": "statics", "kinetostatics": "kinetostatics", "motion": "simulate", "reduced": "reduce",
             "cycle": "cycle", "equilibria": "equilibria", "linear": "linearise"}
-COLUMNS, NUMBERS, WORDS = 16, 24, 40  # drawn of each table, summary and scene
+COLUMNS, NUMBERS, WORDS = 12, 20, 30  # drawn of each table, summary and scene
 
 
 class Altered(Folder):
@@ -248,6 +248,7 @@ def test_folder(program, folder, kinds, rng, counts):
                 counts[kind, "known" if reason else "missed"] += 1
                 if not reason:
                     missed.append(f"{folder.path.name}: {name}")
+                    print("not found:", missed[-1], flush=True)
     return missed
 
 
@@ -266,8 +267,6 @@ def main(program, scenes):
             print(scene, dict(sum_of(counts)), flush=True)
     for line in failed:
         print("without a fault:", line)
-    for line in missed:
-        print("not found:", line)
     for (kind, what), count in sorted(counts.items()):
         print(f"{kind}: {count} {'not found, with a reason' if what == 'known' else what}")
     return 1 if missed or failed else 0
