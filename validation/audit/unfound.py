@@ -1,0 +1,55 @@
+"""Faults that the audit cannot find, with their reasons: patterns of the names that the self-test gives them."""
+
+import re
+
+import numpy as np
+
+
+ESTIMATE = "an estimate that a program makes of its own error, or a count of its work"
+PRODUCT = "it takes another run of the program: `validation/written` has it"
+PATTERNS = [
+    (r": relative_error,", ESTIMATE),
+    (r"json: (.*\.)?error\.", ESTIMATE),
+    (r"json: (rounding_error|.*\.estimated_error|tolerance$|steps|rejected_steps|evaluations|jacobians|factorisations|decompositions)", ESTIMATE),
+    (r"json: (power_balance_residual|energy_balance_error|largest_kinetic_energy)", "a bound: the rows must be within it"),
+    (r"motion: power\.", "all powers are rounding"),
+    (r"json: .*count_in_second_run", ESTIMATE),
+    (r"statics: .*velocity_ratio", "rows at rest at uneven distances, between which no rule integrates"),
+    (r"reduce\.json: table\.", "how the table is made"),
+    (r"scene: assembly\..*\.turn", "the idle rotation of a body between two balls begins where it is assembled"),
+    (r"json: period", "an integral of the whole motion: check 5 of the product"),
+    (r"json: floquet_multiplier", PRODUCT),
+    (r"cycle\.json: flywheel\.inertia|cycle: .*velocity, 1e-6|cycle: .*acceleration, 1e-6|cycle: .*\.(work|current|integral), 1e-6",
+     "a cycle with friction, or whose loads need other coordinates, is judged between its rows alone, to 1e-5"),
+    (r"json: (equilibria$|searched\.|neutral|.*\.neutral|.*stability)", PRODUCT),
+    (r"json: static_force", "the rows of `statics` are other positions, or drives act: " + PRODUCT),
+    (r"cycle\.json: .*work", "the work of a whole cycle may be rounding beside the works within it"),
+    (r"check\.json: (degrees_of_freedom\.counted|reactions\.)", "the structure of the scene: " + PRODUCT),
+    (r"check\.json: (group\.|size\.|range\.|load\.|drive\.|separation|closest|prescribed\.positions|free_motion\.events|load|.*\.mode\.)",
+     "what `check` says of structure and requests: " + PRODUCT),
+    (r"check\.json: (mass\.center|start\.)", "judged where a file has a row at the assembly"),
+    (r"sweep\.json: rows\.|sweep\.json: points\.failed", "counts of the store of rows"),
+    (r"bending_moment\.(station|at)", "the place of the largest cut of the rows"),
+    (r"json: (min|max) of .*(\.direction|\.efficiency|balance|residual|\.friction\.)", "a column that jumps between rows"),
+    (r"json: (min|max) of .*\.rotation\.", "of the rows"),
+    (r"json: .*\.(at|from|to)$", "a place, which a curve that hardly changes there does not tell"),
+]
+
+
+def reason(name, folder):
+    """Why a fault cannot be found; none where it should be."""
+    direction = re.match(r"([\w-]+): (.+)\.direction, ", name)
+    if direction:
+        table = folder.csv(direction[1])
+        force = table.get(f"{direction[2]}.magnitude") if table else None
+        if force is not None and np.nanmax(force) < 1e-9:
+            return "the direction of a force that is zero"
+    if name.startswith("reduced: ") and folder.csv("reduced") and np.ptp(folder.csv("reduced").get("m")) < 1e-9 * folder.csv("reduced").get("m")[0]:
+        return "nothing depends on the coordinate"
+    if name.startswith("motion: power.") and np.nanmax(np.abs(folder.csv("motion").get("power.kinetic"))) > 1e-9:
+        return None
+    if name.startswith("statics: ") and "velocity_ratio" in name and "[prescribed" not in folder.scene_text:
+        return None
+    if "json: m" in name and folder.scene_text.count("[friction]"):
+        return "beside the corners of friction a curve bends by more from row to row"
+    return next((why for pattern, why in PATTERNS if re.search(pattern, name)), None)
