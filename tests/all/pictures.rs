@@ -107,6 +107,7 @@ fn the_pictures_of_the_validation_are_legible() {
     let judged = ValidationRun {
         cases: judged.collect(),
         studies: Vec::new(),
+        no_reader: None,
         manual: Some([1, 1]),
     };
     let mut all = vec![checked("index", &index(&judged).pictures)];

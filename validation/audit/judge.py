@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tolerances import CHECKS
+from tolerances import CHECKS, number
 
 
 @dataclass
@@ -74,7 +74,7 @@ class Judge:
         for (file, key), worst in self.checks.items():
             check = CHECKS[key]
             found.append({
-                "file": file, "check": key, "comparison": check.comparison, "scale": check.scale,
+                "file": file, "check": key, "number": number(key), "comparison": check.comparison, "scale": check.scale,
                 "count": worst.count, "difference": float(worst.difference), "unit": worst.unit,
                 "relative_difference": float(worst.relative), "tolerance": check.tolerance,
                 "tolerance_reason": check.reason, "worst_at": worst.reason or worst.place,

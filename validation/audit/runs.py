@@ -1,4 +1,4 @@
-"""Scenes that request everything and move, and the product's commands on them, for the self-test and its measurements."""
+"""Scenes that request everything and move, and the product's commands on them, for `case.py` and the self-test."""
 
 import json
 import os
@@ -68,7 +68,7 @@ def run(program, command, scene, folder, *options):
     """Runs a command; its status, and what it printed."""
     pictures = [] if command == "check" else ["--pictures", "none"]
     arguments = [str(program), command, str(scene), *options, "--out", str(folder), *pictures]
-    done = subprocess.run(["nice", *arguments], capture_output=True, text=True, check=False, env=environment())
+    done = subprocess.run(arguments, capture_output=True, text=True, check=False, env=environment())
     return done.returncode, done.stdout, done.stderr
 
 

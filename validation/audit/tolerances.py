@@ -71,3 +71,21 @@ CHECKS = {
     "statistics": Check("statistics of the summary with the rows", KIND, 1e-12, ROUNDING),
     "variants": Check("extrema of m of variants by sums over bodies", "the largest m", 1e-12, ROUNDING),
 }
+
+# By the number of a check of the product that a check here replaces, or belongs to.
+NUMBERS = {
+    12: "closure wanted stops order range",
+    13: "rates ratios quotients slopes extrema places events cycle-rates cycle-rates-friction cycle-equation",
+    14: "equilibrium motion-equilibrium free-directions coefficients sections linear matrices eigenvalues rest stiffness",
+    15: "totals joint-forces powers energies energy-columns reduced extents contents calibration modes stability equilibria nearest cycle summary "
+        "impacts statistics variants",
+    16: "laws loads friction known-reactions drives motors draws",
+    17: "archive runs table",
+    18: "headings",
+    20: "energy energy-balance",
+}
+
+
+def number(key):
+    """The number of the check that a key belongs to."""
+    return next(number for number, keys in NUMBERS.items() if key in keys.split())

@@ -7,7 +7,7 @@ use dwell_scene::{PlaneScene, SceneError, SpaceScene};
 use dwell_study::{Outcome, Step, StudyError};
 use dwell_validation::manual::KeyStudy;
 use dwell_validation::{
-    CaseResult, ValidatedCase, Validation, ValidationRun, export_study, extremes, index,
+    CaseResult, ValidatedCase, Validation, ValidationRun, audit, export_study, extremes, index,
     validate_program, work_precision,
 };
 use indicatif::ProgressBar;
@@ -37,10 +37,19 @@ pub(crate) fn validate(
         .flatten()
         .for_each(|scene| print_warnings(scene));
     let program = std::env::current_exe().ok();
+    let all_cases = names.is_empty() && folder == Path::new(DEFAULT_CASE_FOLDER);
+    let audited: Vec<PathBuf> = match all_cases {
+        true => cases
+            .iter()
+            .map(|case| case.join("scene.toml"))
+            .chain(in_space.iter().cloned())
+            .collect(),
+        false => Vec::new(),
+    };
     let one = |(scene, case): (&Result<PlaneScene, SceneError>, &PathBuf)| {
         let scene = scene.as_ref().map_err(Clone::clone)?;
         let progress = |step: Step<'_>| {
-            bar.set_length((step.total * cases.len()) as u64);
+            bar.set_length((step.total * cases.len() + audited.len()) as u64);
             bar.set_message(format!("{}: {}", scene.name, step.done));
             bar.inc(1);
         };
@@ -51,15 +60,28 @@ pub(crate) fn validate(
         };
         done.map_err(validation_error)
     };
-    let all_cases = names.is_empty() && folder == Path::new(DEFAULT_CASE_FOLDER);
     let read: Vec<&PlaneScene> = scenes.iter().flatten().collect();
     let all = all_cases.then_some(&read[..]);
-    let (results, (studies, keys)): (Vec<Result<Validation, SceneError>>, _) = rayon::join(
+    let audit = || {
+        let done = |name: &str| {
+            bar.set_message(format!("{name}: files"));
+            bar.inc(1);
+        };
+        let reader = folder.join(audit::NAME);
+        let program = program.as_deref().ok_or("the program is not found")?;
+        audit::study(&reader, program, &audited, &done)
+    };
+    let (results, (studies, (keys, audit))): (Vec<Result<Validation, SceneError>>, _) = rayon::join(
         || scenes.par_iter().zip(&cases).map(one).collect(),
         || {
             rayon::join(
                 || studies(all, (slow, seed)),
-                || all.map(|scenes| KeyStudy::new(scenes, folder)),
+                || {
+                    rayon::join(
+                        || all.map(|scenes| KeyStudy::new(scenes, folder)),
+                        || all.map(|_| audit()),
+                    )
+                },
             )
         },
     );
@@ -68,7 +90,16 @@ pub(crate) fn validate(
         .map(|path| case_in_space(path, program.as_deref()));
     let spatial: Vec<_> = spatial.collect();
     bar.finish_and_clear();
-    let studies = studies.map_err(SceneError::from)?;
+    let mut studies = studies.map_err(SceneError::from)?;
+    let (audit, no_reader) = match audit {
+        Some(Ok(audit)) => (Some(audit), None),
+        Some(Err(reason)) => (None, Some(reason)),
+        None => (None, None),
+    };
+    let said = match (&audit, &no_reader) {
+        (Some(audit), _) => audit.summary.trim().to_owned(),
+        (None, reason) => format!("not run ({})", reason.as_deref().unwrap_or("not asked for")),
+    };
     let names: Vec<String> = cases.iter().map(|c| c.display().to_string()).collect();
     let by_case = case_results(&names, &scenes, &results);
     let manual = keys.map(|keys| {
@@ -76,8 +107,12 @@ pub(crate) fn validate(
             .iter()
             .flat_map(|(_, o)| o.findings.clone())
             .collect();
-        keys.manual(&by_case, &extremes, &interface())
+        keys.manual(&by_case, &extremes, &interface(), &said)
     });
+    if let Some(reason) = &no_reader {
+        eprintln!("independent reader: not run ({reason})");
+    }
+    studies.extend(audit.map(|audit| (audit::NAME, audit)));
     let mut all = Outcome::default();
     let judged = ValidationRun {
         cases: validated_cases(&by_case, &in_space, &spatial),
@@ -85,6 +120,7 @@ pub(crate) fn validate(
             .iter()
             .map(|(name, o)| (*name, &o.findings[..]))
             .collect(),
+        no_reader,
         manual: manual.as_ref().map(|manual| {
             let number = |name: &str| {
                 let mut numbers = manual.record.numbers.iter();

@@ -22,6 +22,7 @@
 //! `cases` reads the references of a case and evaluates its states, `checked` makes all findings, `case_report` writes
 //! them, and `overview` is the verdict over all of them.
 
+pub mod audit;
 mod case_report;
 mod cases;
 mod checked;

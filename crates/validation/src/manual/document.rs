@@ -38,6 +38,8 @@ pub(super) struct Contents<'a> {
     pub(super) extremes: &'a [Finding],
     /// The texts of committed fault studies that were at hand, and the number of faults in them.
     pub(super) fault_texts: (&'a [&'static str], usize),
+    /// What the independent reader says.
+    pub(super) independent_reader: &'a str,
 }
 
 /// How many lines pass, fail and are exempt.
@@ -247,7 +249,8 @@ fn extremes(findings: &[Finding]) -> Block {
 fn limits(contents: &Contents<'_>) -> Block {
     let (texts, count) = contents.fault_texts;
     let mut text = format!(
-        "- A fault in a key is planted between the scene's text and the results; a fault that readers and checks share, because both use the same reader of scenes, is for the checks over written files to find.\n- The line of a command lists the findings on what it computes from: states, reduced models, motions. What it alone computes from them (a cycle, an equilibrium, a matrix, a row of a sweep) is checked by tests, and by the checks over written files where there are any.\n- Committed studies of mutations that were at hand: {}, {count} of them.",
+        "- A fault in a key is planted between the scene's text and the results; a fault that readers and checks share, because both use the same reader of scenes, is for the checks over written files to find.\n- The line of a command lists the findings on what it computes from: states, reduced models, motions. What it alone computes from them (a cycle, an equilibrium, a matrix, a row of a sweep) is checked by tests, and by the checks over written files where there are any.\n- Checks 0 to 11 share the reader of scenes with the program. Checks 12 to 20 read the scene's text once more, within this program. The independent reader in Python, `validation/audit`, shares nothing with it: {}.\n- Committed studies of mutations that were at hand: {}, {count} of them.",
+        contents.independent_reader,
         match texts.is_empty() {
             true => "none".to_owned(),
             false => texts.join(", "),

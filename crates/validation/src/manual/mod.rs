@@ -115,13 +115,14 @@ impl KeyStudy {
         .collect()
     }
 
-    /// `manual.md`, `manual.html` and `manual.txt`, from the validated cases and the findings at extreme parameters. Each
-    /// capability that fails is a failed finding.
+    /// `manual.md`, `manual.html` and `manual.txt`, from the validated cases, the findings at extreme parameters and what the independent
+    /// reader says, in words. Each capability that fails is a failed finding.
     pub fn manual(
         &self,
         results: &[CaseResult<'_>],
         extremes: &[Finding],
         interface: &Interface,
+        independent_reader: &str,
     ) -> Outcome {
         let cases = self.case_findings(results);
         let reports = self.folder.join("..").join(REPORT_FOLDER);
@@ -147,6 +148,7 @@ impl KeyStudy {
             cases: &entries,
             extremes,
             fault_texts: (&texts, faults.len()),
+            independent_reader,
         };
         let document = document(&contents);
         let mut outcome = Outcome::default();

@@ -41,6 +41,8 @@ pub struct ValidationRun<'a> {
     pub cases: Vec<ValidatedCase<'a>>,
     /// The studies beside them, by name, with their findings: extremes, exported runs.
     pub studies: Vec<(&'static str, &'a [Finding])>,
+    /// Why the independent reader did not run, where it should have.
+    pub no_reader: Option<String>,
     /// How many lines of the manual hold, and of how many.
     pub manual: Option<[usize; 2]>,
 }

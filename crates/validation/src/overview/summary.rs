@@ -1,10 +1,10 @@
 //! The verdict: did it pass, what is nearest to its tolerance, and what the paper's mechanism does.
 
 use super::{ValidatedCase, ValidationRun};
-use crate::export_study;
 use crate::report_parts::{margin, margin_text, nearest, table};
+use crate::{audit, export_study};
 use dwell_findings::{Check, Finding};
-use dwell_report::{Block, Document, Tile};
+use dwell_report::{Block, Document, Tile, markdown_text};
 
 /// The period that the source paper prints for its mechanism, s.
 const PUBLISHED_PERIOD: &str = "5.42";
@@ -76,6 +76,7 @@ impl<'a> ValidationRun<'a> {
         for &(name, findings) in &self.studies {
             let note = match name {
                 export_study::NAME => "tables of other programs",
+                audit::NAME => "by a reader that shares nothing",
                 _ => "against closed forms",
             };
             tallies.push(Tally::new(name, findings.iter().map(|f| f.pass), note));
@@ -215,6 +216,10 @@ pub(super) fn document(judged: &ValidationRun<'_>) -> Document {
     ];
     if paper.is_empty() {
         blocks.remove(2);
+    }
+    if let Some(why) = &judged.no_reader {
+        let text = format!("Independent reader: not run ({}).", markdown_text(why));
+        blocks.insert(2, Block::Text(text));
     }
     Document {
         title: judged.headline(),

@@ -98,6 +98,7 @@ fn the_index_shows_failures_loose_tolerances_and_cases_that_were_not_validated()
     let all = ValidationRun {
         cases: vec![judged("bar", Ok(&done)), judged("cases/lost", lost)],
         studies: Vec::new(),
+        no_reader: None,
         manual: Some([3, 3]),
     };
     let outcome = index(&all);
@@ -151,6 +152,7 @@ fn the_verdict_has_twenty_lines_and_names_what_is_nearest_to_its_tolerance() {
     let all = ValidationRun {
         cases: vec![judged("bar", Ok(&near))],
         studies: vec![("extremes", &far)],
+        no_reader: None,
         manual: Some([3, 3]),
     };
     let verdict = text(&index(&all), "index.md");
@@ -167,6 +169,7 @@ fn the_verdict_has_twenty_lines_and_names_what_is_nearest_to_its_tolerance() {
     // What is not complete is no pass.
     let verdict = text(
         &index(&ValidationRun {
+            no_reader: None,
             manual: Some([2, 3]),
             ..all
         }),
