@@ -4,6 +4,8 @@ import re
 
 import numpy as np
 
+from parts import judge_folder
+
 
 ESTIMATE = "an estimate that a program makes of its own error, or a count of its work"
 PRODUCT = "it takes another run of the program: `validation/written` has it"
@@ -12,6 +14,9 @@ PATTERNS = [
     (r"json: (.*\.)?error\.", ESTIMATE),
     (r"json: (rounding_error|.*\.estimated_error|tolerance$|steps|rejected_steps|evaluations|jacobians|factorisations|decompositions)", ESTIMATE),
     (r"json: (power_balance_residual|energy_balance_error|largest_kinetic_energy)", "a bound: the rows must be within it"),
+    (r"json: .*positions$|check\.json: coordinate_sweep\.|check\.json: inertia\..*\.(min|max)$", PRODUCT),
+    (r"scene: assembly\.", "the angles at which teeth mesh are those of the first row"),
+    (r"json: kinetic_energy_at", "a number of the whole range: check 5 of the product"),
     (r"motion: power\.", "all powers are rounding"),
     (r"json: .*count_in_second_run", ESTIMATE),
     (r"statics: .*velocity_ratio", "rows at rest at uneven distances, between which no rule integrates"),
@@ -50,6 +55,14 @@ def reason(name, folder):
         return None
     if name.startswith("statics: ") and "velocity_ratio" in name and "[prescribed" not in folder.scene_text:
         return None
+    if name.startswith("reduced: ") and any("same positions" in line for line in judge_folder(folder).skipped):
+        return "no other file has rows of the same positions"
+    if "cycle: " in name and np.ptp(folder.csv("cycle").columns.get(name[7:].split(",")[0], np.zeros(2))) < 1e-6:
+        return "it does not change in a cycle but for rounding"
+    if "json: m" in name and "coupling" in folder.scene_text:
+        return "beside the corners of a coupling a curve bends by more from row to row"
+    if "simulate.json: m" in name and "periods = 10" in folder.scene_text:
+        return "the rows are too far apart: a hundred in a revolution with a sharp peak"
     if "json: m" in name and folder.scene_text.count("[friction]"):
         return "beside the corners of friction a curve bends by more from row to row"
     return next((why for pattern, why in PATTERNS if re.search(pattern, name)), None)
