@@ -25,7 +25,8 @@ def judge_contents(judge, scene, summary, others):
     pairs = [(i, j) for i in range(3) for j in range(i, 3)]
     stated |= {f"inertia.{b.name}.{axes[i]}{axes[j]}": b.inertia[i, j] for b in moving for i, j in pairs if not scene.is_plane}
     stated |= {f"start.{c.name}": scene.start_of(c) for c in scene.actuators if scene.start_of(c) is not None}
-    stated |= {"prescribed.duration": scene.keys.get("prescribed", {}).get("duration"), "free_motion.duration": scene.keys.get("motion", {}).get("duration")}
+    stated |= {"prescribed.duration": scene.keys.get("prescribed", {}).get("duration"), "free_motion.duration": scene.keys.get("motion", {}).get("duration"),
+               "free_motion.periods": scene.keys.get("motion", {}).get("periods")}
     for c in (c for c in scene.actuators if c.name not in scene.laws("motion")):
         q, v = scene.initial("initial-coordinate", c), scene.initial("initial-velocity", c)
         stated |= {f"free_motion.{c.name}": scene.start_of(c) if q is None else q, f"free_motion.{c.name}.velocity": v or 0.0}

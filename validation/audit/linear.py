@@ -21,7 +21,7 @@ def read_matrices(text):
     return matrices
 
 
-def judge_linear(judge, text, npz, summary, reduced, equilibria):
+def judge_linear(judge, scene, text, npz, summary, reduced, equilibria):
     """Eigenvalues in the characteristic polynomial of the written A; matrices in both files; rows that are states."""
     matrices = read_matrices(text)
     rates = list(matrices["A"])
@@ -41,6 +41,12 @@ def judge_linear(judge, text, npz, summary, reduced, equilibria):
             of = rate[2:].split(")/dt")[0]
             if f"{of}.velocity" in state:
                 judge.compare("matrices", value - state[f"{of}.velocity"], max(1.0, abs(value)), "SI", f"rate {rate}")
+    for coordinate in scene.actuators:
+        start = scene.initial("initial-coordinate", coordinate)
+        start = scene.start_of(coordinate) if start is None else start
+        at, stated = (result(summary, f"equilibrium.{coordinate.name}{end}") for end in ("", ".from_start"))
+        if None not in (start, at, stated):
+            judge.compare("equilibria", stated - (at - start), max(1.0, abs(start)), "SI", f"{coordinate.name} from the start")
     state = {s: result(summary, f"state.{s}") for s in states}
     for name, value in state.items():
         at = result(summary, f"equilibrium.{name}")

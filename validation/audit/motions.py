@@ -146,6 +146,7 @@ def energies(judge, motion, forces, corners):
     between.integral("energies", potential, lost, "energy.potential")
     potentials(judge, motion, [name for name in kept if name in of_loads], potential, scale)
     for name, work in works.items():
+        judge.compare("energy-columns", work[0], scale, "J", f"{name}.work at the start")
         power = powers.get(name)
         power = rows.get(f"{name}.power") if power is None else power
         if name == "loads":  # of many loads together
@@ -239,7 +240,8 @@ def motors(judge, motion, drives):
 def judge_summary(judge, scene, rows, events, summary):
     """Energies, the end and the events of the summary with rows and events."""
     time, kinetic = rows.get("t"), rows.get("energy.kinetic")
-    duration = scene.keys.get("motion", {}).get("duration")
+    events_stop = any(event.get("stop") for event in scene.keys.get("motion", {}).get("events", {}).values())
+    duration = scene.keys.get("motion", {}).get("duration", time[-1] if summary.get("status") == 0 and not events_stop else None)
     if duration is not None and result(summary, "duration") is not None:
         judge.compare("summary", result(summary, "duration") - duration, duration, "s", "duration")
     stated = result(summary, "end")
@@ -316,14 +318,17 @@ def event_sides(scene, rows, event):
     return [np.maximum(np.abs(turns) - k, -1.0) for k in range(1, min(whole, 200) + 1)]
 
 
-def events_are_met(judge, scene, events, summary):
-    """At each event its coordinate has the value of the scene, or no velocity."""
+def events_are_met(judge, scene, rows, events, summary):
+    """At each event its coordinate has the value of the scene, or no velocity; one that stops the motion is its end."""
     if events is None:
         return
     for name, event in scene.keys.get("motion", {}).get("events", {}).items():
         own = np.asarray(events.get("event")) == event_number(scene, summary, name)
         if not own.any():
             continue
+        if event.get("stop"):
+            end = rows.get("t")[-1]
+            judge.compare("events", events.get("t")[own][0] - end, end, "s", f"event `{name}` stops the motion")
         coordinate = event.get("reaches", event.get("reverses"))
         if "reaches" in event and coordinate in events:
             value = event["value"] * scene.unit_of(scene.coordinate(coordinate).measure)

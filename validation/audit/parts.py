@@ -75,7 +75,7 @@ def motion_files(judge, scene, folder):
     wanted.motion(judge, scene, rows, events, summary)
     if summary is not None:
         motions.judge_summary(judge, scene, rows, events, summary)
-        motions.events_are_met(judge, scene, events, summary)
+        motions.events_are_met(judge, scene, rows, events, summary)
 
 
 def reduced_files(judge, scene, folder):
@@ -122,7 +122,7 @@ def point_files(judge, scene, folder):
         points.judge_equilibria(judge, scene, table, summary, model, folder.csv("statics"))
     text, judge.file = folder.text("linear.csv"), "linear"
     if text is not None:
-        linear.judge_linear(judge, text, folder.npz("linear"), folder.summary("linearise"), model, folder.summary("equilibria"))
+        linear.judge_linear(judge, scene, text, folder.npz("linear"), folder.summary("linearise"), model, folder.summary("equilibria"))
 
 
 def sweep_files(judge, scene, folder):

@@ -246,11 +246,15 @@ def table_row(judge, rows, k, summary, name, free):
     if column is not None and values:
         excess = max(abs(column[k] - max(v.real for v in values)) - error, 0.0)
         judge.compare("equilibria", excess, scale, "1/s", f"{name}, max_real_eigenvalue")
+    neutral = any(key.startswith(f"{name}.neutral") for key in summary["results"])
     stability, largest_real = rows.get("stability"), max((v.real for v in values), default=0.0)
-    if stability is not None and not np.isnan(stability[k]) and (abs(largest_real) > error or largest_real == 0.0):
+    is_open = any(abs(value) <= error for value in values)  # rounding alone would decide
+    if stability is not None and not neutral and not is_open and values and (abs(largest_real) > error or largest_real == 0.0):
         judge.compare("stability", stability[k] + np.sign(largest_real), 1.0, "", f"{name}: stable 1, centre 0, unstable -1")
     frequencies = {j: result(summary, f"{name}.eigenvalue.{j}.angular_frequency") for j in range(1, len(values) + 1)}
     oscillating = sorted((j for j in frequencies if frequencies[j] is not None), key=frequencies.get)
+    surplus = [rows.get(n)[k] for n in rows.columns if n.startswith("mode") and int(n[4:].split(".")[0]) > len(oscillating)]
+    judge.require("equilibria", bool(np.isnan(surplus).all()), f"{name} has more modes in the table than in the summary")
     for mode, j in enumerate(oscillating, 1):
         for what in ("angular_frequency", "frequency", "damping_ratio"):
             column, stated = rows.get(f"mode{mode}.{what}"), result(summary, f"{name}.eigenvalue.{j}.{what}")

@@ -216,6 +216,9 @@ def repeated(judge, motion):
     f_scale = largest(*(v[0] for v in vectors.values()))
     m_scale = max(largest(*(v[1] for v in vectors.values())), f_scale * scene.size)
     for joint in scene.joints:
+        slope, tooth, parted = np.tan(joint.sizes.get("pressure", 0.0)), rows.get(f"{joint.name}.tooth"), rows.get(f"{joint.name}.separating")
+        if tooth is not None and parted is not None:
+            judge.compare("joint-forces", parted - slope * np.abs(tooth), largest(tooth) or 1.0, "N", f"{joint.name}.separating")
         if joint.name not in vectors:
             continue
         force, moment = vectors[joint.name]

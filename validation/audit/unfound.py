@@ -4,6 +4,8 @@ import re
 
 import numpy as np
 
+from parts import judge_folder
+
 
 ESTIMATE = "an estimate that a program makes of its own error, or a count of its work"
 PRODUCT = "it takes another run of the program: `validation/written` has it"
@@ -12,7 +14,10 @@ PATTERNS = [
     (r"json: (.*\.)?error\.", ESTIMATE),
     (r"json: (rounding_error|.*\.estimated_error|tolerance$|steps|rejected_steps|evaluations|jacobians|factorisations|decompositions)", ESTIMATE),
     (r"json: (power_balance_residual|energy_balance_error|largest_kinetic_energy)", "a bound: the rows must be within it"),
-    (r"motion: power\.", "all powers are rounding"),
+    (r"json: .*positions$|check\.json: coordinate_sweep\.|check\.json: inertia\..*\.(min|max)$", PRODUCT),
+    (r"scene: assembly\.", "the angles at which teeth mesh are those of the first row"),
+    (r"json: kinetic_energy_at", "a number of the whole range: check 5 of the product"),
+    (r"(motion|run-ii?): power\.", "all powers are rounding"),
     (r"json: .*count_in_second_run", ESTIMATE),
     (r"statics: .*velocity_ratio", "rows at rest at uneven distances, between which no rule integrates"),
     (r"reduce\.json: table\.", "how the table is made"),
@@ -24,7 +29,7 @@ PATTERNS = [
     (r"json: (equilibria$|searched\.|neutral|.*\.neutral|.*stability)", PRODUCT),
     (r"json: static_force", "the rows of `statics` are other positions, or drives act: " + PRODUCT),
     (r"cycle\.json: .*work", "the work of a whole cycle may be rounding beside the works within it"),
-    (r"check\.json: (degrees_of_freedom\.counted|reactions\.)", "the structure of the scene: " + PRODUCT),
+    (r"check\.json: (degrees_of_freedom\.counted|redundant|reactions\.)", "the structure of the scene: " + PRODUCT),
     (r"check\.json: (group\.|size\.|range\.|load\.|drive\.|separation|closest|prescribed\.positions|free_motion\.events|load|.*\.mode\.)",
      "what `check` says of structure and requests: " + PRODUCT),
     (r"check\.json: (mass\.center|start\.)", "judged where a file has a row at the assembly"),
@@ -46,10 +51,31 @@ def reason(name, folder):
             return "the direction of a force that is zero"
     if name.startswith("reduced: ") and folder.csv("reduced") and np.ptp(folder.csv("reduced").get("m")) < 1e-9 * folder.csv("reduced").get("m")[0]:
         return "nothing depends on the coordinate"
-    if name.startswith("motion: power.") and np.nanmax(np.abs(folder.csv("motion").get("power.kinetic"))) > 1e-9:
+    table = name.split(": ")[0]
+    if ": power." in name and ".json" not in table and largest_power(folder.csv(table)) > 1e-9:
         return None
     if name.startswith("statics: ") and "velocity_ratio" in name and "[prescribed" not in folder.scene_text:
         return None
-    if "json: m" in name and folder.scene_text.count("[friction]"):
-        return "beside the corners of friction a curve bends by more from row to row"
+    if name.startswith("reduced: ") and any("same positions" in line for line in judge_folder(folder).skipped):
+        return "no other file has rows of the same positions"
+    if "cycle: " in name and np.ptp(folder.csv("cycle").columns.get(name[7:].split(",")[0], np.zeros(2))) < 1e-6:
+        return "it does not change in a cycle but for rounding"
+    if bends_between_rows(name, folder):
+        return "the rows are too far apart for a polynomial, and the curve bends by more from row to row"
     return next((why for pattern, why in PATTERNS if re.search(pattern, name)), None)
+
+
+def largest_power(rows):
+    return max(np.nanmax(np.abs(values)) for name, values in rows.columns.items() if name.startswith("power."))
+
+
+def bends_between_rows(name, folder):
+    """Whether a curve bends by more than the planted 1 % from row to row where it is smallest or largest."""
+    found = re.match(r"(\w+)\.json: (min|max) of (.+)$", name)
+    end = {"simulate": "motion"}.get(found[1], found[1]) if found else None
+    values = folder.csv(end).get(found[3]) if found and folder.csv(end) else None
+    if values is None:
+        return False
+    k = int(np.nanargmin(values) if found[2] == "min" else np.nanargmax(values))
+    around = values[max(k - 3, 0) : k + 4]
+    return 1.5 * np.nanmax(np.abs(np.diff(around, 2)), initial=0.0) > 0.009 * abs(values[k])
