@@ -156,14 +156,20 @@ designs points="10000000":
 reference *cases:
     python3 validation/reference/run.py {{ cases }}
 
+# Faults planted in files and scenes, one at a time, and whether the independent reader (validation/audit) finds them. Needs Python 3.11 with NumPy
+[group('care')]
+audit *scenes:
+    cargo build --release --workspace --bins
+    python3 validation/audit/selftest.py target/release/dwell {{ scenes }}
+
 # What takes too long for each change, as a whole in a night: its parts are the five recipes below
 [group('care')]
 nightly: nightly-validation nightly-tests && nightly-laws nightly-others
     seed=$(date +%j); for part in 0 1 2 3 4; do just nightly-fuzz $part $seed || exit 1; done
 
-# Of `nightly`: 1e5 revolutions, 1000 pulses, 200 random machines, all deliberate faults, and the computing half by itself
+# Of `nightly`: 1e5 revolutions, 1000 pulses, 200 random machines, all deliberate faults, also those in files, and the computing half by itself
 [group('care')]
-nightly-validation: validate-slow mutations computing
+nightly-validation: validate-slow mutations audit computing
 
 # Of `nightly`: 2000 new random draws in every property, of the second's seed or another
 [group('care')]
