@@ -118,10 +118,13 @@ pub fn check_states_in_space(
         Err(error) => return vec![not_dense(&POSES, &error)],
     };
     let claims: Vec<Claim> = states.iter().map(|state| case.claim(state)).collect();
-    let mut findings = StateChecker::new(&dense, &claims).findings();
+    let checker = StateChecker::new(&dense, &claims);
+    let mut findings = checker.findings();
+    let matrices: Vec<_> = states.iter().map(|state| state.inertias.clone()).collect();
+    findings.push(checker.energy_rates(&matrices));
     let some = by_energies.min(states.len());
     let sampled = (0..some).map(|k| (2 * k + 1) * states.len() / (2 * some));
-    let sampled = sampled.map(|k| (claims[k].clone(), states[k].inertias.clone()));
+    let sampled = sampled.map(|k| (claims[k].clone(), matrices[k].clone()));
     let (sampled, matrices): (Vec<_>, Vec<_>) = sampled.unzip();
     findings.extend(StateChecker::new(&dense, &sampled).by_energies(&matrices));
     findings

@@ -331,6 +331,12 @@ impl<'a> DenseState<'a> {
             .power_of(joint, &self.configuration.poses, claimed, u)
     }
 
+    /// The largest force at the largest speed of a body, W.
+    pub(super) fn largest_power(&self) -> f64 {
+        let speed = self.dense.scaled_norm(&self.solution.x_dot) * self.dense.size();
+        self.largest_force() * speed
+    }
+
     /// What the reactions of a joint do at unit speed of each actuator, what the largest force could, and its rounding, W.
     pub(super) fn joint_powers(&self, joint: &DescribedJoint) -> Vec<[f64; 3]> {
         let largest = self.largest_force() * self.dense.size();

@@ -16,7 +16,7 @@
 //! without loads, (3) is τ = m q̈ + ½ m′ q̇² and R = a q̈ + b q̇².
 
 use super::dense_state::DenseState;
-use super::{ClaimedState, StateChecker, claims};
+use super::{Claim, ClaimedState, StateChecker, claims};
 use crate::checks::MAX_DIFFERENCE_STEP;
 use crate::comparison::{ComparisonSet, FindingSpec};
 use crate::dense::{DenseMechanism, add_scaled};
@@ -53,6 +53,14 @@ const RELEASED: FindingSpec<'_> = FindingSpec {
     key: "state-released",
     check: Check::ReleasedConstraint,
     comparison: "reactions with d/dt dE/dv - dE/dy - power of the loads at unit velocity, each constraint opened as a coordinate y",
+    ..LAGRANGE
+};
+
+const ENERGY_RATE: FindingSpec<'_> = FindingSpec {
+    key: "state-energy-rate",
+    check: Check::EnergySlope,
+    comparison: "the claimed power of actuators and loads, and q_dot M q_ddot of the claimed inertias, with rates of the kinetic energy, differenced along the motion",
+    scale: "the sum of |force| |velocity| of the state, or the largest force at the largest speed of a body",
     ..LAGRANGE
 };
 
@@ -116,6 +124,36 @@ impl StateChecker<'_> {
             self.finding(&MASS_MATRIX, matrix),
             self.finding(&KINETIC_ENERGY, kinetic),
         ]
+    }
+
+    /// With D₁ the rate of E along the motion, and D₂ that of E at the speeds of the state throughout: Σ τ q̇ + P = D₁, and q̇ᵀ M q̈ = D₁ − D₂. Of claims
+    /// with the power P of the loads.
+    pub(crate) fn energy_rates(&self, matrices: &[Vec<f64>]) -> Finding {
+        let mut comparisons = ComparisonSet::with_individual_scales();
+        let states = self.dense_states.par_iter();
+        let rates: Vec<_> = states.map(DenseState::energy_rates).collect();
+        for (m, [moving, steady]) in self.dense_states.iter().zip(rates) {
+            let Claim {
+                q_dot, q_ddot, tau, ..
+            } = m.state;
+            let n = q_dot.len();
+            let [_, _, terms] = m.power_balance();
+            let scale = terms.max(m.largest_power());
+            let supplied: f64 = tau.iter().zip(q_dot).map(|(tau, rate)| tau * rate).sum();
+            if let Some(of_loads) = m.state.load_power {
+                let numbers = [supplied + of_loads - moving.value, scale, moving.error];
+                m.compare(&mut comparisons, numbers, "W", "power");
+            }
+            let matrix = matrices.get(m.index).map_or(&[][..], Vec::as_slice);
+            let product = (0..n * n).map(|k| {
+                let inertia = matrix.get(k).copied().unwrap_or(f64::NAN);
+                q_dot[k / n] * inertia * q_ddot[k % n]
+            });
+            let difference = product.sum::<f64>() - (moving.value - steady.value);
+            let numbers = [difference, scale, moving.error + steady.error];
+            m.compare(&mut comparisons, numbers, "W", "inertias");
+        }
+        self.finding(&ENERGY_RATE, comparisons)
     }
 
     /// (3), of the actuators and of the rows of the joints.
@@ -237,6 +275,32 @@ impl DenseState<'_> {
             let momentum = |u: &Vec<f64>| dense.inertia(&configuration, u, &x_dot);
             Some(velocities.iter().map(momentum).collect())
         })
+    }
+
+    /// The rates of E along the motion: with its speeds, and with those of the state throughout.
+    fn energy_rates(&self) -> [Extrapolated; 2] {
+        let (dense, state) = (self.dense, self.state);
+        let actuator_row = dense.actuator_row();
+        let rounding = self.relative_rounding_bound().max(f64::EPSILON);
+        let mut row_values = self.configuration.row_values.clone();
+        let (from, order) = (&self.configuration, DerivativeOrder::First);
+        let rates = derivatives(order, self.time_step(), rounding, |t| {
+            self.coordinates_at(t, &mut row_values[actuator_row..]);
+            let at = dense.close_on_branch(from, &from.poses, &row_values).ok()?;
+            let mut speeds = [(); 2].map(|()| vec![0.0; dense.rows.columns()]);
+            for i in 0..state.q.len() {
+                let u = dense.unit_velocity(&at, actuator_row + i);
+                let steady = state.q_dot[i];
+                for (speeds, rate) in speeds
+                    .iter_mut()
+                    .zip([steady + t * state.q_ddot[i], steady])
+                {
+                    add_scaled(speeds, rate, &u);
+                }
+            }
+            Some(speeds.map(|v| 0.5 * dense.inertia(&at, &v, &v)).to_vec())
+        });
+        [0, 1].map(|k| rates.get(k).copied().unwrap_or(NO_ESTIMATE))
     }
 
     /// ∂E/∂y of a row with the unit velocities `u`, at the velocities of the actuators.
