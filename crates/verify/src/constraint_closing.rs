@@ -94,16 +94,19 @@ impl DenseMechanism {
             if norm < CONVERGED_STEP || (norm < STALLED_STEP && norm > 0.5 * previous) {
                 self.rows.residual(&poses, since, row_values, &mut residual);
                 let open = self.largest_residual(&residual, &rows);
-                if open.is_nan() || open > MAX_RESIDUAL {
+                if open <= MAX_RESIDUAL {
+                    let (lu, row_values) = (self.factor(&poses, &rows)?, row_values.to_vec());
+                    return Ok(Configuration {
+                        poses,
+                        row_values,
+                        rows,
+                        lu,
+                    });
+                }
+                // Teeth in space close by less than a square in each step.
+                if open.is_nan() || norm > 0.5 * previous {
                     return not_closed(step, norm);
                 }
-                let (lu, row_values) = (self.factor(&poses, &rows)?, row_values.to_vec());
-                return Ok(Configuration {
-                    poses,
-                    row_values,
-                    rows,
-                    lu,
-                });
             }
             previous = norm;
         }
@@ -205,29 +208,56 @@ impl DenseMechanism {
         self.close_on_branch(from, &initial_guess, &row_values)
     }
 
-    /// Follows the branch continuously until `row` has the value `to`, in steps short enough for
-    /// Newton's method not to change branch, halved where it fails. Where rows repeat each other, it goes by those that are farthest from
-    /// dependent at `from`: any others may become dependent before the end.
+    /// Follows the branch continuously until `row` has the value `to`.
+    ///
+    /// # Errors
+    /// As of [`DenseMechanism::follow_to`].
     pub fn follow(&self, from: &Configuration, row: usize, to: f64) -> Result<Configuration> {
-        let mut here = self.by_best_rows(from)?;
+        let mut row_values = from.row_values.clone();
+        row_values[row] = to;
+        self.follow_to(from, &row_values)
+    }
+
+    /// Follows the branch continuously until the rows have these values, on a straight line, in steps short enough for
+    /// Newton's method not to change branch, halved where it fails. Where rows repeat each other, it goes by those that are farthest from
+    /// dependent at each step: any others may become dependent before the end.
+    ///
+    /// # Errors
+    /// [`DenseError`] where the branch cannot be followed so far.
+    pub fn follow_to(&self, from: &Configuration, to: &[f64]) -> Result<Configuration> {
+        let mut here = from.clone();
         for _ in 0..MAX_FOLLOW_STEPS {
-            if here.row_values[row] == to {
+            if here.row_values == to {
                 return Ok(here);
             }
-            let velocity = self.unit_velocity(&here, row);
-            let (value, remaining) = (here.row_values[row], to - here.row_values[row]);
-            let longest = MAX_FOLLOW_STEP / self.scaled_norm(&velocity);
-            let mut increment = remaining.abs().min(longest) * remaining.signum();
+            here = self.by_best_rows(&here)?;
+            let remaining: Vec<f64> = to
+                .iter()
+                .zip(&here.row_values)
+                .map(|(t, h)| t - h)
+                .collect();
+            let velocity = self.solve((&here.lu, &here.rows), &remaining);
+            let mut part = (MAX_FOLLOW_STEP / self.scaled_norm(&velocity)).min(1.0);
             let mut halvings = 0;
             here = loop {
+                let between = |(h, r): (&f64, &f64)| h + part * r;
                 // The last step lands on `to` itself, not on a sum that rounds beside it.
-                let last = increment == remaining;
-                let value = if last { to } else { value + increment };
-                match self.step_row(&here, row, &velocity, value) {
+                let row_values: Vec<f64> = match part {
+                    1.0 => to.to_vec(),
+                    _ => here
+                        .row_values
+                        .iter()
+                        .zip(&remaining)
+                        .map(between)
+                        .collect(),
+                };
+                let step: Vec<f64> = velocity.iter().map(|v| v * part).collect();
+                let guess = self.moved(&here.poses, &step);
+                match self.close_on_branch(&here, &guess, &row_values) {
                     Ok(next) => break next,
-                    Err(error) if halvings == 20 || !increment.is_finite() => return Err(error),
+                    Err(error) if halvings == 20 || !part.is_finite() => return Err(error),
                     Err(_) => {
-                        increment *= 0.5;
+                        part *= 0.5;
                         halvings += 1;
                     }
                 }

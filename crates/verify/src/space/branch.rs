@@ -2,6 +2,7 @@
 
 use super::state::{SpaceCase, SpaceState, poses};
 use crate::comparison::{Comparison, FindingSpec, LargestDifference};
+use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
 use crate::error::Result;
 use crate::pose::Pose;
@@ -18,36 +19,17 @@ const BRANCH: FindingSpec<'_> = FindingSpec {
     tolerance_reason: "the root of rounding, where redundant rows are independent off the closed pose; other branches are much further away",
 };
 
-/// Steps of the coordinates within which Newton's method stays on the branch: rad, or parts of the size.
-const BRANCH_STEP: f64 = 0.1;
-
 impl SpaceCase<'_> {
-    /// The coordinates on a straight line from those at the assembly to others, in short steps.
-    fn positions_towards(&self, q: &[f64]) -> impl Iterator<Item = Vec<f64>> {
-        let both = move || self.start.0.iter().zip(q);
-        let distances = both().enumerate();
-        let distances = distances.map(|(k, (from, to))| (to - from).abs() / self.unit(k));
-        let count = (distances.fold(0.0, f64::max) / BRANCH_STEP)
-            .ceil()
-            .max(1.0);
-        (1..=count as usize).map(move |k| {
-            let part = k as f64 / count;
-            both().map(|(from, to)| from + part * (to - from)).collect()
-        })
+    /// The pose of the assembly, closed.
+    fn start(&self, dense: &DenseMechanism) -> Result<Configuration> {
+        Ok(dense.close_at(&poses(self.start.1), self.start.0)?.0)
     }
 
     /// The moved frames after the coordinates have moved from the assembly to other values on a straight line, closed densely all the way.
-    ///
-    /// # Errors
-    /// [`DenseError`](crate::DenseError) where a pose on the way has no closed one beside it.
-    fn continued(&self, dense: &DenseMechanism, q: &[f64]) -> Result<Vec<Pose>> {
-        let mut at = dense.moved_frames(&poses(self.start.1))?;
-        let mut row_values = vec![0.0; dense.rows.len()];
-        for coordinates in self.positions_towards(q) {
-            row_values[dense.actuator_row()..].copy_from_slice(&coordinates);
-            at = dense.close(&at, &row_values)?.poses;
-        }
-        Ok(at)
+    fn continued(dense: &DenseMechanism, start: &Configuration, q: &[f64]) -> Result<Vec<Pose>> {
+        let mut row_values = start.row_values.clone();
+        row_values[dense.actuator_row()..].copy_from_slice(q);
+        Ok(dense.follow_to(start, &row_values)?.poses)
     }
 }
 
@@ -57,8 +39,11 @@ pub fn check_branch_in_space(case: &SpaceCase<'_>, states: &[SpaceState]) -> Fin
     let mut worst = LargestDifference::default();
     let mut count = 0;
     let mut last: Option<&SpaceState> = None;
-    let dense = match case.dense() {
-        Ok(dense) => dense,
+    let assembled = case
+        .dense()
+        .and_then(|dense| Ok((case.start(&dense)?, dense)));
+    let (start, dense) = match assembled {
+        Ok(assembled) => assembled,
         Err(error) => return not_dense(&BRANCH, &error),
     };
     for claimed in states {
@@ -70,7 +55,10 @@ pub fn check_branch_in_space(case: &SpaceCase<'_>, states: &[SpaceState]) -> Fin
         }
         count += 1;
         let found = dense.moved_frames(&poses(&claimed.placements));
-        let both = found.and_then(|found| Ok((found, case.continued(&dense, &claimed.q)?)));
+        let both = found.and_then(|found| {
+            let wanted = SpaceCase::continued(&dense, &start, &claimed.q)?;
+            Ok((found, wanted))
+        });
         let (found, wanted) = match both {
             Ok(both) => both,
             Err(error) => {

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::pose::{Pose, Twist};
 use crate::state::{Claim, POSES, StateChecker, not_dense};
 use dwell_findings::Finding;
-use dwell_geometry::space::{ActuatorKind, BodyMotion, IdleBody, Mechanism, Placement, Wrench};
+use dwell_geometry::space::{BodyMotion, IdleBody, Mechanism, Placement, Wrench};
 use dwell_kinetostatics::space::{LoadKind, Mass};
 
 /// A claimed state. What is given by body is in the order of [`Mechanism::bodies`], the ground included.
@@ -50,14 +50,6 @@ pub struct SpaceCase<'a> {
 }
 
 impl SpaceCase<'_> {
-    /// The unit of a coordinate: one radian, or the size.
-    pub(super) fn unit(&self, actuator: usize) -> f64 {
-        match self.mechanism.actuators[actuator].kind {
-            ActuatorKind::Angle(_) => 1.0,
-            ActuatorKind::Travel(_) | ActuatorKind::Length(_) => self.size,
-        }
-    }
-
     /// The mechanism in dense rows, as it is assembled.
     ///
     /// # Errors
