@@ -43,10 +43,10 @@ impl Vec3<f64> {
         self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
     }
 
-    /// The unit vector of this direction; none of zero.
+    /// The unit vector of this direction; none of zero, nor of a length whose inverse is infinite.
     pub fn unit(self) -> Option<Self> {
         let norm = self.norm();
-        (norm > 0.0 && norm.is_finite()).then(|| self.scaled(1.0 / norm))
+        (norm >= f64::MIN_POSITIVE && norm.is_finite()).then(|| self.scaled(1.0 / norm))
     }
 
     /// A unit vector at right angles to this unit vector.
@@ -324,5 +324,18 @@ impl<T: Scalar> Rotation<T> {
                 turned(self.columns[2]),
             ],
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The last step of Newton's method may be a turn of the smallest numbers there are: it must not make a pose that is no number.
+    #[test]
+    fn a_turn_too_small_for_an_axis_is_none() {
+        let tiny = vec3(f64::from_bits(1), 0.0, 0.0);
+        assert_eq!(tiny.unit(), None);
+        assert_eq!(Rotation::of_vector(tiny), Rotation::IDENTITY);
     }
 }
