@@ -3,7 +3,13 @@
 import argparse
 import json
 import sys
+import tomllib
 import traceback
+
+try:
+    import numpy  # noqa: F401  (the reader needs it everywhere)
+except ImportError:
+    sys.exit("the audit needs NumPy: python3 -m pip install numpy")
 
 from files import Folder
 from parts import judge_folder
@@ -19,6 +25,12 @@ def main():
     try:
         folder = Folder(options.scene, options.folder, options.name)
         judge = judge_folder(folder)
+    except OSError as error:
+        print(f"cannot be read: {error.filename}: {error.strerror}")
+        return 2
+    except tomllib.TOMLDecodeError as error:
+        print(f"cannot be read: {options.scene}: {error}")
+        return 2
     except Exception as error:  # whatever the files hold, the audit says that it cannot read them
         traceback.print_exc()
         print(f"cannot be read: {error!r}")
