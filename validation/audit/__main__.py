@@ -9,7 +9,8 @@ import traceback
 try:
     import numpy  # noqa: F401  (the reader needs it everywhere)
 except ImportError:
-    sys.exit("the audit needs NumPy: python3 -m pip install numpy")
+    print("the audit needs NumPy: python3 -m pip install numpy", file=sys.stderr)
+    sys.exit(2)
 
 from files import Folder
 from parts import judge_folder
