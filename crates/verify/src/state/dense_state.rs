@@ -331,10 +331,11 @@ impl<'a> DenseState<'a> {
             .power_of(joint, &self.configuration.poses, claimed, u)
     }
 
-    /// The largest force at the largest speed of a body, W.
+    /// The largest force at the largest speed of a body that the motion has within a step of the differences, W.
     pub(super) fn largest_power(&self) -> f64 {
-        let speed = self.dense.scaled_norm(&self.solution.x_dot) * self.dense.size();
-        self.largest_force() * speed
+        let DenseSolution { x_dot, x_ddot, .. } = &self.solution;
+        let [v, a] = [x_dot, x_ddot].map(|x| self.dense.scaled_norm(x) * self.dense.size());
+        self.largest_force() * (v + a * self.time_step())
     }
 
     /// What the reactions of a joint do at unit speed of each actuator, what the largest force could, and its rounding, W.

@@ -60,7 +60,7 @@ const ENERGY_RATE: FindingSpec<'_> = FindingSpec {
     key: "state-energy-rate",
     check: Check::EnergySlope,
     comparison: "the claimed power of actuators and loads, and q_dot M q_ddot of the claimed inertias, with rates of the kinetic energy, differenced along the motion",
-    scale: "the sum of |force| |velocity| of the state, or the largest force at the largest speed of a body",
+    scale: "the sum of |force| |velocity| of the state, or the largest force at the largest speed within a step",
     ..LAGRANGE
 };
 
