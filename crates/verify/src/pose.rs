@@ -64,10 +64,9 @@ impl Pose {
     }
 
     pub(crate) fn is_finite(&self) -> bool {
-        let axes = self.rotation.columns.iter();
-        self.position.is_finite()
-            && self.angle.is_finite()
-            && axes.fold(true, |all, v| all && v.is_finite())
+        let axes = self.rotation.columns;
+        let is_rotation = axes.iter().all(|axis| axis.is_finite());
+        self.position.is_finite() && self.angle.is_finite() && is_rotation
     }
 }
 

@@ -186,7 +186,7 @@ impl Lift<'_> {
                 let coupling = &self.mechanism.couplings[r];
                 let both = [coupling.dependent, coupling.independent];
                 vec![Row::Coupling(
-                    both.map(|c| self.term(c)),
+                    Box::new(both.map(|c| self.term(c))),
                     coupling.law.clone(),
                 )]
             }

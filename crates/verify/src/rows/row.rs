@@ -21,7 +21,7 @@ pub(crate) enum Row {
     /// The teeth of gears in space.
     Mesh(Mesh),
     /// dependent − law(independent).
-    Coupling([Term; 2], Law),
+    Coupling(Box<[Term; 2]>, Law),
     /// ω·u = 0 of a body with an idle rotation about u, fixed in it: it is held from turning about u.
     Idle(usize, Vec3),
 }
@@ -59,7 +59,8 @@ impl Row {
             Self::Sum { terms, .. } => terms.iter().for_each(|(f, m)| term(*f, m)),
             Self::Gear(gear) => gear.terms().iter().for_each(|(f, m)| term(*f, m)),
             Self::Mesh(_) | Self::Idle(..) => {}
-            Self::Coupling([dependent, independent], law) => {
+            Self::Coupling(both, law) => {
+                let [dependent, independent] = &**both;
                 term(1.0, dependent);
                 term(-law.eval(independent.value(poses))[1], independent);
             }
@@ -130,7 +131,8 @@ impl Row {
                 let turn = now.after(&before.inverse()).vector();
                 turn.dot(now.apply(*u)) - moved
             }
-            Self::Coupling([dependent, independent], law) => {
+            Self::Coupling(both, law) => {
+                let [dependent, independent] = &**both;
                 dependent.value(poses) - law.eval(independent.value(poses))[0] - imposed
             }
         }
@@ -145,7 +147,8 @@ impl Row {
         self.each_term(poses, |factor, term| {
             sum += factor * term.second_rate(poses, twists);
         });
-        if let Self::Coupling([_, by], law) = self {
+        if let Self::Coupling(both, law) = self {
+            let by = &both[1];
             let rate = by.rate(poses, twists);
             sum -= law.eval(by.value(poses))[2] * rate * rate;
         }
