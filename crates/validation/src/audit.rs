@@ -1,7 +1,7 @@
 //! The independent reader of what the commands write, `validation/audit`: a program in Python that shares nothing with this one. It runs
 //! where Python with NumPy is found.
 
-use crate::report_parts::{findings_text, result_line};
+use crate::report_parts::{findings_text, nearest, result_line};
 use dwell_findings::{Check, Finding};
 use dwell_report::{Block, Document};
 use dwell_study::Outcome;
@@ -68,7 +68,7 @@ fn read(printed: &[u8], messages: &[u8]) -> Result<Value, String> {
 
 /// The report `audit.md`: of each check the file that is nearest to its tolerance.
 fn report(scenes: &[PathBuf], judged: &[Result<Value, String>]) -> Outcome {
-    let mut nearest: BTreeMap<String, Finding> = BTreeMap::new();
+    let mut worst: BTreeMap<String, Finding> = BTreeMap::new();
     let (mut count, mut not_judged) = (0, Vec::new());
     for (scene, judged) in scenes.iter().zip(judged) {
         let name = scene_name(scene);
@@ -80,14 +80,14 @@ fn report(scenes: &[PathBuf], judged: &[Result<Value, String>]) -> Outcome {
         let judged = match judged {
             Ok(judged) => judged,
             Err(reason) => {
-                nearest.insert(name.clone(), failed(reason));
+                worst.insert(name.clone(), failed(reason));
                 continue;
             }
         };
         let list = |key: &str| judged[key].as_array().cloned().unwrap_or_default();
         for error in list("errors") {
             let reason = error.as_str().unwrap_or_default();
-            nearest.insert(format!("{name}: {reason}"), failed(reason));
+            worst.insert(format!("{name}: {reason}"), failed(reason));
         }
         for skipped in list("not_judged") {
             not_judged.push(format!("{name}: {}", skipped.as_str().unwrap_or_default()));
@@ -95,13 +95,14 @@ fn report(scenes: &[PathBuf], judged: &[Result<Value, String>]) -> Outcome {
         for check in list("checks") {
             count += 1;
             let finding = finding(&name, &check);
-            let is_nearer = |known: &Finding| margin(&finding) > margin(known);
-            if nearest.get(&finding.key).is_none_or(is_nearer) {
-                nearest.insert(finding.key.clone(), finding);
-            }
+            let known = worst
+                .remove(&finding.key)
+                .unwrap_or_else(|| finding.clone());
+            let worse = nearest([&known, &finding].into_iter()).cloned();
+            worst.insert(finding.key.clone(), worse.unwrap_or(known));
         }
     }
-    let findings: Vec<Finding> = nearest.into_values().collect();
+    let findings: Vec<Finding> = worst.into_values().collect();
     let mut blocks = vec![
         Block::Text(result_line(&findings)),
         Block::Text(TEXT.to_owned()),
@@ -133,17 +134,6 @@ fn scene_name(scene: &Path) -> String {
         _ => stem,
     };
     name.to_string_lossy().into_owned()
-}
-
-/// How near a finding is to its tolerance; one that fails, or is not a number, nearest of all.
-fn margin(finding: &Finding) -> f64 {
-    if !finding.pass {
-        return f64::INFINITY;
-    }
-    match finding.tolerance {
-        0.0 => 0.0,
-        tolerance => finding.relative_difference / tolerance,
-    }
 }
 
 /// A check of the reader.

@@ -26,6 +26,8 @@ const CONVERGED_STEP: f64 = 1e-9;
 const STALLED_STEP: f64 = 1e-6;
 /// What may be left open in any row in the end, in sizes or rad.
 const MAX_RESIDUAL: f64 = 1e-11;
+/// What is rounding in a row of teeth, in sizes.
+const TEETH_CLOSED: f64 = 1e-15;
 /// A step as large as the mechanism is not a correction any more: another branch would be found.
 const MAX_NEWTON_STEP: f64 = 1.5;
 /// How far one step of [`DenseMechanism::follow`] may rotate or move a body, in rad or sizes.
@@ -94,7 +96,10 @@ impl DenseMechanism {
             if norm < CONVERGED_STEP || (norm < STALLED_STEP && norm > 0.5 * previous) {
                 self.rows.residual(&poses, since, row_values, &mut residual);
                 let open = self.largest_residual(&residual, &rows);
-                if open <= MAX_RESIDUAL {
+                let stalls = norm > 0.5 * previous;
+                // Teeth in space close by less than a square in each step: until nothing is gained.
+                let is_done = !self.rows.has_teeth_in_space() || stalls || open <= TEETH_CLOSED;
+                if open <= MAX_RESIDUAL && is_done {
                     let (lu, row_values) = (self.factor(&poses, &rows)?, row_values.to_vec());
                     return Ok(Configuration {
                         poses,
@@ -103,8 +108,7 @@ impl DenseMechanism {
                         lu,
                     });
                 }
-                // Teeth in space close by less than a square in each step.
-                if open.is_nan() || norm > 0.5 * previous {
+                if open.is_nan() || stalls {
                     return not_closed(step, norm);
                 }
             }
@@ -129,7 +133,16 @@ impl DenseMechanism {
         let closed = self.close(&guess, &row_values)?;
         let distances = poses.iter().map(|pose| pose.position.norm());
         let largest = distances.fold(self.size(), f64::max);
-        let norm = self.norm_of(self.steps(&guess, &closed.poses));
+        // The ground stands in its own frame: what is claimed of it beyond that is off.
+        let ground = &poses[self.ground];
+        let off = max_abs(
+            [
+                ground.position.norm() / self.size,
+                ground.rotation.vector().norm(),
+            ]
+            .into_iter(),
+        );
+        let norm = self.norm_of(self.steps(&guess, &closed.poses)).max(off);
         Ok((closed, norm * self.size() / largest))
     }
 

@@ -221,7 +221,7 @@ impl DenseMechanism {
         self.angular[self.actuator_row()]
     }
 
-    /// The components of forces and moments on the whole: those of a body that moves as most freely as any.
+    /// The components of forces and moments on the whole: of those of all bodies, the most.
     pub(crate) fn whole(&self) -> Columns {
         let in_space = |body: &DenseBody| matches!(body.columns, Columns::Space(_));
         match self.bodies.iter().any(in_space) {

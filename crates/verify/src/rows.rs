@@ -58,6 +58,19 @@ impl Rows {
         self.rows.iter().any(|row| matches!(row, Row::Mesh(_)))
     }
 
+    /// By pair of gears in space, with its row: how far its teeth are off after moving from some poses to others, m.
+    pub(crate) fn teeth_off(&self, from: &[Pose], to: &[Pose]) -> Vec<(usize, f64)> {
+        let teeth = self
+            .rows
+            .iter()
+            .enumerate()
+            .filter_map(|(k, row)| match row {
+                Row::Mesh(mesh) => Some((k, mesh.travel(from, to))),
+                Row::Sum { .. } | Row::Gear(_) | Row::Coupling(..) | Row::Idle(..) => None,
+            });
+        teeth.collect()
+    }
+
     /// Meshes the gears of the plane as they stand at these poses: their rows vanish there. Neither the Jacobian nor J̇ẋ depends on it.
     pub(crate) fn mesh(&mut self, poses: &[Pose]) {
         for row in &mut self.rows {
