@@ -6,12 +6,12 @@ default:
 
 # All checks on all cases (or those named): pictures, tables and findings in reports/
 [group('main')]
-validate *cases: && size mutations
+validate *cases: && size mutations trials
     cargo run --release -- validate {{ cases }}
 
 # The same with the extremes that take minutes: 1e5 revolutions, 1000 pulses, 200 random machines
 [group('main')]
-validate-slow: && size
+validate-slow: && size (trials "--slow")
     cargo run --release -- validate --slow
 
 # What a pose costs against the mechanism's size, and its errors: reports/size.png
@@ -23,6 +23,11 @@ size:
 [group('main')]
 mutations:
     cargo run --release --example mutations
+
+# A fault in every key of a scene, 60 pulses and 20 random machines (--slow: 1000 and 200; --seed N: others): reports/key-faults.txt, pulses.md, machines.md
+[group('main')]
+trials *options:
+    cargo run --release --example trials -- {{ options }}
 
 alias validate-long := validate-slow
 alias faults := mutations

@@ -3,10 +3,8 @@
 
 use dwell_dynamics::Method;
 use dwell_findings::Finding;
-use dwell_validation::extremes::machines::{self, MachineResult, MachineRun};
-use dwell_validation::extremes::pulses::{
-    self, PulseResult, PulseRun, PulseShape, PulseSubject, RunKind,
-};
+use dwell_trials::machines::{self, MachineResult, MachineRun};
+use dwell_trials::pulses::{self, PulseResult, PulseRun, PulseShape, PulseSubject, RunKind};
 
 fn failed(findings: &[Finding]) -> Vec<&str> {
     let failed = findings.iter().filter(|f| !f.pass);

@@ -2,14 +2,14 @@
 
 use dwell_scene::PlaneScene;
 use dwell_tests::fixtures::{case_names, repository_root, scene};
-use dwell_validation::manual::KeyStudy;
+use dwell_validation::manual::Manual;
 
 #[test]
 fn every_key_has_a_case_and_a_fault_in_it_is_detected_by_two_checks() {
     let scenes: Vec<PlaneScene> = case_names().iter().map(|name| scene(name)).collect();
     let scenes: Vec<&PlaneScene> = scenes.iter().collect();
-    let study = KeyStudy::new(&scenes, &repository_root().join("validation"));
-    let gaps = study.gaps();
+    let manual = Manual::new(&scenes, &repository_root().join("validation"));
+    let gaps = manual.gaps();
     assert!(gaps.is_empty(), "{}", gaps.join("\n"));
 }
 
@@ -18,8 +18,8 @@ fn a_key_that_no_scene_uses_is_a_gap() {
     let scenes = [scene("pendulum-a01")];
     let scenes: Vec<&PlaneScene> = scenes.iter().collect();
     // Without the small scenes nothing uses a spring.
-    let study = KeyStudy::new(&scenes, &repository_root().join("docs"));
-    let gaps = study.gaps();
+    let manual = Manual::new(&scenes, &repository_root().join("docs"));
+    let gaps = manual.gaps();
     assert!(
         gaps.contains(&"spring stiffness: no case uses it".to_owned()),
         "{gaps:?}"

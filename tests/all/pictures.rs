@@ -9,6 +9,7 @@ use dwell_study::{
     analyse_trajectory, cycle, equilibria, no_progress, reduce, simulate, sweep,
 };
 use dwell_tests::fixtures::{case_names, repository_root, scene};
+use dwell_trials::{machines, pulses};
 use dwell_validation::{
     ValidatedCase, ValidationRun, export_study, extremes, index, validate, work_precision,
 };
@@ -115,7 +116,8 @@ fn the_pictures_of_the_validation_are_legible() {
         done.iter()
             .map(|d| checked("validate", &d.outcome.pictures)),
     );
-    all.push(of_outcome("extremes", extremes::study(false, 1)));
+    all.push(of_outcome("extremes", extremes::study(false)));
+    all.push(of_outcome("trials", trials()));
     let scenes: Vec<&PlaneScene> = scenes.iter().collect();
     let exported = scenes.iter().find(|s| s.name == export_study::CASE);
     let exported = export_study::study(exported.expect("the case"));
@@ -165,6 +167,14 @@ fn the_pictures_of_crowded_scenes_are_legible() {
     let all = of_trajectory("chain", done);
     assert!(all.defects.is_empty(), "{}", all.defects);
     assert!(all.pictures > 2, "{} pictures", all.pictures);
+}
+
+/// The pictures of a few pulses and machines.
+fn trials() -> Result<Outcome, StudyError> {
+    let mut outcome = Outcome::default();
+    pulses::add_to(&mut outcome, &pulses::evaluate(12, 1), 1, "pulses")?;
+    machines::add_to(&mut outcome, &machines::evaluate(4, 1), 1, "machines")?;
+    Ok(outcome)
 }
 
 #[test]

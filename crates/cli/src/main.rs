@@ -78,9 +78,8 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
             cases,
             folder,
             slow,
-            seed,
         } => {
-            let (outcome, failures) = validate::validate(cases, folder, (*slow, *seed), &bar)?;
+            let (outcome, failures) = validate::validate(cases, folder, *slow, &bar)?;
             times.add("checking");
             let outcome = draw_validation(outcome, options.picture_format)?;
             times.add("drawing");

@@ -134,9 +134,6 @@ pub(crate) enum Command {
         /// Include the extreme-parameter checks that take minutes, such as a hundred thousand revolutions
         #[arg(long)]
         slow: bool,
-        /// Seed of the pulses and machines that the extreme-parameter checks draw at random
-        #[arg(long, default_value_t = 1, value_name = "NUMBER")]
-        seed: u64,
     },
     /// Write the live page with a scene, and open it in the browser: there every result follows the scene as it is edited
     View {

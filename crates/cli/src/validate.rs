@@ -5,7 +5,7 @@ use crate::options::DEFAULT_CASE_FOLDER;
 use crate::{cases, print_warnings, validation_error};
 use dwell_scene::{PlaneScene, SceneError, SpaceScene};
 use dwell_study::{Outcome, Step, StudyError};
-use dwell_validation::manual::KeyStudy;
+use dwell_validation::manual::Manual;
 use dwell_validation::{
     CaseResult, ValidatedCase, Validation, ValidationRun, audit, export_study, extremes, index,
     validate_program, work_precision,
@@ -16,12 +16,12 @@ use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// Validates the cases in parallel, and with all of Dwell's own cases also the extreme parameters (`slow`: those
-/// that take minutes too; `seed`: that of what is drawn at random) and the verification manual. The outcome holds the cases that could be validated, the report the errors of the others.
+/// that take minutes too) and the verification manual. The outcome holds the cases that could be validated, the report the errors of the others.
 // Long because it is the command from its arguments to its outcome.
 pub(crate) fn validate(
     names: &[String],
     folder: &Path,
-    (slow, seed): (bool, u64),
+    slow: bool,
     bar: &ProgressBar,
 ) -> Result<(Outcome, Option<SceneError>), Report> {
     let (in_space, others) = cases::find_in_space(names, folder);
@@ -75,10 +75,10 @@ pub(crate) fn validate(
         || scenes.par_iter().zip(&cases).map(one).collect(),
         || {
             rayon::join(
-                || studies(all, (slow, seed)),
+                || studies(all, slow),
                 || {
                     rayon::join(
-                        || all.map(|scenes| KeyStudy::new(scenes, folder)),
+                        || all.map(|scenes| Manual::new(scenes, folder)),
                         || all.map(|_| audit()),
                     )
                 },
@@ -107,7 +107,7 @@ pub(crate) fn validate(
             .iter()
             .flat_map(|(_, o)| o.findings.clone())
             .collect();
-        keys.manual(&by_case, &extremes, &interface(), &said)
+        keys.outcome(&by_case, &extremes, &interface(), &said)
     });
     if let Some(reason) = &no_reader {
         eprintln!("independent reader: not run ({reason})");
@@ -161,11 +161,11 @@ fn add(all: &mut Outcome, added: Outcome) {
 /// runs are worth.
 fn studies(
     all: Option<&[&PlaneScene]>,
-    (slow, seed): (bool, u64),
+    slow: bool,
 ) -> Result<Vec<(&'static str, Outcome)>, StudyError> {
     let exported = all.and_then(|scenes| scenes.iter().find(|s| s.name == export_study::CASE));
     let (extremes, (costs, exports)) = rayon::join(
-        || (all.is_some() || slow).then(|| extremes::study(slow, seed)),
+        || (all.is_some() || slow).then(|| extremes::study(slow)),
         || {
             rayon::join(
                 || all.map(work_precision::selected_case_reports),

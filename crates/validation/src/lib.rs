@@ -32,7 +32,7 @@ pub mod extremes;
 pub mod lifted;
 pub mod manual;
 mod overview;
-mod report_parts;
+pub mod report_parts;
 mod spatial;
 pub mod work_precision;
 mod written;

@@ -7,24 +7,28 @@ use dwell_study::output::Picture;
 use std::cmp::Ordering;
 
 /// The report of a study: `NAME.md` and `NAME.html`, the rounded `NAME.txt`, and its pictures in the folder `NAME/`.
-pub(crate) struct StudyReport<'a> {
-    pub(crate) name: &'a str,
-    pub(crate) title: &'a str,
+pub struct StudyReport<'a> {
+    /// Of its files and pictures.
+    pub name: &'a str,
+    /// Its title.
+    pub title: &'a str,
     /// What is studied, in words.
-    pub(crate) text: String,
+    pub text: String,
     /// What follows these words, before the findings.
-    pub(crate) blocks: Vec<Block>,
+    pub blocks: Vec<Block>,
     /// What the rounded text says before the findings.
-    pub(crate) snapshot: String,
-    pub(crate) figures: &'a [Figure],
-    pub(crate) findings: Vec<Finding>,
+    pub snapshot: String,
+    /// Its pictures.
+    pub figures: &'a [Figure],
+    /// What was found.
+    pub findings: Vec<Finding>,
     /// What was studied and how much of it, at the end of a line of the summary.
-    pub(crate) count: String,
+    pub count: String,
 }
 
 impl StudyReport<'_> {
     /// Adds the report to an outcome.
-    pub(crate) fn add_to(self, outcome: &mut Outcome) {
+    pub fn add_to(self, outcome: &mut Outcome) {
         let (name, title, findings) = (self.name, self.title, self.findings);
         let mut blocks = vec![Block::Text(result_line(&findings)), Block::Text(self.text)];
         blocks.extend(self.blocks);
@@ -47,7 +51,7 @@ impl StudyReport<'_> {
 }
 
 /// A table of a document.
-pub(crate) fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Block {
+pub fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Block {
     Block::Table {
         header: header.iter().map(|&cell| cell.to_owned()).collect(),
         rows: rows.into_iter().collect(),
@@ -55,20 +59,20 @@ pub(crate) fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>
 }
 
 /// A cell of a row, below the header of its column.
-pub(crate) type TextColumn<T> = (&'static str, fn(&T) -> String);
+pub type TextColumn<T> = (&'static str, fn(&T) -> String);
 
 /// A table of a document by its columns.
-pub(crate) fn table_of<T>(columns: &[TextColumn<T>], rows: impl Iterator<Item = T>) -> Block {
+pub fn table_of<T>(columns: &[TextColumn<T>], rows: impl Iterator<Item = T>) -> Block {
     let header: Vec<&str> = columns.iter().map(|(header, _)| *header).collect();
     let row = |row| columns.iter().map(|(_, cell)| cell(&row)).collect();
     table(&header, rows.map(row))
 }
 
 /// A number of a row, with the name and the unit of its column.
-pub(crate) type NumberColumn<'a, T> = (&'a str, &'a str, fn(&T) -> f64);
+pub type NumberColumn<'a, T> = (&'a str, &'a str, fn(&T) -> f64);
 
 /// The numbers of some rows.
-pub(crate) fn numbers<T>(columns: &[NumberColumn<'_, T>], rows: impl Iterator<Item = T>) -> Table {
+pub fn numbers<T>(columns: &[NumberColumn<'_, T>], rows: impl Iterator<Item = T>) -> Table {
     let row = |row| columns.iter().map(|(.., value)| value(&row)).collect();
     Table {
         rows: rows.map(row).collect(),
@@ -80,7 +84,7 @@ pub(crate) fn numbers<T>(columns: &[NumberColumn<'_, T>], rows: impl Iterator<It
 }
 
 /// The drawn figures in a document, each with its caption or else its title below it.
-pub(crate) fn figure_blocks(folder: &str, figures: &[Figure], captions: bool) -> Vec<Block> {
+pub fn figure_blocks(folder: &str, figures: &[Figure], captions: bool) -> Vec<Block> {
     let block = |figure: &Figure| Block::Figure {
         file: format!("{folder}/{}.png", figure.name),
         alt: figure.title.clone(),
@@ -94,7 +98,7 @@ pub(crate) fn figure_blocks(folder: &str, figures: &[Figure], captions: bool) ->
 }
 
 /// How many findings of a name pass, with `more` at the end of the line, and those that fail.
-pub(crate) fn findings_text(name: &str, findings: &[Finding], more: &str) -> String {
+pub fn findings_text(name: &str, findings: &[Finding], more: &str) -> String {
     let failed: Vec<&Finding> = findings.iter().filter(|f| !f.pass).collect();
     let (all, passed) = (findings.len(), findings.len() - failed.len());
     let mut text = format!("{name}: {passed} of {all} findings pass{more}\n");
@@ -109,7 +113,7 @@ const LAST_DIGIT: std::ops::Range<f64> = 0.5..0.6;
 
 /// How many times the difference of a finding is its tolerance: infinite where there is no difference, or none in the printed digits; zero
 /// where it is not a number.
-pub(crate) fn margin(finding: &Finding) -> f64 {
+pub fn margin(finding: &Finding) -> f64 {
     match finding.relative_difference {
         0.0 if finding.pass => f64::INFINITY,
         _ if finding.pass && LAST_DIGIT.contains(&finding.tolerance) => f64::INFINITY,
@@ -119,7 +123,7 @@ pub(crate) fn margin(finding: &Finding) -> f64 {
 }
 
 /// A margin in at most four letters.
-pub(crate) fn margin_text(margin: f64) -> String {
+pub fn margin_text(margin: f64) -> String {
     match margin {
         margin if margin == f64::INFINITY => "=".to_owned(),
         margin if margin < 9.95 => format!("{margin:.1}"),
@@ -137,7 +141,7 @@ pub(crate) fn margin_text(margin: f64) -> String {
 const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
 /// The finding with the least margin; one that fails comes before all that pass.
-pub(crate) fn nearest<'f>(findings: impl Iterator<Item = &'f Finding>) -> Option<&'f Finding> {
+pub fn nearest<'f>(findings: impl Iterator<Item = &'f Finding>) -> Option<&'f Finding> {
     findings.min_by(|a, b| {
         (a.pass, margin(a))
             .partial_cmp(&(b.pass, margin(b)))
@@ -146,7 +150,7 @@ pub(crate) fn nearest<'f>(findings: impl Iterator<Item = &'f Finding>) -> Option
 }
 
 /// The least margin of some findings, and which has it.
-pub(crate) fn nearness(findings: &[Finding]) -> String {
+pub fn nearness(findings: &[Finding]) -> String {
     let nearest = nearest(findings.iter());
     nearest.map_or_else(String::new, |f| {
         format!("{} of {}", margin_text(margin(f)), f.key)
@@ -154,7 +158,7 @@ pub(crate) fn nearness(findings: &[Finding]) -> String {
 }
 
 /// The first line of the page of a case or a study: the verdict, and what is nearest to its tolerance.
-pub(crate) fn result_line(findings: &[Finding]) -> String {
+pub fn result_line(findings: &[Finding]) -> String {
     let passed = findings.iter().filter(|f| f.pass).count();
     let counts = format!("{passed} of {} findings pass", findings.len());
     let result = if all_pass(findings) { "PASS" } else { "FAIL" };
@@ -175,12 +179,12 @@ pub(crate) fn result_line(findings: &[Finding]) -> String {
 }
 
 /// `pass` or a bold FAIL.
-pub(crate) fn pass_or_fail(pass: bool) -> &'static str {
+pub fn pass_or_fail(pass: bool) -> &'static str {
     if pass { "pass" } else { "**FAIL**" }
 }
 
 /// A failed finding as text: the check, where it fails, and by how much.
-pub(crate) fn describe_failure(finding: &Finding) -> [String; 3] {
+pub fn describe_failure(finding: &Finding) -> [String; 3] {
     let location = match finding.domain.is_empty() {
         true => finding.worst_at.clone(),
         false => format!("{}, of {}", finding.worst_at, finding.domain),

@@ -20,7 +20,7 @@ pub(super) struct StatedTable {
 }
 
 /// The numbers of a column of a table.
-pub(super) fn column(table: &Table, name: &str) -> Result<Vec<f64>, String> {
+pub fn column(table: &Table, name: &str) -> Result<Vec<f64>, String> {
     let found = table.columns.iter().position(|c| c.name == name);
     let column = found.ok_or_else(|| format!("no column {name}"))?;
     Ok(table.rows.iter().map(|row| row[column]).collect())

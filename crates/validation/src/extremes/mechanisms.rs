@@ -9,7 +9,7 @@ use dwell_scene::PlaneScene;
 use dwell_study::models::reduced_model;
 
 /// Mass in kg, centre of mass in m, moment of inertia in kg m².
-pub(crate) const fn mass(mass: f64, [x, y]: [f64; 2], inertia: f64) -> Mass {
+pub const fn mass(mass: f64, [x, y]: [f64; 2], inertia: f64) -> Mass {
     Mass {
         mass,
         center: vec2(x, y),
@@ -18,7 +18,7 @@ pub(crate) const fn mass(mass: f64, [x, y]: [f64; 2], inertia: f64) -> Mass {
 }
 
 /// A body with its points, such as `A = [0, 0]`.
-pub(crate) fn body(name: &str, points: &str, of: &Mass) -> String {
+pub fn body(name: &str, points: &str, of: &Mass) -> String {
     let (Vec2 { x, y }, mass, inertia) = (of.center, of.mass, of.inertia);
     format!(
         "{name} = {{ points = {{ {points} }}, mass = {mass}, center = [{x}, {y}], inertia = {inertia} }}\n"
@@ -26,13 +26,13 @@ pub(crate) fn body(name: &str, points: &str, of: &Mass) -> String {
 }
 
 /// The scene of a text.
-pub(crate) fn scene(text: &str) -> Result<PlaneScene, String> {
+pub fn scene(text: &str) -> Result<PlaneScene, String> {
     PlaneScene::parse("scene.toml", text).map_err(|e| e.to_string())
 }
 
 /// The reduced model of a text, with the reaction of a joint if there is one of this name.
 #[cfg(test)]
-pub(crate) fn reduced(text: &str, joint: &str) -> Result<ExactModel, String> {
+pub fn reduced(text: &str, joint: &str) -> Result<ExactModel, String> {
     let scene = scene(text)?;
     let mut reactions = scene.mechanism.reactions();
     reactions.retain(|r| scene.mechanism.joints[r.joint.0].name == joint);
@@ -41,20 +41,20 @@ pub(crate) fn reduced(text: &str, joint: &str) -> Result<ExactModel, String> {
 
 /// A four-bar from A over B and C to D. Links lie along the x axis of their frames, from A, B and D.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct FourBar {
+pub struct FourBar {
     /// A and D on the ground, m.
-    pub(crate) base: [Vec2; 2],
+    pub base: [Vec2; 2],
     /// Crank, coupler and rocker, m.
-    pub(crate) lengths: [f64; 3],
+    pub lengths: [f64; 3],
     /// Of the same.
-    pub(crate) masses: [Mass; 3],
+    pub masses: [Mass; 3],
     /// Coordinate and approximate angle of the coupler at assembly, rad.
-    pub(crate) assembly: [f64; 2],
+    pub assembly: [f64; 2],
 }
 
 impl FourBar {
     /// Its scene, up to the assembly.
-    pub(crate) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let [a, d] = self.base;
         let [crank, coupler, rocker] = self.lengths;
         let [one, two, three] = &self.masses;
@@ -75,7 +75,7 @@ impl FourBar {
     }
 
     /// The same with all lengths scaled.
-    pub(crate) fn scaled(mut self, factor: f64) -> Self {
+    pub fn scaled(mut self, factor: f64) -> Self {
         self.base = self.base.map(|p| p * factor);
         self.lengths = self.lengths.map(|l| l * factor);
         for mass in &mut self.masses {
@@ -87,7 +87,7 @@ impl FourBar {
 }
 
 /// A crank-rocker in no special proportion; its numbers are exact in binary.
-pub(crate) const CRANK_ROCKER: FourBar = FourBar {
+pub const CRANK_ROCKER: FourBar = FourBar {
     base: [Vec2::ZERO, vec2(4.0, 0.0)],
     lengths: [1.0, 3.5, 2.5],
     masses: [
@@ -100,20 +100,20 @@ pub(crate) const CRANK_ROCKER: FourBar = FourBar {
 
 /// A crank A B, a rod B C and a slider on a line parallel to x; links lie along the x axis of their frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct SliderCrank {
+pub struct SliderCrank {
     /// Crank and rod, m.
-    pub(crate) lengths: [f64; 2],
+    pub lengths: [f64; 2],
     /// Height of the line above A, m.
-    pub(crate) height: f64,
+    pub height: f64,
     /// Of crank, rod and slider.
-    pub(crate) masses: [Mass; 3],
+    pub masses: [Mass; 3],
     /// Coordinate and approximate angle of the rod at assembly.
-    pub(crate) assembly: [f64; 2],
+    pub assembly: [f64; 2],
 }
 
 impl SliderCrank {
     /// Its scene, driven at the crank, or at the slider: then the angle at assembly is that of the crank.
-    pub(crate) fn text(&self, actuated_slider: bool) -> String {
+    pub fn text(&self, actuated_slider: bool) -> String {
         let [crank, rod] = self.lengths;
         let [one, two, three] = &self.masses;
         let [q, initial_guess] = self.assembly;
@@ -135,7 +135,7 @@ impl SliderCrank {
 }
 
 /// A crank of 1 m in a slot across a slide: the slide's travel is cos q.
-pub(crate) fn scotch_yoke(crank: f64, slide: f64) -> String {
+pub fn scotch_yoke(crank: f64, slide: f64) -> String {
     let crank = mass(0.0, [0.0; 2], crank);
     format!(
         "[bodies]\nground = {{ points = {{ A = [0, 0] }} }}\n{}{}\
@@ -148,7 +148,7 @@ pub(crate) fn scotch_yoke(crank: f64, slide: f64) -> String {
 }
 
 /// A body that slides along x.
-pub(crate) fn slider(kilograms: f64) -> String {
+pub fn slider(kilograms: f64) -> String {
     let slider = body("slider", "A = [0, 0]", &mass(kilograms, [0.0; 2], 0.0));
     format!(
         "[bodies]\nground = {{ points = {{ A = [0, 0] }} }}\n{slider}\
@@ -158,7 +158,7 @@ pub(crate) fn slider(kilograms: f64) -> String {
 }
 
 /// A body that rotates about a fixed point.
-pub(crate) fn rotor(mass: &Mass) -> String {
+pub fn rotor(mass: &Mass) -> String {
     let rotor = body("rotor", "A = [0, 0]", mass);
     format!(
         "[bodies]\nground = {{ points = {{ A = [0, 0] }} }}\n{rotor}\

@@ -4,8 +4,6 @@
 
 mod check;
 mod closed_forms;
-mod drawn;
-mod draws;
 mod form_model;
 mod form_report;
 pub mod forms;
@@ -14,12 +12,10 @@ mod in_scenes;
 mod jamming;
 mod large_groups;
 mod limit_positions;
-pub mod machines;
-mod mechanisms;
+pub mod mechanisms;
 mod narrow_peaks;
 mod paper_mechanism;
 mod places;
-pub mod pulses;
 mod ratios;
 mod report;
 mod run_pair;
@@ -29,6 +25,7 @@ mod singular;
 mod stiff;
 
 pub use check::check;
+pub use in_scenes::column;
 pub use report::outcome;
 pub use series::{
     CellResult, EstimatedValue, ParameterSeries, Requirement, ResultCell, SeriesResult,
@@ -39,20 +36,15 @@ use dwell_study::StudyError;
 use forms::Form;
 use rayon::prelude::*;
 
-/// The whole study: `extremes`, or `extremes-long` with the rows that take minutes. What is drawn at random is of a
-/// `seed`.
+/// The whole study: `extremes`, or `extremes-long` with the rows that take minutes.
 ///
 /// # Errors
 /// [`StudyError`] where a picture cannot be drawn.
-pub fn study(slow: bool, seed: u64) -> Result<Outcome, StudyError> {
+pub fn study(slow: bool) -> Result<Outcome, StudyError> {
     let name = if slow { "extremes-long" } else { "extremes" };
     let results = evaluate(all_series(slow));
     let mut outcome = outcome(&results, large_groups::dense_findings(), name)?;
     forms::add_to(&mut outcome, &results, name);
-    let pulses = pulses::evaluate(pulses::count(slow), seed);
-    pulses::add_to(&mut outcome, &pulses, seed, name)?;
-    let machines = machines::evaluate(machines::count(slow), seed);
-    machines::add_to(&mut outcome, &machines, seed, name)?;
     Ok(outcome)
 }
 

@@ -1,7 +1,7 @@
 //! The manual as a document, and its rounded text.
 
+use super::REQUIRED;
 use super::capabilities::CAPABILITIES;
-use super::key_study::REQUIRED;
 use super::lines::{Line, LineState, digits, numbers};
 use super::machine;
 use crate::report_parts::{
@@ -38,6 +38,8 @@ pub(super) struct Contents<'a> {
     pub(super) extremes: &'a [Finding],
     /// The texts of committed fault studies that were at hand, and the number of faults in them.
     pub(super) fault_texts: (&'a [&'static str], usize),
+    /// When faults were planted in keys, if that is known.
+    pub(super) keys_made: Option<&'a str>,
     /// What the independent reader says.
     pub(super) independent_reader: &'a str,
 }
@@ -94,7 +96,7 @@ fn summary(contents: &Contents<'_>) -> Block {
 
 fn how_to_read() -> Block {
     Block::Text(format!(
-        "Each line is a capability: a key of the scene description, a command, or an option. It passes where a case uses it, every finding of the checks that apply to it passes on all its cases, and a fault in it is detected by {REQUIRED} checks of different number. For a key the fault is planted now, on this machine: the results are computed from a scene in which the value of this key alone is another, and the checks are given the scene as it is written. For commands and options a fault is one of the committed studies. *Margin* is the tolerance over the difference of the finding nearest to its tolerance; *digits* are those in which result and target agree there."
+        "Each line is a capability: a key of the scene description, a command, or an option. It passes where a case uses it, every finding of the checks that apply to it passes on all its cases, and a fault in it is detected by {REQUIRED} checks of different number. For a key the results were computed from a scene in which the value of this key alone is another, and the checks were given the scene as it is written. Faults are those of the committed studies. *Margin* is the tolerance over the difference of the finding nearest to its tolerance; *digits* are those in which result and target agree there."
     )
     .replace('*', ""))
 }
@@ -248,8 +250,12 @@ fn extremes(findings: &[Finding]) -> Block {
 
 fn limits(contents: &Contents<'_>) -> Block {
     let (texts, count) = contents.fault_texts;
+    let keys_made = match contents.keys_made {
+        Some(made) => format!("were planted at {made}"),
+        None => "are not at hand".to_owned(),
+    };
     let mut text = format!(
-        "- A fault in a key is planted between the scene's text and the results; a fault that readers and checks share, because both use the same reader of scenes, is for the checks over written files to find.\n- The line of a command lists the findings on what it computes from: states, reduced models, motions. What it alone computes from them (a cycle, an equilibrium, a matrix, a row of a sweep) is checked by tests, and by the checks over written files where there are any.\n- Checks 0 to 11 share the reader of scenes with the program. Checks 12 to 20 read the scene's text once more, within this program. The independent reader in Python, `validation/audit`, shares nothing with it: {}.\n- Committed studies of mutations that were at hand: {}, {count} of them.",
+        "- Faults in keys {keys_made}.\n- A fault in a key is planted between the scene's text and the results; a fault that readers and checks share, because both use the same reader of scenes, is for the checks over written files to find.\n- The line of a command lists the findings on what it computes from: states, reduced models, motions. What it alone computes from them (a cycle, an equilibrium, a matrix, a row of a sweep) is checked by tests, and by the checks over written files where there are any.\n- Checks 0 to 11 share the reader of scenes with the program. Checks 12 to 20 read the scene's text once more, within this program. The independent reader in Python, `validation/audit`, shares nothing with it: {}.\n- Committed studies of mutations that were at hand: {}, {count} of them.",
         contents.independent_reader,
         match texts.is_empty() {
             true => "none".to_owned(),

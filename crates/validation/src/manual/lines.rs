@@ -1,10 +1,12 @@
 //! The lines of the manual: a capability each, with what is known of it.
 
+use super::REQUIRED;
 use super::capabilities::{CAPABILITIES, CommandRequirement, Interface};
 use super::committed_mutations::CommittedMutation;
-use super::key_study::{KeyResult, REQUIRED};
+use super::key_faults::PlantedFault;
 use crate::report_parts::nearest;
 use dwell_findings::{Check, Finding};
+use dwell_scene::SceneKey;
 use std::collections::BTreeSet;
 
 /// Faults that are listed with a command.
@@ -52,41 +54,53 @@ pub(super) struct CaseFindings<'a> {
     pub(super) findings: &'a [Finding],
 }
 
-/// The lines of all keys that hold a value.
-pub(super) fn key_lines(keys: &[KeyResult], cases: &[CaseFindings<'_>]) -> Vec<Line> {
-    let valued = keys.iter().filter(|k| !k.key.holds_keys);
-    valued.map(|result| key_line(result, cases)).collect()
+/// A key that holds a value, with what is known of it.
+pub(super) struct StudiedKey {
+    pub(super) key: SceneKey,
+    /// Indices of the scenes that use it.
+    pub(super) scenes: Vec<usize>,
+    /// What became of a fault in it, if one was planted.
+    pub(super) fault: Option<PlantedFault>,
 }
 
-fn key_line(result: &KeyResult, cases: &[CaseFindings<'_>]) -> Line {
-    let users = result.scenes.iter().map(|&k| &cases[k]);
-    let fault = result.fault.as_ref();
-    let checks = fault.map_or_else(BTreeSet::new, |fault| fault.detected_by.clone());
+/// The line of a key.
+pub(super) fn key_line(studied: &StudiedKey, cases: &[CaseFindings<'_>]) -> Line {
+    let StudiedKey { key, scenes, fault } = studied;
+    let users = scenes.iter().map(|&k| &cases[k]);
+    let checks = fault
+        .as_ref()
+        .map(PlantedFault::detected_by)
+        .unwrap_or_default();
     let findings = users.clone().flat_map(|case| case.findings);
     let judging = findings.filter(|f| checks.contains(&f.check));
     let failed = judging.clone().find(|f| !f.pass).map(|f| f.key.clone());
-    let exception = CAPABILITIES.exceptions.get(&result.key.id);
-    let state = match (exception, result.scenes.len(), checks.len(), failed) {
+    let exception = CAPABILITIES.exceptions.get(&key.id);
+    let state = match (exception, scenes.len(), fault, failed) {
         (_, _, _, Some(key)) => LineState::Fail(format!("{key} fails")),
         (Some(reason), ..) => LineState::Exempt(reason),
         (None, 0, ..) => LineState::Fail("no case uses it".to_owned()),
-        (None, _, 0, _) if result.refused => {
+        (None, _, None, _) => LineState::Fail("no fault was planted in it".to_owned()),
+        (None, _, Some(PlantedFault::Refused), _) => {
             LineState::Exempt("every other value of it is refused with an error")
         }
-        (None, _, 0, _) => LineState::Fail("a fault in it is not detected".to_owned()),
-        (None, _, n, _) if n < REQUIRED => {
-            LineState::Fail("a fault in it is detected by one check only".to_owned())
+        (None, _, Some(PlantedFault::Unchanged), _) => {
+            LineState::Fail("a fault in it is not detected".to_owned())
+        }
+        (None, _, Some(PlantedFault::Detected { by, .. }), _) if by.len() < REQUIRED => {
+            LineState::Fail("a fault in it is detected by fewer than two checks".to_owned())
         }
         _ => LineState::Pass,
     };
-    let fault = fault.map(|fault| {
-        let numbers = numbers(&fault.detected_by);
-        format!("{}, on {}: {numbers}", fault.what, cases[fault.scene].name)
-    });
+    let fault = match fault {
+        Some(PlantedFault::Detected { scene, what, by }) => {
+            Some(format!("{what}, on {scene}: {}", numbers(by)))
+        }
+        _ => None,
+    };
     Line {
-        section: result.key.table.to_owned(),
-        item: result.key.name.to_owned(),
-        meaning: result.key.doc.to_owned(),
+        section: key.table.to_owned(),
+        item: key.name.to_owned(),
+        meaning: key.doc.to_owned(),
         cases: users.map(|case| case.name.to_owned()).collect(),
         nearest: nearest(judging).cloned(),
         checks,

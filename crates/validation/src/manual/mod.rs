@@ -4,17 +4,17 @@
 //! ```text
 //! keys.toml, commands, options ── capabilities ─┐
 //! cases ── findings ────────────────────────────┼── lines ── document ── manual.md, .html, .txt
-//! scenes ── altered ── planted ── key_study ────┤
-//! reports/mutations.txt ── committed_mutations ────┘
+//! reports/key-faults.txt ── key_faults ─────────┤
+//! reports/mutations.txt ── committed_mutations ─┘
 //! ```
 //!
-//! A fault is planted in each key when the manual is made: [`KeyStudy`]. So a check that has become blind to a key fails here.
+//! The faults are planted by developers' runs, whose committed texts are shown: `just trials`, which plants one in each key of
+//! [`PlantedScene`], and `just mutations`.
 
-mod altered;
 mod capabilities;
 mod committed_mutations;
 mod document;
-mod key_study;
+mod key_faults;
 mod lines;
 mod machine;
 mod motion_claims;
@@ -22,17 +22,17 @@ mod planted;
 mod rotor;
 
 pub use capabilities::{Interface, undescribed};
+pub use key_faults::{KeyFault, KeyFaults, PlantedFault};
+pub use planted::{PlantedResult, PlantedScene};
 
 use crate::cases::reference::Reference;
 use crate::overview::CaseResult;
 use committed_mutations::committed_mutations;
 use document::{CaseEntry, Contents, counts, document, text};
 use dwell_findings::Finding;
-use dwell_scene::PlaneScene;
+use dwell_scene::{PlaneScene, key_uses, scene_keys};
 use dwell_study::Outcome;
-use key_study::{KeyResult, study_keys};
-use lines::{CaseFindings, Line, command_lines, key_lines};
-use planted::PlantedScene;
+use lines::{CaseFindings, Line, StudiedKey, command_lines, key_line};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -40,22 +40,26 @@ use std::path::{Path, PathBuf};
 const CAPABILITY_FOLDER: &str = "capabilities";
 /// The folder of the committed texts of fault studies, beside that of the cases.
 const REPORT_FOLDER: &str = "reports";
+/// Checks that have to detect a fault.
+pub const REQUIRED: usize = 2;
 
-/// Every key with the scenes that use it and a fault planted in it.
-pub struct KeyStudy {
+/// Every key with the scenes that use it and what became of a fault in it.
+pub struct Manual {
     folder: PathBuf,
     /// As they are written.
     written: Vec<PlaneScene>,
     scenes: Vec<PlantedScene>,
     /// By scene: its findings, where it is not a case.
     findings: Vec<Vec<Finding>>,
-    keys: Vec<KeyResult>,
+    keys: Vec<StudiedKey>,
+    /// When faults were planted in them, if that is known.
+    keys_made: Option<String>,
     /// Why a scene of the folder cannot be read.
     unread: Vec<String>,
 }
 
-impl KeyStudy {
-    /// Plants a fault in every key that the cases' scenes use, or the small scenes in their folder.
+impl Manual {
+    /// The keys that the cases' scenes use, or the small scenes in their folder, with the committed faults in them.
     pub fn new(cases: &[&PlaneScene], folder: &Path) -> Self {
         let mut written: Vec<PlaneScene> = cases.iter().map(|scene| (*scene).clone()).collect();
         let mut unread = Vec::new();
@@ -74,20 +78,27 @@ impl KeyStudy {
                 false => planted.findings(),
             }
         });
+        let faults = KeyFaults::read(&reports(folder));
         Self {
             folder: folder.to_owned(),
             findings: own.collect(),
-            keys: study_keys(&scenes),
+            keys: studied_keys(&scenes, faults.as_ref()),
+            keys_made: faults.map(|faults| faults.made),
             written,
             scenes,
             unread,
         }
     }
 
+    /// The scenes of the cases and the small ones, in which faults can be planted.
+    pub fn scenes(&self) -> &[PlantedScene] {
+        &self.scenes
+    }
+
     /// What is missing of keys, in sentences: a key without a case, or a fault in one that fewer than two checks detect.
     pub fn gaps(&self) -> Vec<String> {
         let cases = self.case_findings(&[]);
-        let lines = key_lines(&self.keys, &cases);
+        let lines: Vec<Line> = self.keys.iter().map(|key| key_line(key, &cases)).collect();
         let missing = missing(&lines);
         let own = self.scenes.iter().zip(&self.findings);
         let own =
@@ -117,7 +128,7 @@ impl KeyStudy {
 
     /// `manual.md`, `manual.html` and `manual.txt`, from the validated cases, the findings at extreme parameters and what the independent
     /// reader says, in words. Each capability that fails is a failed finding.
-    pub fn manual(
+    pub fn outcome(
         &self,
         results: &[CaseResult<'_>],
         extremes: &[Finding],
@@ -125,9 +136,8 @@ impl KeyStudy {
         independent_reader: &str,
     ) -> Outcome {
         let cases = self.case_findings(results);
-        let reports = self.folder.join("..").join(REPORT_FOLDER);
-        let (faults, texts) = committed_mutations(&reports);
-        let mut lines = key_lines(&self.keys, &cases);
+        let (faults, texts) = committed_mutations(&reports(&self.folder));
+        let mut lines: Vec<Line> = self.keys.iter().map(|key| key_line(key, &cases)).collect();
         lines.extend(command_lines(interface, &cases, extremes, &faults));
         let of_name = |name: &str| self.written.iter().find(|scene| scene.name == name);
         let entries = cases
@@ -148,6 +158,7 @@ impl KeyStudy {
             cases: &entries,
             extremes,
             fault_texts: (&texts, faults.len()),
+            keys_made: self.keys_made.as_deref(),
             independent_reader,
         };
         let document = document(&contents);
@@ -174,6 +185,27 @@ impl KeyStudy {
             _ => "numbers chosen for this manual".to_owned(),
         }
     }
+}
+
+/// The folder of reports beside that of the cases.
+fn reports(folder: &Path) -> PathBuf {
+    folder.join("..").join(REPORT_FOLDER)
+}
+
+/// All keys that hold a value, with the scenes that use them and the faults that were planted in them.
+fn studied_keys(scenes: &[PlantedScene], faults: Option<&KeyFaults>) -> Vec<StudiedKey> {
+    let uses: Vec<_> = scenes.iter().map(|s| key_uses(s.text())).collect();
+    let valued = scene_keys().into_iter().filter(|key| !key.holds_keys);
+    let studied = valued.map(|key| {
+        let uses_it = |k: &usize| uses[*k].iter().any(|u| u.key == key.id);
+        let mut planted = faults.into_iter().flat_map(|faults| &faults.faults);
+        StudiedKey {
+            scenes: (0..scenes.len()).filter(uses_it).collect(),
+            fault: planted.find(|f| f.key == key.id).map(|f| f.fault.clone()),
+            key,
+        }
+    });
+    studied.collect()
 }
 
 /// A sentence for each capability that fails.

@@ -25,10 +25,9 @@ const STATES: usize = 7;
 const ENERGY_STATES: usize = 2;
 
 /// A scene that faults are planted in.
-pub(super) struct PlantedScene {
+pub struct PlantedScene {
     pub(super) scene: PlaneScene,
-    /// Its text, the keys in alphabetical order.
-    pub(super) text: String,
+    text: String,
     reference: Reference,
     /// What it claims of states, and of its free motion if it has one.
     states: OnceLock<Option<StateClaims>>,
@@ -47,7 +46,7 @@ struct StateClaims {
 
 /// What became of a planted fault.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum PlantedResult {
+pub enum PlantedResult {
     /// No scene comes of it, or none of the same joints and bodies: the program refuses it.
     Refused,
     /// No result changes.
@@ -75,8 +74,18 @@ impl PlantedScene {
         })
     }
 
+    /// The scene, as its [text](Self::text) is read.
+    pub fn scene(&self) -> &PlaneScene {
+        &self.scene
+    }
+
+    /// Its text, the keys in alphabetical order.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
     /// What it costs to plant a fault, roughly: dense rows, cubed, and a motion.
-    pub(super) fn cost(&self) -> usize {
+    pub fn cost(&self) -> usize {
         let bodies = self.scene.mechanism.bodies.len();
         bodies.pow(3) + 1000 * usize::from(self.scene.motion.is_some())
     }
@@ -91,7 +100,7 @@ impl PlantedScene {
     }
 
     /// What the checks detect where the results come from another scene.
-    pub(super) fn check_altered(&self, altered: &PlaneScene) -> PlantedResult {
+    pub fn check_altered(&self, altered: &PlaneScene) -> PlantedResult {
         let (mut changed, mut failed, mut seen) = (false, BTreeSet::new(), false);
         if let (Some(own), Some(claims)) = (self.own_states(), self.claims(altered)) {
             let claims = claims.with_requests_of(own);

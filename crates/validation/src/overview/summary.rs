@@ -210,7 +210,7 @@ pub(super) fn document(judged: &ValidationRun<'_>) -> Document {
             caption: String::new(),
         },
         Block::Text(format!(
-            "[All cases](cases.md) · [manual](manual.md) · [extremes](extremes.md) · [in other forms](extremes-forms.md) · [pulses](extremes-pulses.md) · [machines](extremes-machines.md) · [exported runs](exported-runs.md) · [mutations](mutations.md) · Dwell {}",
+            "[All cases](cases.md) · [manual](manual.md) · [extremes](extremes.md) · [in other forms](extremes-forms.md) · [exported runs](exported-runs.md) · [mutations](mutations.md) · [pulses](pulses.md) · [machines](machines.md) · Dwell {}",
             env!("CARGO_PKG_VERSION")
         )),
     ];

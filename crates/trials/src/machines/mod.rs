@@ -13,10 +13,10 @@ mod report;
 mod run;
 
 pub use check::check;
-pub(super) use report::add_to;
+pub use report::add_to;
 pub use run::{MachineResult, MachineRun, evaluate};
 
-/// Machines of `dwell validate`, and with `--slow`.
-pub(super) fn count(slow: bool) -> usize {
+/// Machines of a run, and with `--slow`.
+pub fn count(slow: bool) -> usize {
     if slow { 200 } else { 20 }
 }

@@ -14,11 +14,11 @@ mod subject;
 
 pub use check::check;
 pub use pulse::PulseShape;
-pub(super) use report::add_to;
+pub use report::add_to;
 pub use run::{PulseResult, PulseRun, RunKind, evaluate};
 pub use subject::PulseSubject;
 
-/// Pulses of `dwell validate`, and with `--slow`.
-pub(super) fn count(slow: bool) -> usize {
+/// Pulses of a run, and with `--slow`.
+pub fn count(slow: bool) -> usize {
     if slow { 1000 } else { 60 }
 }

@@ -1,7 +1,7 @@
 //! A pulse: a magnitude as a function of time, as a scene writes it, and as someone writes it piece by piece who restarts
 //! an integration wherever it switches.
 
-use crate::extremes::draws::Draws;
+use crate::draws::Draws;
 use std::f64::consts::{PI, TAU};
 
 /// The shape of a pulse of unit area.

@@ -1,8 +1,8 @@
 //! What the pulses act on: a wheel and a slider, whose motions are closed forms, and a pendulum, hanging and swinging.
 
 use super::pulse::Pulse;
-use crate::extremes::draws::Draws;
-use crate::extremes::mechanisms::{mass, rotor, slider};
+use crate::draws::Draws;
+use dwell_validation::extremes::mechanisms::{mass, rotor, slider};
 
 /// The inertia of each, kg m² or kg.
 pub(super) const INERTIA: f64 = 2.0;

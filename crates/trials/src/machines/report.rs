@@ -2,27 +2,26 @@
 
 use super::check::check;
 use super::run::{ACCURACIES, MachineResult, MachineRun};
-use crate::extremes::drawn::{completed, runs};
-use crate::extremes::series::MAX_ESTIMATE_RATIO;
-use crate::report_parts::{NumberColumn, StudyReport, figure_blocks, numbers, table};
+use crate::drawn::{completed, runs};
 use dwell_report::{Axis, Chart, Figure, Mark, Paint, Series, Stroke, Table, TableExport as _};
 use dwell_study::output::chart;
 use dwell_study::{Outcome, StudyError};
+use dwell_validation::extremes::series::MAX_ESTIMATE_RATIO;
+use dwell_validation::report_parts::{NumberColumn, StudyReport, figure_blocks, numbers, table};
 
 /// Errors that a chart shows.
 const ERROR_RANGE: [f64; 2] = [1e-16, 1e-2];
 
-/// Adds the report of the machines, `NAME-machines.md` with its text, its table and its picture, to an outcome.
+/// Adds the report of the machines, `NAME.md` with its text, its table and its picture, to an outcome.
 ///
 /// # Errors
 /// [`StudyError`] where a table cannot be written.
-pub(in crate::extremes) fn add_to(
+pub fn add_to(
     outcome: &mut Outcome,
     results: &[MachineResult],
     seed: u64,
     name: &str,
 ) -> Result<(), StudyError> {
-    let name = format!("{name}-machines");
     let figures = [figure(results, seed)];
     let files = &mut outcome.files;
     files.add(format!("{name}/machines.csv"), csv_table(results).csv()?);
@@ -40,13 +39,13 @@ pub(in crate::extremes) fn add_to(
     ];
     let rows = ACCURACIES.map(|accuracy| summary_row(accuracy, results));
     let mut blocks = vec![table(&header, rows)];
-    blocks.extend(figure_blocks(&name, &figures, false));
+    blocks.extend(figure_blocks(name, &figures, false));
     let report = StudyReport {
-        name: &name,
+        name,
         title: "Random machines",
         text: format!(
             "Mechanisms of one and two freedoms, drawn by seed {seed}, under loads that switch with time, coordinates and \
-             speeds, with motors and with speed controllers that saturate; `dwell validate --seed N` draws others. Each is \
+             speeds, with motors and with speed controllers that saturate; `just trials --seed N` draws others. Each is \
              simulated to four accuracies, and compared with a Runge–Kutta method of order 5 with step control of its own at \
              1e-13, restarted by hand at the switches in time; the error of that reference is its difference from 1e-12. The scenes \
              are in the folder of the picture."

@@ -1,6 +1,6 @@
 //! A machine drawn at random, as a scene.
 
-use crate::extremes::draws::Draws;
+use crate::draws::Draws;
 use std::f64::consts::{PI, TAU};
 
 /// A scene with the times at which its loads switch.

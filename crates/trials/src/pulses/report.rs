@@ -3,27 +3,26 @@
 use super::check::{MAX_ERROR_RATIO, check};
 use super::pulse::PulseShape;
 use super::run::{ACCURACIES, PulseResult, PulseRun, RunKind};
-use crate::extremes::drawn::{completed, runs};
-use crate::report_parts::{NumberColumn, StudyReport, figure_blocks, numbers, table};
+use crate::drawn::{completed, runs};
 use dwell_dynamics::Method;
 use dwell_report::{Axis, Chart, Figure, Mark, Paint, Series, Stroke, Table, TableExport as _};
 use dwell_study::output::chart;
 use dwell_study::{Outcome, StudyError};
+use dwell_validation::report_parts::{NumberColumn, StudyReport, figure_blocks, numbers, table};
 
 /// Least and largest ratios that a chart shows.
 const RATIO_RANGE: [f64; 2] = [1e-6, 1e2];
 
-/// Adds the report of the pulses, `NAME-pulses.md` with its text, its table and its picture, to an outcome.
+/// Adds the report of the pulses, `NAME.md` with its text, its table and its picture, to an outcome.
 ///
 /// # Errors
 /// [`StudyError`] where a table cannot be written.
-pub(in crate::extremes) fn add_to(
+pub fn add_to(
     outcome: &mut Outcome,
     results: &[PulseResult],
     seed: u64,
     name: &str,
 ) -> Result<(), StudyError> {
-    let name = format!("{name}-pulses");
     let figures = [figure(results, seed)];
     let csv = csv_table(results).csv()?;
     outcome.files.add(format!("{name}/pulses.csv"), csv);
@@ -38,13 +37,13 @@ pub(in crate::extremes) fn add_to(
     ];
     let rows = PulseShape::ALL.map(|shape| summary_row(shape, results));
     let mut blocks = vec![table(&header, rows)];
-    blocks.extend(figure_blocks(&name, &figures, false));
+    blocks.extend(figure_blocks(name, &figures, false));
     let report = StudyReport {
-        name: &name,
+        name,
         title: "Pulses",
         text: format!(
             "Loads of widths from a millionth of the motion to all of it, at random times, on a wheel, a slider and a \
-             pendulum, half of them at rest. Drawn by seed {seed}; `dwell validate --seed N` draws others. Each is integrated by \
+             pendulum, half of them at rest. Drawn by seed {seed}; `just trials --seed N` draws others. Each is integrated by \
              every method and to every preset of `--accuracy`, and compared with its impulse or, on the pendulum, with a motion \
              restarted by hand at the switches at 1e-13."
         ),

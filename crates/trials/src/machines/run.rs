@@ -2,11 +2,11 @@
 
 use super::draw::RandomMachine;
 use super::reference::Reference;
-use crate::extremes::draws::Draws;
-use crate::extremes::in_scenes::column;
+use crate::draws::Draws;
 use dwell_scene::PlaneScene;
 use dwell_study::FreeMotion;
 use dwell_study::{MotionSolver, StudyError, compute_free_motion, no_progress};
+use dwell_validation::extremes::column;
 use rayon::prelude::*;
 
 /// The accuracies that are required.

@@ -1,9 +1,9 @@
 //! The findings on the random machines.
 
 use super::run::{MachineResult, MachineRun};
-use crate::extremes::drawn::{Drawn, completed, finding, largest, refused};
-use crate::extremes::series::{MAX_ESTIMATE_RATIO, REQUIRED_CELL_FRACTION};
+use crate::drawn::{Drawn, completed, finding, largest, refused};
 use dwell_findings::Finding;
+use dwell_validation::extremes::series::{MAX_ESTIMATE_RATIO, REQUIRED_CELL_FRACTION};
 
 /// Below this true error an estimate is one of roundings.
 const ROUNDING: f64 = 1e-13;

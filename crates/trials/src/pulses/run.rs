@@ -3,11 +3,11 @@
 use super::by_hand::{reference, restarted};
 use super::pulse::PulseShape;
 use super::subject::{INERTIA, PulseSubject, PulsedMotion};
-use crate::extremes::draws::Draws;
-use crate::extremes::in_scenes::column;
+use crate::draws::Draws;
 use dwell_dynamics::Method;
 use dwell_scene::PlaneScene;
 use dwell_study::{MotionSolver, SolverSettings, compute_free_motion, no_progress};
+use dwell_validation::extremes::column;
 use rayon::prelude::*;
 
 /// The accuracies that are required: the presets, but for the last, which few machines reach.

@@ -1,7 +1,7 @@
 //! The findings on the pulses.
 
 use super::run::{PulseResult, PulseRun, RunKind};
-use crate::extremes::drawn::{Drawn, finding, largest, refused};
+use crate::drawn::{Drawn, finding, largest, refused};
 use dwell_findings::Finding;
 
 /// Above this part of its effect a pulse was missed: half of it would be gone.
