@@ -180,6 +180,9 @@ impl Plan {
             PositionError::Singular { .. } => {
                 return AssemblyError::SingularAssembly { bodies, joints };
             }
+            PositionError::OffTable {
+                coupling, x, end, ..
+            } => return AssemblyError::OffTable { coupling, x, end },
             PositionError::NoAssembly { gap, .. } => gap,
             PositionError::NotConverged { residual, .. } => residual,
             PositionError::OtherBranch { .. }

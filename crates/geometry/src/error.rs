@@ -124,6 +124,16 @@ pub enum AssemblyError {
         /// The distance that the radii require, m.
         required: f64,
     },
+    /// The table of a coupling has no value at the assembly.
+    #[error("the table of a coupling ends at {end}, before {x} at the assembly")]
+    OffTable {
+        /// The coupling.
+        coupling: JointId,
+        /// Its variable, rad or m.
+        x: f64,
+        /// The end of its table that `x` is beyond, rad or m.
+        end: f64,
+    },
     /// The driven system is singular at assembly.
     #[error(
         "the assembly is at a singular position: the actuator does not determine the motion there"
@@ -189,6 +199,18 @@ pub enum PositionError {
         /// Upper end of the range, rad.
         to: f64,
     },
+    /// The table of a coupling has no value for its variable.
+    #[error("the table of a coupling ends at {end}, before {x} at q = {q}")]
+    OffTable {
+        /// The coupling.
+        coupling: JointId,
+        /// The coordinate of the first actuator, rad or m.
+        q: f64,
+        /// Its variable, rad or m.
+        x: f64,
+        /// The end of its table that `x` is beyond, rad or m.
+        end: f64,
+    },
     /// A coordinate, or what is computed from it, is not a finite number. It has no place to name.
     #[error("a coordinate is not a finite number")]
     NotFinite,
@@ -209,6 +231,7 @@ impl PositionError {
         | Self::OtherBranch { q, .. }
         | Self::NotConverged { q, .. }
         | Self::OutOfRange { q, .. }
+        | Self::OffTable { q, .. }
         | Self::LanesDiverge { q }) = *self
         else {
             return None;
@@ -223,7 +246,10 @@ impl PositionError {
             | Self::Singular { group, .. }
             | Self::OtherBranch { group, .. }
             | Self::NotConverged { group, .. } => Some(group),
-            Self::OutOfRange { .. } | Self::NotFinite | Self::LanesDiverge { .. } => None,
+            Self::OutOfRange { .. }
+            | Self::OffTable { .. }
+            | Self::NotFinite
+            | Self::LanesDiverge { .. } => None,
         }
     }
 }

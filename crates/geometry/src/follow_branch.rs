@@ -5,13 +5,14 @@ mod margins;
 mod separation;
 mod step_buffers;
 
-use crate::error::AssemblyError;
+use crate::error::{AssemblyError, PositionError};
 use crate::plan::range::{NearBranch, Range, RangeLimit};
 use crate::plan::stored_poses::{StoredPose, StoredPoses};
 use crate::plan::{AssurGroup, GroupKind, PlacementMethod, Plan, Pose};
 use crate::plane::{Vec2, vec2};
 use crate::positions::{InitialIterate, STEPS_PER_REVOLUTION};
 use crate::structure::groups::Unknown;
+use crate::structure::lower::Owner;
 use dwell_numerics::Dual;
 use std::f64::consts::TAU;
 use step_buffers::StepBuffers;
@@ -54,7 +55,9 @@ impl Plan {
             if up.is_some() {
                 break;
             }
-            if self.angular[0] && self.is_same_pose(assembly_pose, ahead.last()) {
+            // A table is not continued by another revolution.
+            let repeats = self.angular[0] && !self.groups.iter().any(|g| g.has_table);
+            if repeats && self.is_same_pose(assembly_pose, ahead.last()) {
                 self.store_poses(&ahead);
                 self.near_branches = near;
                 self.range = match revolutions {
@@ -107,6 +110,7 @@ impl Plan {
                 group: 0,
                 change_point: false,
                 separation: None,
+                table: None,
             });
         };
         let mut anchor = pose.clone();
@@ -165,6 +169,10 @@ impl Plan {
                         fine = (next - pose.q[0]) * 0.5;
                         let unit = if self.angular[0] { 1.0 } else { self.size };
                         if fine.abs() < MIN_STEP * (unit + pose.q[0].abs()) {
+                            if let Some(limit) = self.table_end(&pose, next) {
+                                self.complete_pose(poses.last_mut());
+                                return Some(limit);
+                            }
                             let relative_margin = |g: &usize| margins[*g].v / largest[*g][0];
                             let group = (0..margins.len())
                                 .min_by(|a, b| relative_margin(a).total_cmp(&relative_margin(b)))
@@ -188,6 +196,24 @@ impl Plan {
         }
         self.complete_pose(poses.last_mut());
         None
+    }
+
+    /// The end of the range after a pose, where a coupling's table has no value at the next coordinate.
+    fn table_end(&self, pose: &Pose<f64>, next: f64) -> Option<RangeLimit> {
+        let mut beyond = pose.clone();
+        let found = self.positions_from(&[next], &mut beyond, InitialIterate::CurrentPose);
+        let Err(PositionError::OffTable { coupling, .. }) = found else {
+            return None;
+        };
+        let owns = |&r: &usize| self.couplings[r].owner == Owner::Joint(coupling);
+        let mut groups = self.groups.iter();
+        Some(RangeLimit {
+            q: pose.q[0],
+            group: groups.position(|g| g.group.couplings.iter().any(owns))?,
+            change_point: false,
+            separation: None,
+            table: Some(coupling),
+        })
     }
 
     /// The limit at which a branch ends soon after a pose, in a direction of the coordinate; and the branch behind it, if
@@ -216,6 +242,7 @@ impl Plan {
             group,
             change_point: meets,
             separation: behind.filter(|_| meets).map(|b| b.half_width),
+            table: None,
         };
         (limit, behind)
     }

@@ -171,6 +171,8 @@ pub(crate) struct AssurGroup {
     pub(crate) stored_poses: StoredPoses,
     /// Whether revolutions are to be counted after a closed form.
     pub(crate) counts_revolutions: bool,
+    /// Whether a coupling of it has a table, which must have a value.
+    pub(crate) has_table: bool,
     /// Whether the stored poses are needed.
     pub(crate) uses_stored_poses: bool,
     /// Whether it is left out, because no requested result needs it.

@@ -9,6 +9,7 @@ use crate::motion::Motion;
 use crate::plan::{ActuatedFrame, GroupKind, PlacementMethod, Plan, Pose, Step};
 use crate::plane::{Vec2, vec2};
 use crate::structure::groups::Unknown;
+use crate::structure::lower::Owner;
 use crate::structure::tree::FrameVector;
 pub(crate) use closed_forms::is_plain;
 use closed_forms::{guided_point_positions, rrr_dyad_positions};
@@ -233,7 +234,28 @@ impl Plan {
                     if self.groups[*g].counts_revolutions {
                         self.count_revolutions(*g, pose, initial_iterate)?;
                     }
+                    if self.groups[*g].has_table {
+                        self.check_tables(*g, pose)?;
+                    }
                 }
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that the tables of a group's couplings have values.
+    #[cold]
+    fn check_tables<T: Scalar>(&self, group: usize, pose: &Pose<T>) -> Result<(), PositionError> {
+        for &r in &self.groups[group].group.couplings {
+            let off_table = self.couplings[r].off_table(&pose.angle, &pose.slide_travel);
+            if let (Some([x, end]), Owner::Joint(coupling)) = (off_table, self.couplings[r].owner) {
+                let q = pose.first_coordinate();
+                return Err(PositionError::OffTable {
+                    coupling,
+                    q,
+                    x,
+                    end,
+                });
             }
         }
         Ok(())

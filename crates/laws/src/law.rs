@@ -31,6 +31,21 @@ impl Law {
         }
     }
 
+    /// The end of its table that `x` is beyond; none where it is no table, or its table covers `x`. What rounding adds to a sum of
+    /// angles or travels is not beyond.
+    pub fn end_passed(&self, x: f64) -> Option<f64> {
+        let Self::Spline(spline) = self else {
+            return None;
+        };
+        let [first, last] = spline.range();
+        let rounding = TABLE_ROUNDING * first.abs().max(last.abs());
+        match () {
+            () if x < first - rounding => Some(first),
+            () if x > last + rounding => Some(last),
+            () => None,
+        }
+    }
+
     /// The largest absolute value from one x to another, of those at equal distances and at the points of a table.
     pub fn largest(&self, from: f64, to: f64) -> f64 {
         let parts = 64;
@@ -82,6 +97,9 @@ impl Law {
 
 /// Smallest jump, as a part of the value.
 const JUMP_TOLERANCE: f64 = 1e-6;
+/// What a sum of angles or travels may pass the end of a table by, as a part of that end: more than an end that is found by halving
+/// steps may fall short by.
+const TABLE_ROUNDING: f64 = 1e-12;
 /// Halvings of a step, down to the rounding of numbers of its size.
 const MAX_HALVINGS: usize = 60;
 

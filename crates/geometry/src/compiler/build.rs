@@ -149,6 +149,10 @@ impl Plan {
             _ => counts_revolutions,
         };
         AssurGroup {
+            has_table: group
+                .couplings
+                .iter()
+                .any(|&r| self.couplings[r].has_table()),
             actuated_frames: actuated_frames(all_actuated_frames, |c| group.contains_class(c)),
             group,
             kind,

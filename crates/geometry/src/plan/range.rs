@@ -1,6 +1,7 @@
 //! How far a single actuator can go on the branch of the assembly.
 
 use crate::error::PositionError;
+use crate::mechanism::JointId;
 use std::f64::consts::TAU;
 
 /// The range of a single actuator's coordinate.
@@ -34,6 +35,8 @@ pub struct RangeLimit {
     /// At a change point: the half-width (rad or m) within which the two branches come close without meeting, so close
     /// that rounding does not show which of them a motion follows. None where they meet.
     pub separation: Option<f64>,
+    /// The coupling whose table ends there, where that ends the range.
+    pub table: Option<JointId>,
 }
 
 /// Where another branch comes near this one without meeting it: within the half-width of the coordinate, the velocity

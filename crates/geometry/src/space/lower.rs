@@ -219,7 +219,7 @@ impl Lowered {
                     *joint = self.split[joint.0 - joints];
                 }
             }
-            AssemblyError::NotMeshing { .. } => {}
+            AssemblyError::NotMeshing { .. } | AssemblyError::OffTable { .. } => {}
             AssemblyError::Structure(structure) => match structure {
                 StructureError::UnderActuated { bodies, .. }
                 | StructureError::NotConnected { bodies } => own_bodies(bodies),

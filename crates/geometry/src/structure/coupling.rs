@@ -167,6 +167,18 @@ impl CouplingEquation {
         value
     }
 
+    /// The variable of its law, and the end of the law's table that it is beyond, where it is.
+    pub(crate) fn off_table<T: Scalar>(&self, angle: &[T], slide: &[T]) -> Option<[f64; 2]> {
+        let (law, independent) = self.law.as_ref()?;
+        let x = independent.value(angle, slide).value();
+        Some([x, law.end_passed(x)?])
+    }
+
+    /// Whether its law is a table.
+    pub(crate) fn has_table(&self) -> bool {
+        matches!(self.law, Some((Law::Spline(_), _)))
+    }
+
     /// The slope of the law, and its own derivative: 0 where there is no law.
     fn slopes<T: Scalar>(&self, angle: &[T], slide: &[T]) -> (T, T) {
         let Some((law, independent)) = &self.law else {

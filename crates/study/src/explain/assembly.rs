@@ -1,9 +1,9 @@
 //! Explains why a scene cannot be compiled or assembled.
 
 use crate::explain::{
-    Labels, StudyError, actuator_labels, body_labels, body_names, body_names_or_mechanism,
-    joint_labels, joint_names, labels, non_finite_coupling, non_finite_coupling_error, own_length,
-    scene_error, start_labels,
+    Labels, StudyError, TABLE_HELP, actuator_labels, body_labels, body_names,
+    body_names_or_mechanism, joint_labels, joint_names, labels, non_finite_coupling,
+    non_finite_coupling_error, own_length, scene_error, start_labels,
 };
 use crate::number_format::{count, number};
 use dwell_dynamics::MachineError;
@@ -117,6 +117,14 @@ fn explain_assembly(scene: &PlaneScene, error: &AssemblyError) -> StudyError {
         // Only mechanisms in space yield it.
         AssemblyError::NotThroughout { .. } | AssemblyError::NearlyParallel { .. } => {
             scene_error(scene, error.to_string(), "", [(SceneLocation::Whole, "")])
+        }
+        AssemblyError::OffTable { coupling, .. } => {
+            let name = &mechanism.joints[coupling.0].name;
+            let message = format!("the table of coupling `{name}` has no value at the start");
+            let table = [SceneLocation::CouplingLaw(*coupling)];
+            let mut places = labels(table.into_iter(), "does not reach the start");
+            places.extend(start_labels(scene));
+            scene_error(scene, message, TABLE_HELP, places)
         }
         AssemblyError::SingularAssembly { bodies, joints } => {
             let what = "the start is a limit position or a change point: the actuator does not determine the motion of";

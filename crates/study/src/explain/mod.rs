@@ -29,7 +29,8 @@ pub use named_scene::NamedScene;
 pub use position::explain_position;
 pub(crate) use position::explain_position_in;
 pub(crate) use position::{
-    describe_coordinate, describe_ends, describe_limit, own_coordinate, own_length, own_speed,
+    TABLE_HELP, describe_coordinate, describe_ends, describe_limit, own_coordinate, own_length,
+    own_speed,
 };
 pub use study_error::{StudyError, SweepError};
 pub(crate) use switching::explain_switching;

@@ -48,6 +48,12 @@ pub(crate) fn describe_limit(
     limit: RangeLimit,
     revolutions: f64,
 ) -> String {
+    let name = mechanism.actuators.first().map_or("", |a| &a.name);
+    let at = describe_coordinate(file, name, limit.q + TAU * revolutions, plan.is_angle(0));
+    if let Some(coupling) = limit.table {
+        let coupling = &mechanism.joints[coupling.0].name;
+        return format!("end of the table of `{coupling}` at {at}");
+    }
     let kind = match (limit.change_point, limit.separation) {
         (true, Some(_)) => "narrow passage between assembly modes",
         (true, None) => "change point",
@@ -58,19 +64,22 @@ pub(crate) fn describe_limit(
         false => plan.group_bodies(limit.group),
     };
     let who = body_names_or_mechanism(mechanism, &bodies);
-    let name = mechanism.actuators.first().map_or("", |a| &a.name);
-    let at = describe_coordinate(file, name, limit.q + TAU * revolutions, plan.is_angle(0));
     format!("{kind} of {who} at {at}")
 }
 
 /// The two ends of a range: `0 to 2.046915 rad (0° to 117.28°)`.
 pub(crate) fn describe_ends(file: &SceneFile, from: f64, to: f64, is_angle: bool) -> String {
+    // No zero has a sign.
+    let rounded = |q: f64| if q.abs() < 5e-7 { 0.0 } else { q };
     match is_angle {
-        true => format!(
-            "{from:.6} to {to:.6} rad ({:.2}° to {:.2}°)",
-            from.to_degrees(),
-            to.to_degrees()
-        ),
+        true => {
+            let [from, to] = [from, to].map(rounded);
+            format!(
+                "{from:.6} to {to:.6} rad ({:.2}° to {:.2}°)",
+                from.to_degrees(),
+                to.to_degrees()
+            )
+        }
         false => {
             let ([from, to], unit) = (
                 [from, to].map(|q| file.to_scene_unit(q, false).0),
@@ -80,6 +89,10 @@ pub(crate) fn describe_ends(file: &SceneFile, from: f64, to: f64, is_angle: bool
         }
     }
 }
+
+/// Help where a coupling's table ends.
+pub(crate) const TABLE_HELP: &str = "add rows to the table, which goes on over whole revolutions; for a function that repeats with each revolution write an \
+     `expression`, in which `x - tau*floor(x/tau)` is the angle within it";
 
 /// Explains a position that cannot be computed.
 pub fn explain_position(scene: &PlaneScene, plan: &Plan, error: &PositionError) -> StudyError {
@@ -97,6 +110,18 @@ pub(crate) fn explain_position_in(
     const RANGE_ENDS: &str = "this is outside the range; `dwell check` shows the range";
     let at = |q| format!("{phi} = {}", own_coordinate(scene, q, plan.is_angle(0)));
     let at = error.coordinate().map_or_else(String::new, at);
+    // Beyond its range, where the table of a coupling ends it.
+    if let PositionError::OutOfRange { q, to, .. } = *error
+        && let Some(limit) = plan.range_limits()[usize::from(q > to)]
+        && let Some(coupling) = limit.table
+    {
+        let end = describe_limit((scene, &scene.mechanism), plan, limit, 0.0);
+        let labels = labels(
+            [SceneLocation::CouplingLaw(coupling)].into_iter(),
+            "has no value beyond",
+        );
+        return scene_error(scene, format!("the {end} is reached"), TABLE_HELP, labels);
+    }
     let group = error.group();
     let bodies = group.map(|g| body_names(&scene.mechanism, &plan.group_bodies(g)));
     let bodies = bodies.unwrap_or_default();
@@ -129,6 +154,13 @@ pub(crate) fn explain_position_in(
             let message = format!("{at} is outside its range, {range}");
             (message, "start within the range; `dwell check` shows it")
         }
+        PositionError::OffTable { coupling, .. } => (
+            format!(
+                "the table of coupling `{}` has no value at {at}",
+                scene.mechanism.joints[coupling.0].name
+            ),
+            TABLE_HELP,
+        ),
         PositionError::LanesDiverge { .. } => (
             format!("the poses near {at} cannot be evaluated together in SIMD lanes"),
             "evaluate them one by one",
@@ -138,6 +170,10 @@ pub(crate) fn explain_position_in(
             "check the numbers of the motion",
         ),
     };
+    if let PositionError::OffTable { coupling, .. } = *error {
+        let table = [SceneLocation::CouplingLaw(coupling)].into_iter();
+        return scene_error(scene, message, help, labels(table, "has no value there"));
+    }
     let places = match group.map(|g| plan.group_joints(g)) {
         Some(joints) if !joints.is_empty() => joint_labels(&joints, "cannot stay joined there"),
         _ => {

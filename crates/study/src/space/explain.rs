@@ -110,7 +110,9 @@ fn explain_assembly(scene: &SpaceScene, error: &AssemblyError) -> StudyError {
             scene_error(scene, message, help, with_start(joints, "singular here"))
         }
         // Only planar mechanisms yield these.
-        AssemblyError::Ambiguous { .. } | AssemblyError::NotMeshing { .. } => {
+        AssemblyError::Ambiguous { .. }
+        | AssemblyError::NotMeshing { .. }
+        | AssemblyError::OffTable { .. } => {
             scene_error(scene, error.to_string(), "", [(SceneLocation::Whole, "")])
         }
     }

@@ -1,9 +1,9 @@
 //! The early end of a trajectory: where, why, and its message.
 
 use crate::explain::{
-    NamedScene as _, StudyError, body_names_or_mechanism, describe_coordinate, describe_ends,
-    describe_limit, joint_labels, non_finite_coupling, non_finite_coupling_error, off_table_error,
-    scene_error,
+    NamedScene as _, StudyError, TABLE_HELP, body_names_or_mechanism, describe_coordinate,
+    describe_ends, describe_limit, joint_labels, non_finite_coupling, non_finite_coupling_error,
+    off_table_error, scene_error,
 };
 use crate::number_format::digits;
 use crate::trajectory::compute::{Trajectory, TrajectorySample};
@@ -176,6 +176,9 @@ impl<'a> EarlyStop<'a> {
         let who = body_names_or_mechanism(&scene.mechanism, &bodies);
         let why = match error {
             PositionError::NotFinite => "a coordinate is not a finite number beyond".into(),
+            PositionError::OffTable { coupling, .. } => {
+                return self.explain_table(scene, *coupling, position);
+            }
             PositionError::NoAssembly { .. } => format!("{who} cannot be assembled beyond"),
             PositionError::Singular { .. } => format!(
                 "{who} are in a singular configuration there, and the actuators do not determine their motion"
@@ -223,6 +226,12 @@ impl<'a> EarlyStop<'a> {
         (limit, revolutions): (RangeLimit, f64),
     ) -> StudyError {
         let plan = self.plan;
+        if let Some(coupling) = limit.table {
+            let q = limit.q + TAU * revolutions;
+            let name = &scene.mechanism.actuators[0].name;
+            let position = describe_coordinate(scene, name, q, plan.is_angle(0));
+            return self.explain_table(scene, coupling, &position);
+        }
         let name = describe_limit((scene, &scene.mechanism), plan, limit, revolutions);
         let when = match self.trajectory.swept_actuator() {
             Some(_) => String::new(),
@@ -244,6 +253,19 @@ impl<'a> EarlyStop<'a> {
             "the results end there; end the motion or the sweep before it, or change a length";
         let message = format!("the {name} is reached{when}: {why}");
         scene_error(scene, message, help, labels)
+    }
+
+    /// The error where the table of a coupling ends.
+    fn explain_table(&self, scene: &PlaneScene, coupling: JointId, position: &str) -> StudyError {
+        let name = &scene.mechanism.joints[coupling.0].name;
+        let message = format!("the table of coupling `{name}` ends at {position}");
+        let table = SceneLocation::CouplingLaw(coupling);
+        let beyond = self.trajectory.location(scene);
+        let labels = [
+            (table, "has no value beyond".to_owned()),
+            (beyond, "continues beyond it".to_owned()),
+        ];
+        scene_error(scene, message, TABLE_HELP, labels)
     }
 
     /// The error where not even the first position can be reached.
