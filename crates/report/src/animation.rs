@@ -1,12 +1,12 @@
 //! Drawings one after another as an animated GIF.
 
-use crate::canvas::{Align, Canvas, TextStyle};
+use crate::canvas::{Align, Canvas, TextStyle, document, layout};
 use crate::drawing::{self, DrawingLayout};
 use crate::error::ReportError;
 use crate::fonts;
-use crate::layout_record::LayoutRecord;
+use crate::layout_record::Layout;
 use crate::palette::Palette;
-use crate::raster::{SvgPicture, recorded};
+use crate::raster::rasterized;
 use crate::rect::Rect;
 use crate::shape::Drawing;
 use crate::theme::{CAPTION_GREY, Rgb, WHITE};
@@ -83,8 +83,8 @@ impl Animation {
         let page = self.page()?;
         let size = self.size(page.size)?;
         let picture = |drawing: &Drawing| {
-            let svg = SvgPicture::new(page.size, |canvas| page.draw(canvas, drawing));
-            let pixels = svg.rasterize(&self.name, size.map(u32::from))?;
+            let document = document(page.size, false, |canvas| page.draw(canvas, drawing));
+            let pixels = rasterized(&document, &self.name, size.map(u32::from))?;
             // The page is opaque.
             let colors = pixels.data().chunks_exact(4).map(|p| [p[0], p[1], p[2]]);
             Ok(colors.collect())
@@ -97,11 +97,11 @@ impl Animation {
         Ok(Pictures { size, frames })
     }
 
-    /// Width and height of the page that is drawn, in pixels, and notes on the layout of every frame.
-    pub(crate) fn records(&self) -> Result<([u32; 2], Vec<LayoutRecord>), ReportError> {
+    /// The layout of every frame.
+    pub(crate) fn layouts(&self) -> Result<Vec<Layout>, ReportError> {
         let page = self.page()?;
-        let record = |drawing| recorded(page.size, |canvas| page.draw(canvas, drawing));
-        Ok((page.size, self.frames.iter().map(record).collect()))
+        let layout = |drawing| layout(page.size, |canvas| page.draw(canvas, drawing));
+        Ok(self.frames.iter().map(layout).collect())
     }
 
     fn page(&self) -> Result<FramePage, ReportError> {

@@ -159,7 +159,7 @@ impl Cover {
 #[cfg(test)]
 mod tests {
     use crate::figure::{Chart, Figure, Series, Stroke};
-    use crate::layout::Layout;
+    use crate::layout_record::Layout;
 
     fn figure(heights: &[f64], stroke: Stroke) -> Figure {
         let series = |(k, height): (usize, &f64)| {

@@ -177,6 +177,11 @@ impl<'a> Page<'a> {
         }
     }
 
+    /// Width and height in whole pixels.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        [self.width, self.height].map(|side| side as u32)
+    }
+
     /// Draws it.
     pub(crate) fn draw(&self, canvas: &mut Canvas<'_>) {
         canvas.rect(&Rect::sized(0.0, 0.0, self.width, self.height), WHITE);

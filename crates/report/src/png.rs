@@ -1,9 +1,10 @@
 //! A figure as PNG bytes.
 
+use crate::canvas::document;
 use crate::error::ReportError;
 use crate::figure::Figure;
 use crate::page::Page;
-use crate::raster::SvgPicture;
+use crate::raster::rasterized;
 use ::png::{BitDepth, ColorType, DeflateCompression, Encoder, EncodingError, Filter};
 use resvg::tiny_skia::Pixmap;
 use std::cmp::Reverse;
@@ -22,8 +23,9 @@ const MAX_SIDE: u32 = 16_384;
 /// [`ReportError::Size`] if the page is too large; [`ReportError::Draw`] and [`ReportError::Encode`] if a library refuses,
 /// which no data should cause.
 pub fn png(figure: &Figure) -> Result<Vec<u8>, ReportError> {
-    let svg = svg_picture(figure)?;
-    let pixels = svg.rasterize(&figure.name, [svg.width, svg.height])?;
+    let page = page_of(figure)?;
+    let document = document(page.size(), false, |canvas| page.draw(canvas));
+    let pixels = rasterized(&document, &figure.name, page.size())?;
     encoded(&pixels).map_err(|e| ReportError::Encode {
         figure: figure.name.clone(),
         reason: e.to_string(),
@@ -95,7 +97,7 @@ fn indexed(data: &[u8]) -> (Vec<[u8; 3]>, Vec<u8>) {
 /// The page of a figure, unless it is too large.
 pub(crate) fn page_of(figure: &Figure) -> Result<Page<'_>, ReportError> {
     let page = Page::new(figure);
-    let (width, height) = (page.width as u32, page.height as u32);
+    let [width, height] = page.size();
     if width.max(height) > MAX_SIDE {
         return Err(ReportError::Size {
             figure: figure.name.clone(),
@@ -106,19 +108,11 @@ pub(crate) fn page_of(figure: &Figure) -> Result<Page<'_>, ReportError> {
     Ok(page)
 }
 
-/// The page of a figure, drawn.
-pub(crate) fn svg_picture(figure: &Figure) -> Result<SvgPicture, ReportError> {
-    let page = page_of(figure)?;
-    let size = [page.width as u32, page.height as u32];
-    Ok(SvgPicture::new(size, |canvas| page.draw(canvas)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::axis::Paint;
     use crate::axis::{Axis, Scale};
-    use crate::canvas::UNITS_PER_PIXEL;
     use crate::figure::{Chart, Mark, Panel, Series, Stroke};
     use crate::fonts;
     use crate::grid::{Cell, Grid, Group, Row, Tile, Tiles};
@@ -136,21 +130,20 @@ mod tests {
                     Node::Text(text) => {
                         let words: String = text.chunks().iter().map(|c| c.text().trim()).collect();
                         let letters = text.flattened().abs_bounding_box();
-                        let [x0, y0] =
-                            [letters.left(), letters.top()].map(|v| f64::from(v) / UNITS_PER_PIXEL);
-                        let [x1, y1] = [letters.right(), letters.bottom()]
-                            .map(|v| f64::from(v) / UNITS_PER_PIXEL);
+                        let [x0, y0] = [letters.left(), letters.top()].map(f64::from);
+                        let [x1, y1] = [letters.right(), letters.bottom()].map(f64::from);
                         found.push((words, Rect { x0, y0, x1, y1 }));
                     }
                     Node::Path(_) | Node::Image(_) => {}
                 }
             }
         }
-        let SvgPicture { svg, width, height } = svg_picture(figure).unwrap();
-        let tree = Tree::from_str(&svg, &fonts::options()).unwrap();
+        let page = page_of(figure).unwrap();
+        let document = document(page.size(), false, |canvas| page.draw(canvas));
+        let tree = Tree::from_str(&document, &fonts::options()).unwrap();
         let mut found = Vec::new();
         collect(tree.root(), &mut found);
-        (Rect::sized(0.0, 0.0, width.into(), height.into()), found)
+        (Rect::sized(0.0, 0.0, page.width, page.height), found)
     }
 
     fn legible(figure: &Figure) -> Result<(), String> {
