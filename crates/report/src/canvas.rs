@@ -98,37 +98,31 @@ fn text_area(text: &str, [x, y]: [f64; 2], style: TextStyle) -> Rect {
     Rect::sized(left, y - ASCENT * style.size, width, style.size)
 }
 
-/// A page of the given size in pixels, drawn by `draw`, as an SVG document; with the lengths of its words if they are `measured`.
+/// A page of the given size in pixels, drawn by `draw`, as an SVG document; with the lengths of its words if they are `measured`, and
+/// with notes on its layout, if there is a record.
 pub(crate) fn document(
     size: [u32; 2],
     measured: bool,
+    record: Option<&mut LayoutRecord>,
     draw: impl FnOnce(&mut Canvas<'_>),
 ) -> String {
     let mut document = String::new();
-    Canvas::draw(SvgBackend::new(&mut document, size, measured), None, draw);
+    let backend = SvgBackend::new(&mut document, size, measured);
+    let page = backend.into_drawing_area().apply_coord_spec(PagePixels);
+    let mut canvas = Canvas { page, record };
+    draw(&mut canvas);
+    let _ = canvas.page.present();
     document
 }
 
 /// The layout of such a page.
 pub(crate) fn layout(size: [u32; 2], draw: impl FnOnce(&mut Canvas<'_>)) -> Layout {
-    let (mut document, mut record) = (String::new(), LayoutRecord::new(size));
-    let backend = SvgBackend::new(&mut document, size, false);
-    Canvas::draw(backend, Some(&mut record), draw);
+    let mut record = LayoutRecord::new(size);
+    document(size, false, Some(&mut record), draw);
     record.finished()
 }
 
-impl<'a> Canvas<'a> {
-    fn draw(
-        backend: SvgBackend<'a>,
-        record: Option<&'a mut LayoutRecord>,
-        draw: impl FnOnce(&mut Self),
-    ) {
-        let page = backend.into_drawing_area().apply_coord_spec(PagePixels);
-        let mut canvas = Self { page, record };
-        draw(&mut canvas);
-        let _ = canvas.page.present();
-    }
-
+impl Canvas<'_> {
     /// A note on the layout, if it is recorded.
     pub(crate) fn note(&mut self, note: impl FnOnce(&mut LayoutRecord)) {
         if let Some(record) = &mut self.record {
@@ -186,12 +180,7 @@ impl<'a> Canvas<'a> {
     /// Text with its baseline at `y`.
     pub(crate) fn text(&mut self, text: &str, at: [f64; 2], style: TextStyle) {
         self.note(|record| record.label(text, text_area(text, at, style)));
-        self.unnoted_text(text, at, style);
-    }
-
-    fn unnoted_text(&mut self, text: &str, [x, y]: [f64; 2], style: TextStyle) {
-        let at = [x, y - ASCENT * style.size];
-        self.put(text, at, style, FontTransform::None);
+        self.put(text, at, style, false);
     }
 
     /// Text whose digits are centred on `y`.
@@ -208,7 +197,7 @@ impl<'a> Canvas<'a> {
         for dy in [-HALO_WIDTH, HALO_WIDTH] {
             for dx in [-HALO_WIDTH, HALO_WIDTH] {
                 let at = [x + dx, y + dy + HALF_DIGIT_HEIGHT * style.size];
-                self.unnoted_text(text, at, rim);
+                self.put(text, at, rim, false);
             }
         }
         self.text_centred(text, [x, y], style);
@@ -227,11 +216,11 @@ impl<'a> Canvas<'a> {
             };
             record.label(text, area);
         });
-        let at = [x - ASCENT * style.size, y];
-        self.put(text, at, style, FontTransform::Rotate270);
+        self.put(text, [x, y], style, true);
     }
 
-    fn put(&mut self, text: &str, at: [f64; 2], style: TextStyle, rotation: FontTransform) {
+    /// Text with its baseline at `y`, or at `x` if it reads upwards. It hangs from its top.
+    fn put(&mut self, text: &str, [x, y]: [f64; 2], style: TextStyle, upwards: bool) {
         // XML has no control characters; one in a name must not cost the whole page. What the font lacks is a box.
         let text: String = text.chars().map(fonts::drawable).collect();
         if text.trim().is_empty() {
@@ -246,12 +235,15 @@ impl<'a> Canvas<'a> {
             true => FontStyle::Bold,
             false => FontStyle::Normal,
         };
-        let [r, g, b] = style.color;
-        let size = style.size * UNITS_PER_PIXEL;
-        let font = FontDesc::new(FontFamily::Name(FAMILY), size, weight).transform(rotation);
-        let text_style = font
-            .color(&RGBColor(r, g, b))
-            .pos(Pos::new(h_pos, VPos::Top));
-        let _ = self.page.draw(&Text::new(text, at, text_style));
+        let (size, [r, g, b]) = (style.size * UNITS_PER_PIXEL, style.color);
+        let font = FontDesc::new(FontFamily::Name(FAMILY), size, weight);
+        let ascent = ASCENT * style.size;
+        let (at, turn) = match upwards {
+            true => ([x - ascent, y], FontTransform::Rotate270),
+            false => ([x, y - ascent], FontTransform::None),
+        };
+        let style = font.transform(turn).color(&RGBColor(r, g, b));
+        let style = style.pos(Pos::new(h_pos, VPos::Top));
+        let _ = self.page.draw(&Text::new(text, at, style));
     }
 }

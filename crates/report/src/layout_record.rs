@@ -1,7 +1,7 @@
 //! Where everything on a page is: its words, and how much of each curve is left to see. Drawing records it only when it is
 //! asked for.
 
-use crate::ink::{Ink, Owner};
+use crate::ink::Ink;
 use crate::rect::Rect;
 
 /// Words on a page and the box they fill.
@@ -72,7 +72,7 @@ impl LayoutRecord {
     /// From now on ink is that of a curve of this name, or of none.
     pub(crate) fn begin_curve(&mut self, name: Option<&str>) {
         let Some(name) = name.map(str::trim).filter(|name| !name.is_empty()) else {
-            self.ink.owner = Owner::NOBODY;
+            self.ink.owner = None;
             return;
         };
         let curves = &mut self.layout.curves;
@@ -86,7 +86,7 @@ impl LayoutRecord {
                 visible: 0.0,
             });
         }
-        self.ink.owner = Owner::curve(index);
+        self.ink.owner = u16::try_from(index).ok();
     }
 
     pub(crate) fn legend_entry(&mut self, name: &str) {

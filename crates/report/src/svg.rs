@@ -15,7 +15,9 @@ use crate::png::page_of;
 /// [`ReportError::Size`] if the page is too large.
 pub fn svg(figure: &Figure) -> Result<String, ReportError> {
     let page = page_of(figure)?;
-    Ok(document(page.size(), true, |canvas| page.draw(canvas)))
+    Ok(document(page.size(), true, None, |canvas| {
+        page.draw(canvas)
+    }))
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use plotters_backend::{
     FontStyle, FontTransform,
 };
 use std::convert::Infallible;
-use std::fmt::Write as _;
+use std::fmt::{Arguments, Write as _};
 
 /// Units of the document in a page pixel: plotters counts in whole units, which at 1 would show as staircases.
 pub(crate) const UNITS_PER_PIXEL: f64 = 8.0;
@@ -80,13 +80,22 @@ impl<'a> SvgBackend<'a> {
         }
     }
 
+    fn write(&mut self, text: Arguments<'_>) -> Written {
+        let _ = self.document.write_fmt(text);
+        Ok(())
+    }
+
     /// An element with a list of points.
-    fn points(&mut self, tag: &str, paint: &str, points: impl IntoIterator<Item = BackendCoord>) {
-        let _ = write!(self.document, "<{tag} {paint} points=\"");
+    fn points(
+        &mut self,
+        element: Arguments<'_>,
+        points: impl IntoIterator<Item = BackendCoord>,
+    ) -> Written {
+        self.write(format_args!("<{element} points=\""))?;
         for (x, y) in points {
-            let _ = write!(self.document, "{x},{y} ");
+            self.write(format_args!("{x},{y} "))?;
         }
-        *self.document += "\"/>\n";
+        self.write(format_args!("\"/>\n"))
     }
 }
 
@@ -102,8 +111,7 @@ impl DrawingBackend for SvgBackend<'_> {
     }
 
     fn present(&mut self) -> Written {
-        *self.document += "</svg>\n";
-        Ok(())
+        self.write(format_args!("</svg>\n"))
     }
 
     fn draw_pixel(&mut self, (x, y): BackendCoord, color: BackendColor) -> Written {
@@ -118,11 +126,9 @@ impl DrawingBackend for SvgBackend<'_> {
         fill: bool,
     ) -> Written {
         let (width, height, paint) = (x1 - x0, y1 - y0, paint(style, fill));
-        let _ = writeln!(
-            self.document,
-            "<rect x=\"{x0}\" y=\"{y0}\" width=\"{width}\" height=\"{height}\" {paint}/>"
-        );
-        Ok(())
+        self.write(format_args!(
+            "<rect x=\"{x0}\" y=\"{y0}\" width=\"{width}\" height=\"{height}\" {paint}/>\n"
+        ))
     }
 
     fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(
@@ -130,8 +136,7 @@ impl DrawingBackend for SvgBackend<'_> {
         path: I,
         style: &S,
     ) -> Written {
-        self.points("polyline", &paint(style, false), path);
-        Ok(())
+        self.points(format_args!("polyline {}", paint(style, false)), path)
     }
 
     fn draw_circle<S: BackendStyle>(
@@ -142,11 +147,9 @@ impl DrawingBackend for SvgBackend<'_> {
         fill: bool,
     ) -> Written {
         let paint = paint(style, fill);
-        let _ = writeln!(
-            self.document,
-            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {paint}/>"
-        );
-        Ok(())
+        self.write(format_args!(
+            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {paint}/>\n"
+        ))
     }
 
     fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(
@@ -154,10 +157,10 @@ impl DrawingBackend for SvgBackend<'_> {
         corners: I,
         style: &S,
     ) -> Written {
-        self.points("polygon", &paint(style, true), corners);
-        Ok(())
+        self.points(format_args!("polygon {}", paint(style, true)), corners)
     }
 
+    /// Every text hangs from its top.
     fn draw_text<S: BackendTextStyle>(
         &mut self,
         text: &str,
@@ -170,21 +173,17 @@ impl DrawingBackend for SvgBackend<'_> {
             HPos::Center => "middle",
             HPos::Right => "end",
         };
-        let document = &mut *self.document;
-        // Every text hangs from its top.
-        let _ = write!(
-            document,
+        self.write(format_args!(
             "<text x=\"{x}\" y=\"{y}\" dy=\"{ASCENT}em\" text-anchor=\"{anchor}\" font-size=\"{size}\" font-weight=\"{}\" {paint}",
             weight.as_str()
-        );
+        ))?;
         if self.measured {
             let length = fonts::width(text, size, matches!(weight, FontStyle::Bold));
-            let _ = write!(document, " textLength=\"{length:.1}\"");
+            self.write(format_args!(" textLength=\"{length:.1}\""))?;
         }
         if matches!(style.transform(), FontTransform::Rotate270) {
-            let _ = write!(document, " transform=\"rotate(270, {x}, {y})\"");
+            self.write(format_args!(" transform=\"rotate(270, {x}, {y})\""))?;
         }
-        let _ = writeln!(document, ">{}</text>", escaped(text));
-        Ok(())
+        self.write(format_args!(">{}</text>\n", escaped(text)))
     }
 }
