@@ -15,9 +15,8 @@ use crate::png::page_of;
 /// [`ReportError::Size`] if the page is too large.
 pub fn svg(figure: &Figure) -> Result<String, ReportError> {
     let page = page_of(figure)?;
-    Ok(document(page.size(), true, None, |canvas| {
-        page.draw(canvas)
-    }))
+    let document = document(page.size(), true, None, |canvas| page.draw(canvas));
+    Ok(document)
 }
 
 #[cfg(test)]
