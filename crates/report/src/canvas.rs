@@ -5,7 +5,7 @@ use crate::dash::Dash;
 use crate::fonts::{self, FAMILY};
 use crate::layout_record::{Layout, LayoutRecord};
 use crate::rect::Rect;
-use crate::svg_backend::{ASCENT, PagePixels, SvgBackend, UNITS_PER_PIXEL};
+use crate::svg_backend::{ASCENT, LINE, PagePixels, SvgBackend, UNITS_PER_PIXEL};
 use crate::theme::{Rgb, WHITE};
 use plotters::drawing::{DrawingArea, IntoDrawingArea as _};
 use plotters::element::{Circle, PathElement, Polygon, Rectangle, Text};
@@ -235,7 +235,8 @@ impl Canvas<'_> {
             true => FontStyle::Bold,
             false => FontStyle::Normal,
         };
-        let (size, [r, g, b]) = (style.size * UNITS_PER_PIXEL, style.color);
+        let size = style.size * LINE * UNITS_PER_PIXEL;
+        let [r, g, b] = style.color;
         let font = FontDesc::new(FontFamily::Name(FAMILY), size, weight);
         let ascent = ASCENT * style.size;
         let (at, turn) = match upwards {

@@ -15,6 +15,8 @@ use std::fmt::{Arguments, Write as _};
 pub(crate) const UNITS_PER_PIXEL: f64 = 8.0;
 /// Em from the top of tall letters, which is where plotters puts a text, down to the baseline.
 pub(crate) const ASCENT: f64 = 0.76;
+/// Height of a line in em: what plotters calls the size of a font.
+pub(crate) const LINE: f64 = 1.24;
 /// What readers without the font use instead: letters of nearly the same widths.
 const FALLBACK: &str = "Verdana, sans-serif";
 
@@ -167,15 +169,17 @@ impl DrawingBackend for SvgBackend<'_> {
         style: &S,
         (x, y): BackendCoord,
     ) -> Written {
-        let (size, weight, paint) = (style.size(), style.style(), paint(&style.color(), true));
+        let (size, weight) = (style.size() / LINE, style.style());
         let anchor = match style.anchor().h_pos {
             HPos::Left => "start",
             HPos::Center => "middle",
             HPos::Right => "end",
         };
         self.write(format_args!(
-            "<text x=\"{x}\" y=\"{y}\" dy=\"{ASCENT}em\" text-anchor=\"{anchor}\" font-size=\"{size}\" font-weight=\"{}\" {paint}",
-            weight.as_str()
+            "<text x=\"{x}\" y=\"{y}\" dy=\"{ASCENT}em\" text-anchor=\"{anchor}\" font-size=\"{}\" font-weight=\"{}\" {}",
+            size as f32,
+            weight.as_str(),
+            paint(&style.color(), true)
         ))?;
         if self.measured {
             let length = fonts::width(text, size, matches!(weight, FontStyle::Bold));
