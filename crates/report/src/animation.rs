@@ -1,19 +1,18 @@
 //! Drawings one after another as an animated GIF.
 
-use crate::canvas::{Align, Canvas, TextStyle};
+use crate::canvas::{Align, Canvas, TextStyle, document, layout};
 use crate::drawing::{self, DrawingLayout};
 use crate::error::ReportError;
 use crate::fonts;
-use crate::layout_record::LayoutRecord;
-use crate::palette::Palette;
-use crate::raster::{SvgPicture, recorded};
+use crate::layout_record::Layout;
+use crate::palette::{Palette, counts};
+use crate::raster::rasterized;
 use crate::rect::Rect;
 use crate::shape::Drawing;
 use crate::theme::{CAPTION_GREY, Rgb, WHITE};
 use crate::typeset::typeset;
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use std::borrow::Cow;
-use std::collections::HashMap;
 
 /// Width of the page that is drawn. It does not depend on the size of the picture, so that the height of letters is
 /// always the same share of it, a thirtieth.
@@ -59,14 +58,8 @@ impl Animation {
     /// a library refuses, which no data should bring about.
     pub fn gif(&self) -> Result<Vec<u8>, ReportError> {
         let pictures = self.pictures()?;
-        let mut counts: HashMap<Rgb, u64> = HashMap::new();
-        for picture in &pictures.frames {
-            // Neighbours are mostly alike: one look-up for a run of them.
-            for run in picture.chunk_by(|a, b| a == b) {
-                *counts.entry(run[0]).or_default() += run.len() as u64;
-            }
-        }
-        let palette = Palette::of(&counts, MAX_COLORS);
+        let frames = pictures.frames.iter().map(Vec::as_slice);
+        let palette = Palette::of(&counts(frames), MAX_COLORS);
         encoded(&pictures, &palette, self.delay()).map_err(|e| ReportError::Encode {
             figure: self.name.clone(),
             reason: e.to_string(),
@@ -83,11 +76,8 @@ impl Animation {
         let page = self.page()?;
         let size = self.size(page.size)?;
         let picture = |drawing: &Drawing| {
-            let svg = SvgPicture::new(page.size, |canvas| page.draw(canvas, drawing));
-            let pixels = svg.rasterize(&self.name, size.map(u32::from))?;
-            // The page is opaque.
-            let colors = pixels.data().chunks_exact(4).map(|p| [p[0], p[1], p[2]]);
-            Ok(colors.collect())
+            let document = document(page.size, false, None, |canvas| page.draw(canvas, drawing));
+            rasterized(&document, &self.name, size.map(u32::from))
         };
         let frames = self
             .frames
@@ -97,11 +87,11 @@ impl Animation {
         Ok(Pictures { size, frames })
     }
 
-    /// Width and height of the page that is drawn, in pixels, and notes on the layout of every frame.
-    pub(crate) fn records(&self) -> Result<([u32; 2], Vec<LayoutRecord>), ReportError> {
+    /// The layout of every frame.
+    pub(crate) fn layouts(&self) -> Result<Vec<Layout>, ReportError> {
         let page = self.page()?;
-        let record = |drawing| recorded(page.size, |canvas| page.draw(canvas, drawing));
-        Ok((page.size, self.frames.iter().map(record).collect()))
+        let layout = |drawing| layout(page.size, |canvas| page.draw(canvas, drawing));
+        Ok(self.frames.iter().map(layout).collect())
     }
 
     fn page(&self) -> Result<FramePage, ReportError> {
@@ -196,10 +186,7 @@ fn encoded(pictures: &Pictures, palette: &Palette, delay: u16) -> Result<Vec<u8>
     encoder.set_repeat(Repeat::Infinite)?;
     let mut previous: Option<Vec<u8>> = None;
     for picture in &pictures.frames {
-        let mut indices = Vec::with_capacity(picture.len());
-        for run in picture.chunk_by(|a, b| a == b) {
-            indices.resize(indices.len() + run.len(), palette.index_of(run[0]));
-        }
+        let indices = palette.indices(picture);
         let new_part = match &previous {
             Some(before) => changes(before, &indices, usize::from(width), unchanged),
             None => Frame {
@@ -337,7 +324,7 @@ mod tests {
         let (_, layout) = animation.layout();
         let (size, _, decoded_frames) = decoded(&animation.gif().unwrap());
         let scale = f64::from(size[0]) / PAGE_WIDTH;
-        let plot = layout.plot();
+        let plot = layout.frame.plot;
         for DecodedFrame { frame, .. } in &decoded_frames[1..] {
             let [x0, y0] = [frame.left, frame.top].map(|v| f64::from(v) / scale);
             let [x1, y1] =

@@ -66,18 +66,14 @@ pub(crate) fn horizontal_ticks(range: &AxisRange, length: f64) -> Ticks {
 
 /// Ticks along a vertical length.
 pub(crate) fn vertical_ticks(range: &AxisRange, length: f64) -> Ticks {
-    let room = if range.scale == Scale::Log {
-        44.0
-    } else {
-        62.0
+    let room = match range.scale {
+        Scale::Log => 44.0,
+        Scale::Linear | Scale::Degrees => 62.0,
     };
     let max_count = (length / room).clamp(2.0, 11.0) as usize;
     let crowded = |ticks: &Ticks| {
-        let at: Vec<f64> = ticks
-            .major
-            .iter()
-            .map(|v| range.fraction(*v).unwrap_or(0.0) * length)
-            .collect();
+        let place = |v: &f64| range.fraction(*v).unwrap_or(0.0) * length;
+        let at: Vec<f64> = ticks.major.iter().map(place).collect();
         at.windows(2)
             .any(|pair| (pair[1] - pair[0]).abs() < LEADING * TICK_SIZE)
     };

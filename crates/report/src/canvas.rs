@@ -1,23 +1,19 @@
-//! Drawing in page pixels on plotters' SVG backend.
+//! Drawing in page pixels by plotters' elements.
 
 use crate::curve::dashes;
 use crate::dash::Dash;
 use crate::fonts::{self, FAMILY};
-use crate::layout_record::LayoutRecord;
+use crate::layout_record::{Layout, LayoutRecord};
 use crate::rect::Rect;
+use crate::svg_backend::{ASCENT, LINE, PagePixels, SvgBackend, UNITS_PER_PIXEL};
 use crate::theme::{Rgb, WHITE};
-use plotters::backend::{DrawingBackend, SVGBackend};
+use plotters::drawing::{DrawingArea, IntoDrawingArea as _};
+use plotters::element::{Circle, PathElement, Polygon, Rectangle, Text};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{
     Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle,
 };
 
-/// Backend units in a page pixel: the backend rounds to whole units, which at 1 would show as staircases.
-pub(crate) const UNITS_PER_PIXEL: f64 = 8.0;
-/// The backend writes `font-size = size / 1.24`.
-const SIZE_PER_EM: f64 = 1.24;
-/// The backend writes `dy="0.76em"` for text hung from its top: subtracting it leaves the baseline.
-const TOP_SHIFT: f64 = 0.76;
 /// Half the height of a digit, which is what looks centred beside a tick.
 const HALF_DIGIT_HEIGHT: f64 = 0.365;
 
@@ -83,26 +79,12 @@ impl TextStyle {
 
 /// A page being drawn. The backend writes into a string, which cannot fail, so its results are dropped.
 pub(crate) struct Canvas<'a> {
-    backend: SVGBackend<'a>,
-    record: Option<LayoutRecord>,
+    page: DrawingArea<SvgBackend<'a>, PagePixels>,
+    record: Option<&'a mut LayoutRecord>,
 }
 
-fn to_units(v: f64) -> i32 {
-    // Saturates, and takes NaN to 0: callers skip what is not finite, this only limits the effect of a mistake.
-    (v * UNITS_PER_PIXEL).round() as i32
-}
-
-fn point_to_units([x, y]: [f64; 2]) -> (i32, i32) {
-    (to_units(x), to_units(y))
-}
-
-fn shape_style([r, g, b]: Rgb, width: f64, opacity: f64) -> ShapeStyle {
-    let stroke_width = (width * UNITS_PER_PIXEL).round().max(1.0) as u32;
-    ShapeStyle {
-        color: RGBColor(r, g, b).mix(opacity),
-        filled: false,
-        stroke_width,
-    }
+fn filled([r, g, b]: Rgb, opacity: f64) -> ShapeStyle {
+    RGBColor(r, g, b).mix(opacity).filled()
 }
 
 /// The box of a text by its baseline, from the tops of tall letters to the feet of those that hang down.
@@ -113,42 +95,39 @@ fn text_area(text: &str, [x, y]: [f64; 2], style: TextStyle) -> Rect {
         Align::Middle => x - 0.5 * width,
         Align::End => x - width,
     };
-    Rect::sized(left, y - TOP_SHIFT * style.size, width, style.size)
+    Rect::sized(left, y - ASCENT * style.size, width, style.size)
 }
 
-impl<'a> Canvas<'a> {
-    /// A page of the given size in pixels, written into `svg`.
-    pub(crate) fn new(svg: &'a mut String, size: [u32; 2]) -> Self {
-        let size = size.map(|side| side.saturating_mul(UNITS_PER_PIXEL as u32));
-        Self {
-            backend: SVGBackend::with_string(svg, size.into()),
-            record: None,
-        }
-    }
+/// A page of the given size in pixels, drawn by `draw`, as an SVG document; with the lengths of its words if they are `measured`, and
+/// with notes on its layout, if there is a record.
+pub(crate) fn document(
+    size: [u32; 2],
+    measured: bool,
+    record: Option<&mut LayoutRecord>,
+    draw: impl FnOnce(&mut Canvas<'_>),
+) -> String {
+    let mut document = String::new();
+    let backend = SvgBackend::new(&mut document, size, measured);
+    let page = backend.into_drawing_area().apply_coord_spec(PagePixels);
+    let mut canvas = Canvas { page, record };
+    draw(&mut canvas);
+    let _ = canvas.page.present();
+    document
+}
 
-    /// The same page, with notes on where everything is.
-    pub(crate) fn recording(svg: &'a mut String, size: [u32; 2]) -> Self {
-        Self {
-            record: Some(LayoutRecord::new(size)),
-            ..Self::new(svg, size)
-        }
-    }
+/// The layout of such a page.
+pub(crate) fn layout(size: [u32; 2], draw: impl FnOnce(&mut Canvas<'_>)) -> Layout {
+    let mut record = LayoutRecord::new(size);
+    document(size, false, Some(&mut record), draw);
+    record.finished()
+}
 
-    /// What has been noted.
-    pub(crate) fn into_record(self) -> Option<LayoutRecord> {
-        self.record
-    }
-
+impl Canvas<'_> {
     /// A note on the layout, if it is recorded.
     pub(crate) fn note(&mut self, note: impl FnOnce(&mut LayoutRecord)) {
         if let Some(record) = &mut self.record {
             note(record);
         }
-    }
-
-    /// Ends the document.
-    pub(crate) fn finish(mut self) {
-        let _ = self.backend.present();
     }
 
     /// A line through the points.
@@ -162,9 +141,9 @@ impl<'a> Canvas<'a> {
             return dashes.iter().for_each(|dash| self.line(dash, solid));
         }
         self.note(|record| record.ink.line(points, line.width));
-        let path = points.iter().copied().map(point_to_units);
-        let style = shape_style(line.color, line.width, 1.0);
-        let _ = self.backend.draw_path(path, &style);
+        let ([r, g, b], width) = (line.color, PagePixels::to_units(line.width).max(1));
+        let style = RGBColor(r, g, b).stroke_width(width as u32);
+        let _ = self.page.draw(&PathElement::new(points, style));
     }
 
     /// A filled polygon.
@@ -173,17 +152,16 @@ impl<'a> Canvas<'a> {
         if opacity >= 1.0 {
             self.note(|record| record.ink.polygon(points));
         }
-        let path = points.iter().copied().map(point_to_units);
-        let style = shape_style(color, 1.0, opacity);
-        let _ = self.backend.fill_polygon(path, &style);
+        let _ = self
+            .page
+            .draw(&Polygon::new(points, filled(color, opacity)));
     }
 
     /// A filled rectangle.
     pub(crate) fn rect(&mut self, rect: &Rect, color: Rgb) {
         self.note(|record| record.ink.block(rect));
-        let [from, to] = [[rect.x0, rect.y0], [rect.x1, rect.y1]].map(point_to_units);
-        let style = shape_style(color, 1.0, 1.0);
-        let _ = self.backend.draw_rect(from, to, &style, true);
+        let corners = [[rect.x0, rect.y0], [rect.x1, rect.y1]];
+        let _ = self.page.draw(&Rectangle::new(corners, filled(color, 1.0)));
     }
 
     /// The edge of a rectangle.
@@ -195,20 +173,14 @@ impl<'a> Canvas<'a> {
     /// A filled disc.
     pub(crate) fn disc(&mut self, centre: [f64; 2], radius: f64, color: Rgb) {
         self.note(|record| record.ink.block(&Rect::around(centre, radius)));
-        let radius = (radius * UNITS_PER_PIXEL).round().max(0.0) as u32;
-        let (centre, style) = (point_to_units(centre), shape_style(color, 1.0, 1.0));
-        let _ = self.backend.draw_circle(centre, radius, &style, true);
+        let (radius, style) = (PagePixels::to_units(radius), filled(color, 1.0));
+        let _ = self.page.draw(&Circle::new(centre, radius, style));
     }
 
     /// Text with its baseline at `y`.
     pub(crate) fn text(&mut self, text: &str, at: [f64; 2], style: TextStyle) {
         self.note(|record| record.label(text, text_area(text, at, style)));
-        self.unnoted_text(text, at, style);
-    }
-
-    fn unnoted_text(&mut self, text: &str, [x, y]: [f64; 2], style: TextStyle) {
-        let at = [x, y - TOP_SHIFT * style.size];
-        self.put(text, at, style, FontTransform::None);
+        self.put(text, at, style, false);
     }
 
     /// Text whose digits are centred on `y`.
@@ -225,7 +197,7 @@ impl<'a> Canvas<'a> {
         for dy in [-HALO_WIDTH, HALO_WIDTH] {
             for dx in [-HALO_WIDTH, HALO_WIDTH] {
                 let at = [x + dx, y + dy + HALF_DIGIT_HEIGHT * style.size];
-                self.unnoted_text(text, at, rim);
+                self.put(text, at, rim, false);
             }
         }
         self.text_centred(text, [x, y], style);
@@ -244,11 +216,11 @@ impl<'a> Canvas<'a> {
             };
             record.label(text, area);
         });
-        let at = [x - TOP_SHIFT * style.size, y];
-        self.put(text, at, style, FontTransform::Rotate270);
+        self.put(text, [x, y], style, true);
     }
 
-    fn put(&mut self, text: &str, at: [f64; 2], style: TextStyle, rotation: FontTransform) {
+    /// Text with its baseline at `y`, or at `x` if it reads upwards. It hangs from its top.
+    fn put(&mut self, text: &str, [x, y]: [f64; 2], style: TextStyle, upwards: bool) {
         // XML has no control characters; one in a name must not cost the whole page. What the font lacks is a box.
         let text: String = text.chars().map(fonts::drawable).collect();
         if text.trim().is_empty() {
@@ -263,12 +235,16 @@ impl<'a> Canvas<'a> {
             true => FontStyle::Bold,
             false => FontStyle::Normal,
         };
+        let size = style.size * LINE * UNITS_PER_PIXEL;
         let [r, g, b] = style.color;
-        let size = style.size * SIZE_PER_EM * UNITS_PER_PIXEL;
-        let font = FontDesc::new(FontFamily::Name(FAMILY), size, weight).transform(rotation);
-        let mut text_style = font.color(&RGBColor(r, g, b));
-        text_style.pos = Pos::new(h_pos, VPos::Top);
-        let at = point_to_units(at);
-        let _ = self.backend.draw_text(&text, &text_style, at);
+        let font = FontDesc::new(FontFamily::Name(FAMILY), size, weight);
+        let ascent = ASCENT * style.size;
+        let (at, turn) = match upwards {
+            true => ([x - ascent, y], FontTransform::Rotate270),
+            false => ([x, y - ascent], FontTransform::None),
+        };
+        let style = font.transform(turn).color(&RGBColor(r, g, b));
+        let style = style.pos(Pos::new(h_pos, VPos::Top));
+        let _ = self.page.draw(&Text::new(text, at, style));
     }
 }

@@ -29,7 +29,7 @@ const FILL_OPACITY: f64 = 0.22;
 pub(crate) struct PreparedChart<'a> {
     chart: &'a Chart,
     styles: Vec<SeriesStyle>,
-    extent: Extent,
+    pub(crate) extent: Extent,
     /// The horizontal axis in words; a chart in a stack leaves them to the lowest.
     x_axis: Option<&'a Axis>,
 }
@@ -82,12 +82,6 @@ impl<'a> PreparedChart<'a> {
     /// The series with their styles.
     fn series(&self) -> impl Iterator<Item = (&'a Series, &SeriesStyle)> {
         self.chart.series.iter().zip(&self.styles)
-    }
-
-    /// Whether a value is within the horizontal range.
-    #[cfg(test)]
-    pub(crate) fn covers(&self, x: f64) -> bool {
-        (self.extent.x.min..=self.extent.x.max).contains(&x)
     }
 
     fn frame(&self, plot: Rect) -> PlotFrame {

@@ -1,6 +1,6 @@
 //! Curves that lie on each other: they are drawn with dashes in turn, so that each of them is seen.
 
-use crate::curve::dashes;
+use crate::curve::{self, dashes};
 use crate::dash::Dash;
 use crate::occupancy::Occupancy;
 use crate::rect::Rect;
@@ -51,7 +51,7 @@ pub(crate) fn alone(curve: usize, lines: &[Lines], plot: &Rect) -> Lines {
     let mut parts = Lines::new();
     for line in &lines[curve] {
         let mut part = Vec::new();
-        for at in line.windows(2).flat_map(|pair| steps([pair[0], pair[1]])) {
+        for at in steps(line) {
             if occupied.count(&Rect::around(at, CLEAR)) == 0 {
                 part.push(at);
             } else {
@@ -64,13 +64,12 @@ pub(crate) fn alone(curve: usize, lines: &[Lines], plot: &Rect) -> Lines {
     parts
 }
 
-/// Points of a line from one to another, a few pixels apart.
-fn steps([a, b]: [[f64; 2]; 2]) -> impl Iterator<Item = [f64; 2]> {
-    let length = (b[0] - a[0]).hypot(b[1] - a[1]);
-    let steps = (length / 4.0).ceil().clamp(1.0, 1e3) as u32;
-    (0..steps).map(move |i| {
-        let t = f64::from(i) / f64::from(steps);
-        [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
+/// Points of a line a few pixels apart; of each segment all but its end.
+fn steps(line: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> {
+    line.windows(2).flat_map(|pair| {
+        let all = curve::steps([pair[0], pair[1]], 4.0, 1e3);
+        let count = all.len() - 1;
+        all.take(count)
     })
 }
 
@@ -127,11 +126,9 @@ impl Cover {
             occupied: Occupancy::new(plot.grown(10.0)),
             points: Vec::new(),
         };
-        for pair in drawn.iter().flat_map(|line| line.windows(2)) {
-            for at in steps([pair[0], pair[1]]) {
-                cover.occupied.block(&Rect::around(at, REACH));
-                cover.points.push(at);
-            }
+        for at in drawn.iter().flat_map(|line| steps(line)) {
+            cover.occupied.block(&Rect::around(at, REACH));
+            cover.points.push(at);
         }
         cover
     }
@@ -147,19 +144,15 @@ impl Cover {
     }
 
     fn share_under(&self, other: &Self) -> f64 {
-        let count = self
-            .points
-            .iter()
-            .filter(|at| Self::is_under(**at, other))
-            .count();
-        count as f64 / self.points.len().max(1) as f64
+        let under = self.points.iter().filter(|at| Self::is_under(**at, other));
+        under.count() as f64 / self.points.len().max(1) as f64
     }
 }
 
 #[cfg(test)]
 mod tests {
     use crate::figure::{Chart, Figure, Series, Stroke};
-    use crate::layout::Layout;
+    use crate::layout_record::Layout;
 
     fn figure(heights: &[f64], stroke: Stroke) -> Figure {
         let series = |(k, height): (usize, &f64)| {

@@ -120,6 +120,20 @@ fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     kept
 }
 
+/// Points of a segment, both ends among them, no further apart than `spacing`, unless they would be more than `most`.
+pub(crate) fn steps(
+    [a, b]: [[f64; 2]; 2],
+    spacing: f64,
+    most: f64,
+) -> impl ExactSizeIterator<Item = [f64; 2]> {
+    let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+    let steps = (length / spacing).ceil().clamp(1.0, most) as u32;
+    (0..steps + 1).map(move |i| {
+        let t = f64::from(i) / f64::from(steps);
+        [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
+    })
+}
+
 /// The line broken into dashes.
 pub(crate) fn dashes(points: &[[f64; 2]], dash: Dash) -> Vec<Vec<[f64; 2]>> {
     let mut all = Vec::new();

@@ -24,7 +24,7 @@ const SIDES: f64 = 170.0;
 
 /// The layout of one drawing, or of several that are shown one after another in one cell: only the shapes move.
 pub(crate) struct DrawingLayout {
-    frame: PlotFrame,
+    pub(crate) frame: PlotFrame,
     legend: Option<PlacedLegend>,
     /// Between which heights the plot was before the legend.
     heights: (f64, f64),
@@ -86,12 +86,6 @@ impl DrawingLayout {
     /// Height that the legend took from the plot.
     pub(crate) fn legend_above(&self) -> f64 {
         self.legend.as_ref().map_or(0.0, PlacedLegend::height_above)
-    }
-
-    /// Where the shapes are.
-    #[cfg(test)]
-    pub(crate) fn plot(&self) -> Rect {
-        self.frame.plot
     }
 
     /// Draws one of the drawings.

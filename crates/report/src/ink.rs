@@ -1,36 +1,23 @@
 //! Which curve of a page each pixel shows: later ink hides earlier ink.
 
+use crate::curve::steps;
 use crate::rect::Rect;
 
 /// Side of a cell in pixels: finer than the width of a line.
 const CELL: f64 = 1.0;
-
-/// Whose ink it is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Owner(u16);
-
-impl Owner {
-    /// Axes, words, curves without a name.
-    pub(crate) const NOBODY: Self = Self(0);
-
-    /// A curve by its index.
-    pub(crate) fn curve(index: usize) -> Self {
-        Self(u16::try_from(index + 1).unwrap_or(0))
-    }
-}
 
 /// The ink of a page, cell by cell.
 #[derive(Debug)]
 pub(crate) struct Ink {
     columns: usize,
     rows: usize,
-    cells: Vec<Owner>,
+    cells: Vec<Option<u16>>,
     /// By curve: how many cells it filled when it was drawn.
     drawn: Vec<usize>,
     /// Left, top, right, bottom of all ink.
     extent: [f64; 4],
-    /// Whose ink the next is.
-    pub(crate) owner: Owner,
+    /// Whose ink the next is: of a curve by its index; none of axes, words and curves without a name.
+    pub(crate) owner: Option<u16>,
 }
 
 /// The first cell from a place on; below zero saturates, and a cell counts if its middle is covered.
@@ -44,25 +31,20 @@ impl Ink {
         Self {
             columns,
             rows,
-            cells: vec![Owner::NOBODY; columns * rows],
+            cells: vec![None; columns * rows],
             drawn: Vec::new(),
             extent: [f64::INFINITY, f64::INFINITY, -f64::INFINITY, -f64::INFINITY],
-            owner: Owner::NOBODY,
+            owner: None,
         }
     }
 
     /// A line of a width.
     pub(crate) fn line(&mut self, points: &[[f64; 2]], width: f64) {
-        let half = 0.5 * width;
-        for pair in points.windows(2) {
-            let [a, b] = [pair[0], pair[1]];
-            let length = (b[0] - a[0]).hypot(b[1] - a[1]);
-            let steps = (length / CELL).ceil().clamp(1.0, 1e5) as u32;
-            for i in 0..=steps {
-                let t = f64::from(i) / f64::from(steps);
-                let at = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
-                self.block(&Rect::around(at, half));
-            }
+        for at in points
+            .windows(2)
+            .flat_map(|pair| steps([pair[0], pair[1]], CELL, 1e5))
+        {
+            self.block(&Rect::around(at, 0.5 * width));
         }
     }
 
@@ -119,25 +101,25 @@ impl Ink {
             return;
         }
         self.cells[index] = self.owner;
-        let curve = usize::from(self.owner.0);
-        if curve >= self.drawn.len() {
-            self.drawn.resize(curve + 1, 0);
+        if let Some(curve) = self.owner.map(usize::from) {
+            self.drawn.resize(self.drawn.len().max(curve + 1), 0);
+            self.drawn[curve] += 1;
         }
-        self.drawn[curve] += 1;
     }
 
     /// Of each of so many curves: the area that it filled, and what of it is left.
     pub(crate) fn areas(&self, curves: usize) -> Vec<[f64; 2]> {
-        let mut visible = vec![0_usize; curves + 1];
-        for owner in &self.cells {
-            if let Some(count) = visible.get_mut(usize::from(owner.0)) {
+        let mut visible = vec![0_usize; curves];
+        for owner in self.cells.iter().flatten() {
+            if let Some(count) = visible.get_mut(usize::from(*owner)) {
                 *count += 1;
             }
         }
-        let drawn = |k: usize| self.drawn.get(k).copied().unwrap_or(0);
+        let drawn = self.drawn.iter().copied().chain(std::iter::repeat(0));
+        let areas = drawn.zip(visible);
         let area = |cells: usize| cells as f64 * CELL * CELL;
-        (1..=curves)
-            .map(|k| [area(drawn(k)), area(visible[k])])
+        areas
+            .map(|(drawn, visible)| [drawn, visible].map(area))
             .collect()
     }
 
@@ -154,9 +136,9 @@ mod tests {
     #[test]
     fn later_ink_hides_earlier_ink() {
         let mut ink = Ink::new([100.0, 50.0]);
-        ink.owner = Owner::curve(0);
+        ink.owner = Some(0);
         ink.line(&[[10.0, 25.0], [90.0, 25.0]], 4.0);
-        ink.owner = Owner::curve(1);
+        ink.owner = Some(1);
         ink.polygon(&[[50.0, 0.0], [120.0, 0.0], [120.0, 50.0], [50.0, 50.0]]);
         let areas = ink.areas(2);
         assert_eq!(areas[0], [84.0 * 4.0, 42.0 * 4.0]);

@@ -1,10 +1,9 @@
-//! Where everything on a page is: its words, and how much of each curve is left to see. Drawing records it only when it is
-//! asked for.
+//! How the layout of a page is found and judged.
 
+use crate::canvas::layout;
 use crate::error::ReportError;
 use crate::figure::Figure;
-use crate::layout_record::LayoutRecord;
-use crate::rect::Rect;
+use crate::layout_record::{Layout, NamedCurve};
 use crate::{animation::Animation, png};
 
 /// A curve of a legend is seen if so much of it is left, in pixels of area: the length of three letters.
@@ -14,45 +13,6 @@ const MIN_VISIBLE_SHARE: f64 = 0.2;
 /// Boxes of words that overlap by less than this, in pixels, only touch.
 const TOUCH: f64 = 0.5;
 
-/// Words on a page and the box they fill.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Label {
-    /// The words.
-    pub text: String,
-    /// Left, top, right and bottom, in pixels; y grows downwards.
-    pub area: [f64; 4],
-}
-
-/// A curve or a body that has a name, and what can be seen of it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NamedCurve {
-    /// Its name.
-    pub name: String,
-    /// Which of the plots of the page it is in.
-    pub plot: usize,
-    /// Area that it fills where it is drawn, square pixels.
-    pub drawn: f64,
-    /// What of this nothing hides, square pixels.
-    pub visible: f64,
-}
-
-/// Where everything on a page is.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Layout {
-    /// Width and height of the page, pixels.
-    pub page: [f64; 2],
-    /// All words.
-    pub labels: Vec<Label>,
-    /// The curves with names.
-    pub curves: Vec<NamedCurve>,
-    /// The names in legends and at the ends of curves, with the plot they belong to.
-    pub legend: Vec<(usize, String)>,
-    /// Words for which there was no room.
-    pub left_out: Vec<String>,
-    /// Left, top, right and bottom of all that is drawn, pixels.
-    pub drawn: [f64; 4],
-}
-
 impl Layout {
     /// The layout of a figure, as it is drawn.
     ///
@@ -60,9 +20,7 @@ impl Layout {
     /// [`ReportError::Size`] if the page is too large.
     pub fn of(figure: &Figure) -> Result<Self, ReportError> {
         let page = png::page_of(figure)?;
-        let size = [page.width as u32, page.height as u32];
-        let record = crate::raster::recorded(size, |canvas| page.draw(canvas));
-        Ok(Self::from_record(record, size))
+        Ok(layout(page.size(), |canvas| page.draw(canvas)))
     }
 
     /// The layout of every frame of an animation. All frames share one legend, so each counts what is seen of a curve in the
@@ -71,10 +29,7 @@ impl Layout {
     /// # Errors
     /// As [`Animation::gif`].
     pub fn of_animation(animation: &Animation) -> Result<Vec<Self>, ReportError> {
-        let (size, recorded) = animation.records()?;
-        let frames = recorded.into_iter();
-        let frames = frames.map(|record| Self::from_record(record, size));
-        let mut frames: Vec<Self> = frames.collect();
+        let mut frames = animation.layouts()?;
         let mut largest: Vec<NamedCurve> = Vec::new();
         for curve in frames.iter().flat_map(|frame| &frame.curves) {
             match largest
@@ -101,29 +56,6 @@ impl Layout {
         let left_out = self.left_out.iter();
         defects.extend(left_out.map(|text| format!("no room for `{text}`")));
         defects
-    }
-
-    fn from_record(record: LayoutRecord, size: [u32; 2]) -> Self {
-        let areas = record.ink.areas(record.curves.len());
-        let curves = record.curves.into_iter().zip(areas);
-        let curve = |((plot, name), [drawn, visible]): ((usize, String), [f64; 2])| NamedCurve {
-            name,
-            plot,
-            drawn,
-            visible,
-        };
-        let label = |(text, area): (String, Rect)| Label {
-            text,
-            area: [area.x0, area.y0, area.x1, area.y1],
-        };
-        Self {
-            page: size.map(f64::from),
-            labels: record.labels.into_iter().map(label).collect(),
-            curves: curves.map(curve).collect(),
-            legend: record.legend,
-            left_out: record.left_out,
-            drawn: record.ink.extent(),
-        }
     }
 
     fn words_on_words(&self) -> Vec<String> {

@@ -88,39 +88,6 @@ impl Legend {
     pub(crate) fn height(&self) -> f64 {
         PAD + ROW_HEIGHT * self.rows as f64
     }
-
-    /// Draws it in an area of its size.
-    fn draw(&self, canvas: &mut Canvas<'_>, area: &Rect, boxed: bool) {
-        if boxed {
-            canvas.rect(area, WHITE);
-            canvas.rect_outline(area, LineStyle::solid(EDGE, 1.5));
-        }
-        let mut x = area.x0 + PAD;
-        for (column, width) in self.entries.chunks(self.rows).zip(&self.widths) {
-            let mut y = area.y0 + 0.5 * (PAD + ROW_HEIGHT);
-            for entry in column {
-                let LegendHandle {
-                    line,
-                    marker: shape,
-                    patch,
-                } = entry.handle;
-                if let Some(color) = patch {
-                    canvas.rect(&Rect::sized(x, y - 9.0, HANDLE_WIDTH, 18.0), color);
-                }
-                if let Some(line) = line {
-                    canvas.line(&[[x, y], [x + HANDLE_WIDTH, y]], line.sample(HANDLE_WIDTH));
-                }
-                if let Some((shape, color)) = shape {
-                    draw_marker(canvas, shape, [x + 0.5 * HANDLE_WIDTH, y], color);
-                }
-                canvas.note(|record| record.legend_entry(entry.curve_name()));
-                let style = TextStyle::new(self.size, INK, Align::Start);
-                canvas.text_centred(&entry.name, [x + HANDLE_WIDTH + GAP, y], style);
-                y += ROW_HEIGHT;
-            }
-            x += HANDLE_WIDTH + GAP + width + COLUMN_GAP;
-        }
-    }
 }
 
 /// A legend and where it stands.
@@ -133,7 +100,36 @@ pub(crate) struct PlacedLegend {
 
 impl PlacedLegend {
     pub(crate) fn draw(&self, canvas: &mut Canvas<'_>) {
-        self.legend.draw(canvas, &self.area, self.is_inside);
+        let (legend, area) = (&self.legend, &self.area);
+        if self.is_inside {
+            canvas.rect(area, WHITE);
+            canvas.rect_outline(area, LineStyle::solid(EDGE, 1.5));
+        }
+        let mut x = area.x0 + PAD;
+        for (column, width) in legend.entries.chunks(legend.rows).zip(&legend.widths) {
+            let mut y = area.y0 + 0.5 * (PAD + ROW_HEIGHT);
+            for entry in column {
+                let LegendHandle {
+                    line,
+                    marker,
+                    patch,
+                } = entry.handle;
+                if let Some(color) = patch {
+                    canvas.rect(&Rect::sized(x, y - 9.0, HANDLE_WIDTH, 18.0), color);
+                }
+                if let Some(line) = line {
+                    canvas.line(&[[x, y], [x + HANDLE_WIDTH, y]], line.sample(HANDLE_WIDTH));
+                }
+                if let Some((marker, color)) = marker {
+                    draw_marker(canvas, marker, [x + 0.5 * HANDLE_WIDTH, y], color);
+                }
+                canvas.note(|record| record.legend_entry(entry.curve_name()));
+                let style = TextStyle::new(legend.size, INK, Align::Start);
+                canvas.text_centred(&entry.name, [x + HANDLE_WIDTH + GAP, y], style);
+                y += ROW_HEIGHT;
+            }
+            x += HANDLE_WIDTH + GAP + width + COLUMN_GAP;
+        }
     }
 
     /// Height that it takes from the plot.

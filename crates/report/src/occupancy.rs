@@ -1,5 +1,6 @@
 //! Where in a plot something has been drawn already, so that words can go elsewhere.
 
+use crate::curve::steps;
 use crate::rect::Rect;
 use std::ops::Range;
 
@@ -31,14 +32,7 @@ impl Occupancy {
     /// A line has been drawn.
     pub(crate) fn line(&mut self, points: &[[f64; 2]]) {
         for pair in points.windows(2) {
-            let [a, b] = [pair[0], pair[1]];
-            let steps = ((b[0] - a[0]).hypot(b[1] - a[1]) / (0.5 * CELL))
-                .ceil()
-                .clamp(1.0, 1e4) as u32;
-            for i in 0..=steps {
-                let t = f64::from(i) / f64::from(steps);
-                self.point([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
-            }
+            steps([pair[0], pair[1]], 0.5 * CELL, 1e4).for_each(|at| self.point(at));
         }
     }
 

@@ -91,9 +91,8 @@ struct PlacedPanel<'a> {
 pub(crate) struct Page<'a> {
     pub(crate) width: f64,
     pub(crate) height: f64,
-    title: Vec<String>,
-    /// Lines at the foot, with size and baseline.
-    footer: Vec<(String, f64, f64)>,
+    /// The lines of title, caption and provenance with their baselines.
+    lines: Vec<(String, f64, TextStyle)>,
     panels: Vec<PlacedPanel<'a>>,
 }
 
@@ -107,41 +106,28 @@ fn prepared(panel: &Panel, width: f64) -> PreparedPanel<'_> {
     }
 }
 
-/// Caption and provenance as lines with size and baseline, from `y` on, which goes on below them.
-fn footer(figure: &Figure, inner: f64, y: &mut f64) -> Vec<(String, f64, f64)> {
-    let mut footer = Vec::new();
-    for (text, size) in [
-        (&figure.caption, CAPTION_SIZE),
-        (&figure.provenance, PROVENANCE_SIZE),
-    ] {
-        for (k, line) in wrapped(&typeset(text), size, false, inner)
-            .into_iter()
-            .enumerate()
-        {
-            if k == 0 && !footer.is_empty() {
-                *y += FOOTER_GAP;
-            }
-            footer.push((line, size, *y + 0.8 * size));
-            *y += CAPTION_LEADING * size;
-        }
-    }
-    footer
-}
-
 impl<'a> Page<'a> {
     /// Lays everything out.
     pub(crate) fn new(figure: &'a Figure) -> Self {
         let columns = figure.columns.clamp(1, figure.panels.len().max(1));
         let gaps = COLUMN_GAP * (columns as f64 - 1.0);
-        let inner = if columns == 1 {
-            LONE_CELL
-        } else {
-            CELL * columns as f64 + gaps
+        let inner = match columns {
+            1 => LONE_CELL,
+            _ => CELL * columns as f64 + gaps,
         };
-        let title = wrapped(&typeset(&figure.title), TITLE_SIZE, true, inner);
+        let mut lines = Vec::new();
+        // The lines of a text from `y` on, which goes on below them.
+        let mut write = |text: &str, style: TextStyle, leading: f64, y: &mut f64| {
+            for line in wrapped(&typeset(text), style.size, style.bold, inner) {
+                lines.push((line, *y + 0.8 * style.size, style));
+                *y += leading * style.size;
+            }
+        };
         let mut y = MARGIN;
-        if !title.is_empty() {
-            y += title.len() as f64 * TITLE_LEADING * TITLE_SIZE + 0.55 * TITLE_SIZE;
+        let style = TextStyle::new(TITLE_SIZE, INK, Align::Start).bold();
+        write(&figure.title, style, TITLE_LEADING, &mut y);
+        if y > MARGIN {
+            y += 0.55 * TITLE_SIZE;
         }
         let mut panels = Vec::new();
         for (row, chunk) in figure.panels.chunks(columns).enumerate() {
@@ -149,10 +135,8 @@ impl<'a> Page<'a> {
             let width = (inner - COLUMN_GAP * (count - 1.0)) / count;
             let stretched = chunk.len() < columns;
             let chunk: Vec<_> = chunk.iter().map(|panel| prepared(panel, width)).collect();
-            let heights = chunk
-                .iter()
-                .map(|p| p.height(width, columns == 1, stretched));
-            let height = heights.fold(0.0, f64::max);
+            let height = |p: &PreparedPanel<'_>| p.height(width, columns == 1, stretched);
+            let height = chunk.iter().map(height).fold(0.0, f64::max);
             for (column, panel) in chunk.into_iter().enumerate() {
                 let x = MARGIN + column as f64 * (width + COLUMN_GAP);
                 panels.push(PlacedPanel {
@@ -164,34 +148,39 @@ impl<'a> Page<'a> {
             }
             y += height + ROW_GAP;
         }
-        let footer = footer(figure, inner, &mut y);
-        if footer.is_empty() {
-            y -= ROW_GAP;
-        }
+        let grey = |size| TextStyle::new(size, CAPTION_GREY, Align::Start);
+        let foot = y;
+        write(&figure.caption, grey(CAPTION_SIZE), CAPTION_LEADING, &mut y);
+        let top = if y > foot { y + FOOTER_GAP } else { y };
+        let mut end = top;
+        let style = grey(PROVENANCE_SIZE);
+        write(&figure.provenance, style, CAPTION_LEADING, &mut end);
+        y = match (end > top, y > foot) {
+            (true, _) => end,
+            (false, true) => y,
+            (false, false) => y - ROW_GAP,
+        };
         Self {
             width: inner + 2.0 * MARGIN,
             height: (y + 0.75 * MARGIN).ceil(),
-            title,
-            footer,
+            lines,
             panels,
         }
+    }
+
+    /// Width and height in whole pixels.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        [self.width, self.height].map(|side| side as u32)
     }
 
     /// Draws it.
     pub(crate) fn draw(&self, canvas: &mut Canvas<'_>) {
         canvas.rect(&Rect::sized(0.0, 0.0, self.width, self.height), WHITE);
-        let mut baseline = MARGIN + 0.8 * TITLE_SIZE;
-        for line in &self.title {
-            let style = TextStyle::new(TITLE_SIZE, INK, Align::Start).bold();
-            canvas.text(line, [MARGIN, baseline], style);
-            baseline += TITLE_LEADING * TITLE_SIZE;
+        for (line, baseline, style) in &self.lines {
+            canvas.text(line, [MARGIN, *baseline], *style);
         }
         for (placed, insets) in self.panels.iter().zip(self.aligned()) {
             placed.panel.draw(canvas, &placed.cell, insets);
-        }
-        for (line, size, baseline) in &self.footer {
-            let style = TextStyle::new(*size, CAPTION_GREY, Align::Start);
-            canvas.text(line, [MARGIN, *baseline], style);
         }
     }
 

@@ -1,9 +1,9 @@
-//! The few colours an animation may have, chosen from those it has.
+//! The few colours a picture or an animation may have, chosen from those it has.
 
 use crate::theme::Rgb;
 use std::collections::HashMap;
 
-/// Colours of an animation and the index of each; a colour that is not among them gets the index of the nearest.
+/// Colours of pictures and the index of each; a colour that is not among them gets the index of the nearest.
 pub(crate) struct Palette {
     pub(crate) colors: Vec<Rgb>,
     indices: HashMap<Rgb, u8>,
@@ -17,31 +17,69 @@ impl Palette {
     /// that is kept by no more than a distance, which grows from 0 until the rest fits. (Methods that average
     /// colours, made for photographs, would shift the flat ones too.)
     pub(crate) fn of(counts: &HashMap<Rgb, u64>, max_colors: usize) -> Self {
-        let mut ordered: Vec<(Rgb, u64)> = counts.iter().map(|(color, n)| (*color, *n)).collect();
-        // The order of a hash map is none: ties are broken by the colour.
-        ordered.sort_by_key(|&(color, n)| (std::cmp::Reverse(n), color));
+        let ordered = ordered(counts);
         let max_colors = max_colors.clamp(1, 256);
         let kept = (0..=u8::MAX).find_map(|error| covering(&ordered, error, max_colors));
         // A distance of 255 covers every colour by one.
-        let colors = kept.unwrap_or_default();
+        Self::new(kept.unwrap_or_default(), &ordered, distance)
+    }
+
+    /// The most frequent colours, up to 256.
+    pub(crate) fn most_frequent(counts: &HashMap<Rgb, u64>) -> Self {
+        let ordered = ordered(counts);
+        Self::new(
+            ordered.iter().take(256).copied().collect(),
+            &ordered,
+            |a, b| {
+                let differences = (0..3).map(|i| u32::from(a[i].abs_diff(b[i])));
+                differences.map(|difference| difference.pow(2)).sum::<u32>()
+            },
+        )
+    }
+
+    fn new<D: Ord>(colors: Vec<Rgb>, all: &[Rgb], distance: impl Fn(Rgb, Rgb) -> D) -> Self {
         let index = |color: Rgb| {
             let nearest = (0..colors.len()).min_by_key(|&i| distance(colors[i], color));
             nearest.unwrap_or(0) as u8
         };
-        let indices = ordered.iter().map(|&(c, _)| (c, index(c))).collect();
+        let indices = all.iter().map(|&color| (color, index(color))).collect();
         Self { colors, indices }
     }
 
-    /// The index of a colour that has been counted.
-    pub(crate) fn index_of(&self, color: Rgb) -> u8 {
-        self.indices.get(&color).copied().unwrap_or(0)
+    /// The indices of a picture whose colours have been counted.
+    pub(crate) fn indices(&self, picture: &[Rgb]) -> Vec<u8> {
+        let mut indices = Vec::with_capacity(picture.len());
+        for run in picture.chunk_by(|a, b| a == b) {
+            let index = self.indices.get(&run[0]).copied().unwrap_or(0);
+            indices.resize(indices.len() + run.len(), index);
+        }
+        indices
     }
 }
 
+/// Counts the colours of pictures.
+pub(crate) fn counts<'a>(pictures: impl IntoIterator<Item = &'a [Rgb]>) -> HashMap<Rgb, u64> {
+    let mut counts = HashMap::new();
+    for picture in pictures {
+        // Neighbours are mostly alike: one look-up for a run of them.
+        for run in picture.chunk_by(|a, b| a == b) {
+            *counts.entry(run[0]).or_default() += run.len() as u64;
+        }
+    }
+    counts
+}
+
+/// The most frequent first. The order of a hash map is none: ties are broken by the colour.
+fn ordered(counts: &HashMap<Rgb, u64>) -> Vec<Rgb> {
+    let mut ordered: Vec<(Rgb, u64)> = counts.iter().map(|(color, n)| (*color, *n)).collect();
+    ordered.sort_unstable_by_key(|&(color, n)| (std::cmp::Reverse(n), color));
+    ordered.into_iter().map(|(color, _)| color).collect()
+}
+
 /// Colours that leave none farther away than `error`; none if there would be more than `most`.
-fn covering(ordered: &[(Rgb, u64)], error: u8, max_colors: usize) -> Option<Vec<Rgb>> {
+fn covering(ordered: &[Rgb], error: u8, max_colors: usize) -> Option<Vec<Rgb>> {
     let mut kept: Vec<Rgb> = Vec::new();
-    for &(color, _) in ordered {
+    for &color in ordered {
         if kept.iter().any(|k| distance(*k, color) <= error) {
             continue;
         }
@@ -64,7 +102,7 @@ mod tests {
 
     /// The largest difference between a colour and what is shown in its stead.
     fn error(palette: &Palette, counts: &HashMap<Rgb, u64>) -> u8 {
-        let shown = |color: &Rgb| palette.colors[usize::from(palette.index_of(*color))];
+        let shown = |color: &Rgb| palette.colors[usize::from(palette.indices(&[*color])[0])];
         let errors = counts.keys().map(|color| distance(shown(color), *color));
         errors.fold(0, u8::max)
     }
@@ -94,7 +132,10 @@ mod tests {
         let palette = Palette::of(&counts, 255);
         assert!(palette.colors.len() <= 255 && palette.colors.len() > 100);
         for color in flat {
-            assert_eq!(palette.colors[usize::from(palette.index_of(color))], color);
+            assert_eq!(
+                palette.colors[usize::from(palette.indices(&[color])[0])],
+                color
+            );
         }
         // Three lines of about 240 tints under 255 colours: each stands for itself and one on either side.
         assert!(error(&palette, &counts) <= 2);

@@ -1,13 +1,13 @@
 //! A figure as PNG bytes.
 
+use crate::canvas::document;
 use crate::error::ReportError;
 use crate::figure::Figure;
 use crate::page::Page;
-use crate::raster::SvgPicture;
+use crate::palette::{Palette, counts};
+use crate::raster::rasterized;
+use crate::theme::Rgb;
 use ::png::{BitDepth, ColorType, DeflateCompression, Encoder, EncodingError, Filter};
-use resvg::tiny_skia::Pixmap;
-use std::cmp::Reverse;
-use std::collections::HashMap;
 
 /// No side of a page is longer, in pixels.
 const MAX_SIDE: u32 = 16_384;
@@ -22,80 +22,36 @@ const MAX_SIDE: u32 = 16_384;
 /// [`ReportError::Size`] if the page is too large; [`ReportError::Draw`] and [`ReportError::Encode`] if a library refuses,
 /// which no data should cause.
 pub fn png(figure: &Figure) -> Result<Vec<u8>, ReportError> {
-    let svg = svg_picture(figure)?;
-    let pixels = svg.rasterize(&figure.name, [svg.width, svg.height])?;
-    encoded(&pixels).map_err(|e| ReportError::Encode {
+    let page = page_of(figure)?;
+    let document = document(page.size(), false, None, |canvas| page.draw(canvas));
+    let picture = rasterized(&document, &figure.name, page.size())?;
+    encoded(&picture, page.size()).map_err(|e| ReportError::Encode {
         figure: figure.name.clone(),
         reason: e.to_string(),
     })
 }
 
-/// The most colours of a PNG with a palette.
-const MAX_COLORS: usize = 256;
-
-/// The page is opaque, so alpha is left out. Charts have fewer than 256 colours; drawings have more, nearly all of them shades at edges of
+/// Charts have fewer than 256 colours; drawings have more, nearly all of them shades at edges of
 /// letters: the rare ones (at most 0.4 % of the pixels of a page) take the nearest of the others. That halves the bytes.
-fn encoded(pixels: &Pixmap) -> Result<Vec<u8>, EncodingError> {
-    let (palette, indices) = indexed(pixels.data());
+fn encoded(picture: &[Rgb], [width, height]: [u32; 2]) -> Result<Vec<u8>, EncodingError> {
+    let palette = Palette::most_frequent(&counts([picture]));
     let mut bytes = Vec::new();
-    let mut encoder = Encoder::new(&mut bytes, pixels.width(), pixels.height());
+    let mut encoder = Encoder::new(&mut bytes, width, height);
     encoder.set_color(ColorType::Indexed);
     encoder.set_depth(BitDepth::Eight);
-    encoder.set_palette(palette.concat());
+    encoder.set_palette(palette.colors.concat());
     encoder.set_deflate_compression(DeflateCompression::Level(4));
     encoder.set_filter(Filter::NoFilter);
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&indices)?;
+    writer.write_image_data(&palette.indices(picture))?;
     writer.finish()?;
     Ok(bytes)
-}
-
-/// The most frequent colours of opaque pixels (red, green, blue, alpha), and by pixel the index of its own or the nearest.
-fn indexed(data: &[u8]) -> (Vec<[u8; 3]>, Vec<u8>) {
-    let colors = || data.chunks_exact(4).map(|p| [p[0], p[1], p[2]]);
-    let mut counts: HashMap<[u8; 3], usize> = HashMap::new();
-    let mut run = (None, 0);
-    let all = colors().map(Some).chain([None]);
-    all.for_each(|color| {
-        if color != run.0 {
-            if let Some(last) = run.0 {
-                *counts.entry(last).or_default() += run.1;
-            }
-            run = (color, 0);
-        }
-        run.1 += 1;
-    });
-    let mut by_count: Vec<_> = counts.into_iter().collect();
-    by_count.sort_unstable_by_key(|&(color, count)| (Reverse(count), color));
-    let mut palette: Vec<[u8; 3]> = by_count.iter().map(|(color, _)| *color).collect();
-    let rare = palette.split_off(palette.len().min(MAX_COLORS));
-    let distance = |a: [u8; 3], b: [u8; 3]| -> u32 {
-        let parts = a.into_iter().zip(b);
-        parts.map(|(a, b)| u32::from(a.abs_diff(b)).pow(2)).sum()
-    };
-    let nearest = |color: [u8; 3]| {
-        let all = palette.iter().enumerate();
-        let best = all.min_by_key(|&(_, known)| distance(color, *known));
-        (color, best.map_or(0, |(k, _)| k as u8))
-    };
-    let common = palette.iter().enumerate();
-    let mut index: HashMap<[u8; 3], u8> = common.map(|(k, color)| (*color, k as u8)).collect();
-    index.extend(rare.into_iter().map(nearest));
-    let mut last = ([0; 3], index.get(&[0; 3]).copied().unwrap_or(0));
-    let indices = colors().map(|color| {
-        if color != last.0 {
-            last = (color, index.get(&color).copied().unwrap_or(0));
-        }
-        last.1
-    });
-    let indices = indices.collect();
-    (palette, indices)
 }
 
 /// The page of a figure, unless it is too large.
 pub(crate) fn page_of(figure: &Figure) -> Result<Page<'_>, ReportError> {
     let page = Page::new(figure);
-    let (width, height) = (page.width as u32, page.height as u32);
+    let [width, height] = page.size();
     if width.max(height) > MAX_SIDE {
         return Err(ReportError::Size {
             figure: figure.name.clone(),
@@ -106,19 +62,11 @@ pub(crate) fn page_of(figure: &Figure) -> Result<Page<'_>, ReportError> {
     Ok(page)
 }
 
-/// The page of a figure, drawn.
-pub(crate) fn svg_picture(figure: &Figure) -> Result<SvgPicture, ReportError> {
-    let page = page_of(figure)?;
-    let size = [page.width as u32, page.height as u32];
-    Ok(SvgPicture::new(size, |canvas| page.draw(canvas)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::axis::Paint;
     use crate::axis::{Axis, Scale};
-    use crate::canvas::UNITS_PER_PIXEL;
     use crate::figure::{Chart, Mark, Panel, Series, Stroke};
     use crate::fonts;
     use crate::grid::{Cell, Grid, Group, Row, Tile, Tiles};
@@ -136,21 +84,20 @@ mod tests {
                     Node::Text(text) => {
                         let words: String = text.chunks().iter().map(|c| c.text().trim()).collect();
                         let letters = text.flattened().abs_bounding_box();
-                        let [x0, y0] =
-                            [letters.left(), letters.top()].map(|v| f64::from(v) / UNITS_PER_PIXEL);
-                        let [x1, y1] = [letters.right(), letters.bottom()]
-                            .map(|v| f64::from(v) / UNITS_PER_PIXEL);
+                        let [x0, y0] = [letters.left(), letters.top()].map(f64::from);
+                        let [x1, y1] = [letters.right(), letters.bottom()].map(f64::from);
                         found.push((words, Rect { x0, y0, x1, y1 }));
                     }
                     Node::Path(_) | Node::Image(_) => {}
                 }
             }
         }
-        let SvgPicture { svg, width, height } = svg_picture(figure).unwrap();
-        let tree = Tree::from_str(&svg, &fonts::options()).unwrap();
+        let page = page_of(figure).unwrap();
+        let document = document(page.size(), false, None, |canvas| page.draw(canvas));
+        let tree = Tree::from_str(&document, &fonts::options()).unwrap();
         let mut found = Vec::new();
         collect(tree.root(), &mut found);
-        (Rect::sized(0.0, 0.0, width.into(), height.into()), found)
+        (Rect::sized(0.0, 0.0, page.width, page.height), found)
     }
 
     fn legible(figure: &Figure) -> Result<(), String> {

@@ -35,11 +35,8 @@ impl<'a> Stack<'a> {
     /// Strips the labels need around the whole stack.
     pub(crate) fn insets(&self, cell: &Rect) -> Insets {
         let parts = divided(cell, self.chart_insets(cell));
-        let needed = self
-            .charts
-            .iter()
-            .zip(&parts)
-            .map(|(s, (part, _))| s.insets(part));
+        let charts = self.charts.iter().zip(&parts);
+        let needed = charts.map(|(s, (part, _))| s.insets(part));
         let widest = needed.fold(Insets::default(), Insets::max);
         Insets {
             top: parts.first().map_or(0.0, |(_, first)| first.top),
@@ -134,7 +131,7 @@ mod tests {
         assert!(
             prepared
                 .iter()
-                .all(|s| s.covers(0.0) && s.covers(5.0) && !s.covers(5.1))
+                .all(|s| (s.extent.x.min..=s.extent.x.max) == (0.0..=5.0))
         );
         assert!(PreparedChart::stacked(&[]).is_empty());
     }

@@ -79,12 +79,8 @@ impl WrappedText {
 
 /// The title of a panel.
 pub(crate) fn title(text: &str, cell: &Rect) -> WrappedText {
-    WrappedText::new(
-        &typeset(text.trim()),
-        PANEL_TITLE_SIZE,
-        true,
-        cell.width() - MARGINS,
-    )
+    let (text, room) = (typeset(text.trim()), cell.width() - MARGINS);
+    WrappedText::new(&text, PANEL_TITLE_SIZE, true, room)
 }
 
 /// The label of a horizontal axis.
@@ -106,12 +102,8 @@ fn label(axis: &Axis, ticks: &Ticks) -> String {
         text = format!("{text} {change}");
     }
     let unit = Some(axis.unit.trim().replace(' ', "\u{a0}")).filter(|unit| !unit.is_empty());
-    let inside: Vec<String> = ticks
-        .factor
-        .map(power_of_ten)
-        .into_iter()
-        .chain(unit)
-        .collect();
+    let factor = ticks.factor.map(power_of_ten);
+    let inside: Vec<String> = factor.into_iter().chain(unit).collect();
     if !inside.is_empty() {
         // SVG closes up plain blanks; a wider one keeps the unit apart, and whole when the label is broken.
         text = format!("{text}\u{2002}({})", inside.join("\u{a0}"));
