@@ -3,7 +3,6 @@
 import csv
 import hashlib
 import json
-import sqlite3
 import tomllib
 from pathlib import Path
 
@@ -99,11 +98,8 @@ class Folder:
         return path.read_text(encoding="utf-8") if path.exists() else None
 
     def study(self):
-        """What a sweep is about, by the database or the folder of its rows; empty without both."""
-        database, parts = self.file("sweep.sqlite"), self.file("sweep") / "_study.toml"
-        if database.exists():
-            with sqlite3.connect(f"file:{database}?mode=ro", uri=True) as connection:
-                return {key: str(value) for key, value in connection.execute("select key, value from study")}
+        """What a sweep is about, by the folder of its rows; empty without it."""
+        parts = self.file("sweep") / "_study.toml"
         if parts.exists():
             return {key: str(value) for key, value in tomllib.loads(parts.read_text(encoding="utf-8")).items()}
         return {}

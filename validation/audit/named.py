@@ -21,7 +21,6 @@ from copies import ModelTable
 from files import Folder, Rows
 from forces import DriveForces
 from jets import Jet
-from judge import Judge
 from parts import judge_folder
 from selftest import Altered
 
@@ -282,8 +281,8 @@ NAMED = [
     ("check-center-of-mass", "four-bar/plain", number("check", "mass.center.y", -1.0, "motion", "kinematics", "kinetostatics"), NOTHING),
 ]
 ELSEWHERE = {
-    "printed-numbers": "sentences: `validation/written` has them",
-    "printed-extrema-of-m": "sentences: `validation/written` has them",
+    "printed-numbers": "sentences: `crates/validation/src/written` has them",
+    "printed-extrema-of-m": "sentences: `crates/validation/src/written` has them",
     "variant-number-slope": "no number of the cases changes",
     "variant-free-reaction": "not reached by the cases",
     "variant-same-mode": "no number of the cases changes",
@@ -321,10 +320,10 @@ def main(program):
                 runs.prepare(program, folders[scene], Path(place) / "files")
             path = Path(place) / "files" / f"{scene}-{kind}"
             folder = Folder(path / f"{scene}.toml", path)
-            judge = Judge()
+            planted = plant(folder)
             try:
                 with reading(*patches):
-                    judge = judge_folder(plant(folder))
+                    judge = judge_folder(planted)
                 found = sorted({key for (_, key), worst in judge.checks.items() if not judge.passes(key, worst)})
             except Exception as error:
                 found = [f"cannot be read: {error!r}"]

@@ -93,14 +93,22 @@ def prepare(program, scene_path, folder):
                 status, _, _ = run(program, command, here / f"{name}.toml", here)
             made.append((kind, command, status))
     scene = Scene(text)
-    masses = [body.name for body in scene.bodies if body.mass > 0.0 and not body.is_ground]
-    if masses and len(scene.actuators) == 1:
-        vary = ["--vary", f"{masses[0]}.mass±5%", "--samples", "12", "--seed", "7", "--result", "m"]
-        made.append(("plain", "sweep", run(program, "sweep", folder / f"{name}-plain" / f"{name}.toml", folder / f"{name}-plain", *vary)[0]))
+    vary = varied_masses(scene)
+    if vary and len(scene.actuators) == 1:
+        options_of_sweep = (*vary, "--samples", "12", "--seed", "7", "--result", "m", "--export", "csv")
+        status, _, _ = run(program, "sweep", folder / f"{name}-plain" / f"{name}.toml", folder / f"{name}-plain", *options_of_sweep)
+        made.append(("plain", "sweep", status))
     return made
 
 
-PLAIN = ("check", "kinematics", "statics", "reduce", "runs", "simulate", "cycle", "equilibria", "linearise")
+def varied_masses(scene):
+    """Up to three masses that vary: by a normal and an even distribution and by a grid."""
+    masses = [(body.name, body.mass / scene.mass) for body in scene.bodies if body.mass > 0.0 and not body.is_ground]
+    kinds = (lambda m: f"~normal({m!r},{0.03 * m!r})", lambda m: "±5%", lambda m: f"={0.8 * m!r}:{1.3 * m!r}:3")
+    return [part for (body, mass), kind in zip(masses, kinds) for part in ("--vary", f"{body}.mass{kind(float(mass))}")]
+
+
+PLAIN = ("check", "kinematics", "statics", "reduce", "runs", "simulate", "cycle", "equilibria", "linearise", "calibrate")
 
 
 def remove(folder):

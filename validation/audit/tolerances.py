@@ -69,7 +69,7 @@ CHECKS = {
     "table": Check("the table of `reduce` with its rows, beyond the errors that it states", "the scale that the table states", 1e-12, ROUNDING),
     "draws": Check("varied numbers with the grid and the generator of random numbers", "each number", 1e-13, ROUNDING),
     "statistics": Check("statistics of the summary with the rows", KIND, 1e-12, ROUNDING),
-    "variants": Check("extrema of m of variants by sums over bodies", "the largest m", 1e-12, ROUNDING),
+    "variants": Check("extrema of m of variants by sums over bodies", "the largest m", 5e-11, ROUNDING),
 }
 
 # By the number of a check of the product that a check here replaces, or belongs to.

@@ -5,7 +5,7 @@ use crate::options::DEFAULT_CASE_FOLDER;
 use crate::{cases, print_warnings, validation_error};
 use dwell_scene::{PlaneScene, SceneError, SpaceScene};
 use dwell_study::{Outcome, Step, StudyError};
-use dwell_validation::manual::Manual;
+use dwell_validation::manual::{Manual, capability_scenes};
 use dwell_validation::{
     CaseResult, ValidatedCase, Validation, ValidationRun, audit, export_study, extremes, index,
     validate_program, work_precision,
@@ -38,14 +38,11 @@ pub(crate) fn validate(
         .for_each(|scene| print_warnings(scene));
     let program = std::env::current_exe().ok();
     let all_cases = names.is_empty() && folder == Path::new(DEFAULT_CASE_FOLDER);
-    let audited: Vec<PathBuf> = match all_cases {
-        true => cases
-            .iter()
-            .map(|case| case.join("scene.toml"))
-            .chain(in_space.iter().cloned())
-            .collect(),
-        false => Vec::new(),
-    };
+    let mut audited: Vec<PathBuf> = cases.iter().map(|case| case.join("scene.toml")).collect();
+    audited.extend(in_space.iter().cloned());
+    if all_cases {
+        audited.extend(capability_scenes(folder));
+    }
     let one = |(scene, case): (&Result<PlaneScene, SceneError>, &PathBuf)| {
         let scene = scene.as_ref().map_err(Clone::clone)?;
         let progress = |step: Step<'_>| {
@@ -71,34 +68,39 @@ pub(crate) fn validate(
         let program = program.as_deref().ok_or("the program is not found")?;
         audit::study(&reader, program, &audited, &done)
     };
-    let (results, (studies, (keys, audit))): (Vec<Result<Validation, SceneError>>, _) = rayon::join(
-        || scenes.par_iter().zip(&cases).map(one).collect(),
-        || {
-            rayon::join(
-                || studies(all, slow),
-                || {
-                    rayon::join(
-                        || all.map(|scenes| Manual::new(scenes, folder)),
-                        || all.map(|_| audit()),
-                    )
-                },
-            )
-        },
-    );
+    let (mut results, (studies, (keys, audit))): (Vec<Result<Validation, SceneError>>, _) =
+        rayon::join(
+            || scenes.par_iter().zip(&cases).map(one).collect(),
+            || {
+                rayon::join(
+                    || studies(all, slow),
+                    || rayon::join(|| all.map(|scenes| Manual::new(scenes, folder)), audit),
+                )
+            },
+        );
     let spatial = in_space
         .par_iter()
         .map(|path| case_in_space(path, program.as_deref()));
-    let spatial: Vec<_> = spatial.collect();
+    let mut spatial: Vec<_> = spatial.collect();
     bar.finish_and_clear();
     let mut studies = studies.map_err(SceneError::from)?;
     let (audit, no_reader) = match audit {
-        Some(Ok(audit)) => (Some(audit), None),
-        Some(Err(reason)) => (None, Some(reason)),
-        None => (None, None),
+        Ok(audited) => {
+            let planar = results.iter_mut().map(|result| result.as_mut().ok());
+            let spatial = spatial
+                .iter_mut()
+                .map(|result| Some(&mut result.as_mut().ok()?.1));
+            for (case, findings) in planar.chain(spatial).zip(audited.by_scene) {
+                case.into_iter()
+                    .for_each(|case| case.audited.clone_from(&findings));
+            }
+            (Some(audited.outcome), None)
+        }
+        Err(reason) => (None, Some(reason)),
     };
     let said = match (&audit, &no_reader) {
         (Some(audit), _) => audit.summary.trim().to_owned(),
-        (None, reason) => format!("not run ({})", reason.as_deref().unwrap_or("not asked for")),
+        (None, reason) => format!("not run ({})", reason.as_deref().unwrap_or_default()),
     };
     let names: Vec<String> = cases.iter().map(|c| c.display().to_string()).collect();
     let by_case = case_results(&names, &scenes, &results);

@@ -23,6 +23,14 @@ const TEXT: &str = "The files that the commands write of each case, judged by `v
 /// Why the independent reader does not run, in words.
 pub type NotRun = String;
 
+/// What the independent reader found.
+pub struct Audited {
+    /// The report `audit.md`, with the findings of all scenes.
+    pub outcome: Outcome,
+    /// By scene: its findings, of each check the file that is nearest to its tolerance.
+    pub by_scene: Vec<Vec<Finding>>,
+}
+
 /// The judgement of the independent reader, whose program is in a folder, on the files that the commands of this program write of some
 /// scenes; `done` is called after each.
 ///
@@ -33,7 +41,7 @@ pub fn study(
     program: &Path,
     scenes: &[PathBuf],
     done: &(dyn Fn(&str) + Sync),
-) -> Result<Outcome, NotRun> {
+) -> Result<Audited, NotRun> {
     let case = reader.join("case.py");
     if !case.is_file() {
         return Err(format!("{} is not found", case.display()));
@@ -53,8 +61,14 @@ pub fn study(
         done(&scene_name(scene));
         output.and_then(|output| read(&output.stdout, &output.stderr))
     };
-    let judged: Vec<Result<Value, String>> = scenes.par_iter().map(judged).collect();
-    Ok(report(scenes, &judged))
+    let judged: Vec<Judged> = scenes
+        .par_iter()
+        .map(|scene| Judged::new(&scene_name(scene), judged(scene)))
+        .collect();
+    Ok(Audited {
+        outcome: report(&judged),
+        by_scene: judged.into_iter().map(|judged| judged.findings).collect(),
+    })
 }
 
 /// What the reader printed as data; why it is none.
@@ -66,43 +80,68 @@ fn read(printed: &[u8], messages: &[u8]) -> Result<Value, String> {
     })
 }
 
-/// The report `audit.md`: of each check the file that is nearest to its tolerance.
-fn report(scenes: &[PathBuf], judged: &[Result<Value, String>]) -> Outcome {
-    let mut worst: BTreeMap<String, Finding> = BTreeMap::new();
-    let (mut count, mut not_judged) = (0, Vec::new());
-    for (scene, judged) in scenes.iter().zip(judged) {
-        let name = scene_name(scene);
-        let failed = |reason: &str| Finding {
-            worst_at: format!("{name}: {reason}"),
-            pass: false,
-            ..Finding::new("audit", Check::WrittenTwice, [f64::NAN; 2], 0.0)
-        };
-        let judged = match judged {
-            Ok(judged) => judged,
-            Err(reason) => {
-                worst.insert(name.clone(), failed(reason));
-                continue;
-            }
+/// What was found of a scene.
+struct Judged {
+    findings: Vec<Finding>,
+    count: usize,
+    not_judged: Vec<String>,
+}
+
+impl Judged {
+    /// Of each check the file that is nearest to its tolerance; what cannot be read fails.
+    fn new(name: &str, judged: Result<Value, String>) -> Self {
+        let (judged, mut errors) = match judged {
+            Ok(judged) => (judged, Vec::new()),
+            Err(reason) => (Value::Null, vec![reason]),
         };
         let list = |key: &str| judged[key].as_array().cloned().unwrap_or_default();
-        for error in list("errors") {
-            let reason = error.as_str().unwrap_or_default();
-            worst.insert(format!("{name}: {reason}"), failed(reason));
-        }
-        for skipped in list("not_judged") {
-            not_judged.push(format!("{name}: {}", skipped.as_str().unwrap_or_default()));
-        }
-        for check in list("checks") {
-            count += 1;
-            let finding = finding(&name, &check);
-            let known = worst
-                .remove(&finding.key)
-                .unwrap_or_else(|| finding.clone());
-            let worse = nearest([&known, &finding].into_iter()).cloned();
-            worst.insert(finding.key.clone(), worse.unwrap_or(known));
+        let words = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+        errors.extend(list("errors").iter().map(words));
+        let failed = |reason: String| Finding {
+            worst_at: format!("{name}: {reason}"),
+            pass: false,
+            ..Finding::new(NAME, Check::WrittenTwice, [f64::NAN; 2], 0.0)
+        };
+        let checks = list("checks");
+        let all = checks.iter().map(|check| finding(name, check));
+        let mut findings = worst_of(all);
+        findings.extend(errors.into_iter().map(failed));
+        let not_judged = list("not_judged");
+        let not_judged = not_judged
+            .iter()
+            .map(|why| format!("{name}: {}", words(why)));
+        Self {
+            findings,
+            count: checks.len(),
+            not_judged: not_judged.collect(),
         }
     }
-    let findings: Vec<Finding> = worst.into_values().collect();
+}
+
+/// The finding of each key that is nearest to its tolerance.
+fn worst_of(all: impl Iterator<Item = Finding>) -> Vec<Finding> {
+    let mut worst: BTreeMap<String, Finding> = BTreeMap::new();
+    for finding in all {
+        let known = worst
+            .remove(&finding.key)
+            .unwrap_or_else(|| finding.clone());
+        let worse = nearest([&known, &finding].into_iter()).cloned();
+        worst.insert(finding.key.clone(), worse.unwrap_or(known));
+    }
+    worst.into_values().collect()
+}
+
+/// The report `audit.md`: of each check the file that is nearest to its tolerance.
+fn report(judged: &[Judged]) -> Outcome {
+    let all = judged.iter().flat_map(|judged| &judged.findings);
+    let (read, unread): (Vec<&Finding>, Vec<&Finding>) = all.partition(|f| f.key != NAME);
+    let mut findings = worst_of(read.into_iter().cloned());
+    findings.extend(unread.into_iter().cloned());
+    let count: usize = judged.iter().map(|judged| judged.count).sum();
+    let not_judged: Vec<String> = judged
+        .iter()
+        .flat_map(|judged| judged.not_judged.clone())
+        .collect();
     let mut blocks = vec![
         Block::Text(result_line(&findings)),
         Block::Text(TEXT.to_owned()),
@@ -119,7 +158,7 @@ fn report(scenes: &[PathBuf], judged: &[Result<Value, String>]) -> Outcome {
     outcome
         .files
         .add_document(NAME, &Document { title, blocks });
-    let judged = format!(", {count} checks of the files of {} cases", scenes.len());
+    let judged = format!(", {count} checks of the files of {} scenes", judged.len());
     outcome.summary = findings_text(NAME, &findings, &judged);
     outcome.findings = findings;
     outcome

@@ -545,7 +545,9 @@ fn a_motion_of_two_coordinates_ends_where_the_table_of_a_coupling_does() {
         "{said}"
     );
     assert!(
-        labels.iter().any(|label| label.starts_with("table = [[0, 0]")),
+        labels
+            .iter()
+            .any(|label| label.starts_with("table = [[0, 0]")),
         "{labels:?}"
     );
 }

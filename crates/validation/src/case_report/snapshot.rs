@@ -3,6 +3,7 @@
 use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis};
 use crate::checked::multibody::FreeMotionRun;
 use crate::checked::states::CheckedStates;
+use crate::written::WRITTEN_PREFIX;
 use dwell_findings::Finding;
 use dwell_kinetostatics::ReducedModel;
 use dwell_scene::PlaneScene;
@@ -21,7 +22,7 @@ pub(super) fn snapshot(scene: &PlaneScene, analysis: &CaseAnalysis<'_>) -> Strin
     let mut text = format!("{}\n\n{values}\n", scene.title);
     // Differences are rounding errors of one machine; which findings pass is the same on all.
     // Those over written files need the program, which the library has not: they are on the page of the case.
-    let of_library = |f: &&Finding| !f.key.starts_with("written-");
+    let of_library = |f: &&Finding| !f.key.starts_with(WRITTEN_PREFIX);
     for f in analysis.findings.iter().filter(of_library) {
         let result = if f.pass { "pass" } else { "FAIL" };
         text += &format!("{result}  {}  [{}]\n", f.key, f.check);

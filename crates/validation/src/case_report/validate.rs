@@ -11,7 +11,7 @@ use crate::cases::reference::{Reference, SourceKinds};
 use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis, analyse};
 use crate::error::ValidationError;
 use crate::report_parts::findings_text;
-use dwell_findings::{Check, Record};
+use dwell_findings::{Check, Finding, Record};
 use dwell_report::{Figure, Files, TableExport as _};
 use dwell_scene::PlaneScene;
 use dwell_study::output::Picture;
@@ -30,8 +30,17 @@ pub struct Validation {
     pub snapshot: String,
     /// The checks without findings, and in a few words why.
     pub not_applicable: Vec<(Check, &'static str)>,
+    /// What the independent reader found of its files, if it ran.
+    pub audited: Vec<Finding>,
     /// Who made the reference values, by table.
     pub(crate) source_kinds: SourceKinds,
+}
+
+impl Validation {
+    /// All findings, also those of the independent reader.
+    pub(crate) fn findings(&self) -> impl Iterator<Item = &Finding> + Clone {
+        self.outcome.findings.iter().chain(&self.audited)
+    }
 }
 
 /// Validates the case whose scene is `scene` and whose reference, if any, is in `folder`. The
@@ -113,6 +122,7 @@ fn validate_case(
         },
         snapshot,
         not_applicable: analysis.not_applicable,
+        audited: Vec::new(),
     })
 }
 

@@ -2,7 +2,7 @@
 //! and against reference values of the mechanism that the body stands for.
 
 use crate::cases::reference::Reference;
-use crate::written::poses::angle_table::AngleTable;
+use crate::checked::angle_table::AngleTable;
 use crate::written::poses::units::Units;
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::KnownReaction;

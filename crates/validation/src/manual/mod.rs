@@ -63,7 +63,7 @@ impl Manual {
     pub fn new(cases: &[&PlaneScene], folder: &Path) -> Self {
         let mut written: Vec<PlaneScene> = cases.iter().map(|scene| (*scene).clone()).collect();
         let mut unread = Vec::new();
-        for path in scene_files(&folder.join(CAPABILITY_FOLDER)) {
+        for path in capability_scenes(folder) {
             match PlaneScene::read(&path) {
                 Ok(scene) => written.push(scene),
                 Err(error) => unread.push(format!("{}: {}", path.display(), error.message)),
@@ -230,9 +230,10 @@ fn failed_finding(why: String) -> Finding {
     }
 }
 
-/// The scenes in a folder, by name.
-fn scene_files(folder: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(folder).into_iter().flatten();
+/// The small scenes in the folder of the cases, by name.
+pub fn capability_scenes(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder.join(CAPABILITY_FOLDER));
+    let entries = entries.into_iter().flatten();
     let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
     let mut scenes: Vec<PathBuf> = paths
         .filter(|path| path.extension().is_some_and(|e| e == "toml"))

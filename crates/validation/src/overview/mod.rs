@@ -59,13 +59,15 @@ pub(crate) enum CheckCell<'a> {
 /// The results of every check in a validated case.
 pub(crate) fn check_cells(done: &Validation) -> [CheckCell<'_>; Check::ALL.len()] {
     Check::ALL.map(|check| {
-        let all = done.outcome.findings.iter();
+        let all = done.findings();
+        let is_audited = check < Check::WrittenPositions || !done.audited.is_empty();
+        let none = if is_audited { "nothing" } else { "no audit" };
         let mut reasons = done.not_applicable.iter();
         match nearest(all.filter(|f| f.check == check)) {
             Some(finding) => CheckCell::Nearest(finding),
             None => {
                 let reason = reasons.find(|(of, _)| *of == check);
-                CheckCell::NotApplicable(reason.map_or("nothing", |(_, why)| why))
+                CheckCell::NotApplicable(reason.map_or(none, |(_, why)| why))
             }
         }
     })
@@ -142,8 +144,8 @@ impl ValidatedCase<'_> {
     }
 
     fn passes(&self) -> bool {
-        let findings = self.result.as_ref().map(|done| &done.outcome.findings);
-        findings.is_ok_and(|findings| all_pass(findings))
+        let done = self.result.as_ref();
+        done.is_ok_and(|done| done.findings().all(|finding| finding.pass))
     }
 }
 
@@ -171,7 +173,7 @@ fn failures(results: &[ValidatedCase<'_>]) -> Vec<Block> {
     for ValidatedCase { name, result, .. } in results {
         match result {
             Ok(validation) => {
-                for failed in validation.outcome.findings.iter().filter(|f| !f.pass) {
+                for failed in validation.findings().filter(|f| !f.pass) {
                     let words = describe_failure(failed).join("; ");
                     text += &format!("- `{name}` {}: {words}\n", failed.key);
                 }

@@ -3,10 +3,11 @@
 //! and what the program writes of each.
 //!
 //! ```text
-//! reference ── subject ── findings ── written ── report
+//! reference ── subject ── findings ── report
 //! ```
 
 mod claims;
+mod determined;
 mod findings;
 mod motion;
 mod period;
@@ -17,7 +18,6 @@ mod several;
 mod states;
 mod stopped_motion;
 mod subject;
-mod written;
 
 pub use claims::{ClaimsIn, SpaceClaims};
 pub use reference_poses::{ReferencePoses, SpaceSubject};

@@ -6,7 +6,6 @@ use super::states::{free_accelerations, free_machine, in_units};
 use crate::error::ValidationError;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::rows::largest;
-use crate::written::poses::table_curve::solve;
 use dwell_dynamics::{
     DenseOutput, Machine, MachineOde, Method, OdeState, Options, StepControl, integrate,
 };
@@ -261,4 +260,24 @@ fn solved(columns: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
     let n = columns.len();
     let row = |i: usize| columns.iter().map(|c| c[i]).chain([right[i]]).collect();
     solve((0..n).map(row).collect())
+}
+
+/// Gauss's elimination with the largest pivots; the right side is the last column.
+fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
+    let n = rows.len();
+    for column in 0..n {
+        let size = |row: &usize| rows[*row][column].abs();
+        let pivot = (column..n).max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        rows.swap(column, pivot);
+        let pivot_row = rows[column].clone();
+        if pivot_row[column] == 0.0 {
+            return None;
+        }
+        for (_, row) in rows.iter_mut().enumerate().filter(|(k, _)| *k != column) {
+            let factor = row[column] / pivot_row[column];
+            let pairs = row.iter_mut().zip(&pivot_row);
+            pairs.for_each(|(x, p)| *x -= factor * p);
+        }
+    }
+    Some((0..n).map(|k| rows[k][n] / rows[k][k]).collect())
 }

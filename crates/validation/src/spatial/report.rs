@@ -1,12 +1,13 @@
 //! The report of a case in space: findings, what is determined, pictures, and the values that every machine reproduces.
 
+use super::determined;
 use super::findings::findings;
 use super::reference::Reference;
 use super::several::of_several;
-use super::written::written_findings;
 use crate::case_report::validate::Validation;
 use crate::error::ValidationError;
 use crate::report_parts::{figure_blocks, findings_text, result_line};
+use crate::written::{self, WRITTEN_PREFIX};
 use dwell_findings::Finding;
 use dwell_kinetostatics::Coefficients;
 use dwell_report::{Block, Document, Figure, Files, markdown_text};
@@ -47,13 +48,17 @@ pub fn validate_in_space(
     program: Option<&Path>,
 ) -> Result<Validation, ValidationError> {
     let reference = reference.map(Reference::read).transpose()?;
-    let written = program.map(|path| written_findings(scene, path));
-    let written = written.transpose()?.unwrap_or_default();
     let mut report = match scene.mechanism.actuators.len() {
         1 => of_one(scene, reference.as_ref())?,
         _ => of_several(scene, reference.as_ref())?,
     };
-    report.findings.extend(written);
+    if let Some(program) = program {
+        let text = scene.source.inner();
+        report
+            .findings
+            .extend(written::findings(program, &scene.name, text));
+        report.findings.extend(determined::finding(scene, program)?);
+    }
     report.findings.sort_by_key(|finding| finding.check);
     let document = document(scene, reference.as_ref(), &report);
     let Report {
@@ -64,7 +69,8 @@ pub fn validate_in_space(
     } = report;
     snapshot.push('\n');
     // Writing to a string cannot fail.
-    for f in &findings {
+    let of_library = |f: &&Finding| !f.key.starts_with(WRITTEN_PREFIX);
+    for f in findings.iter().filter(of_library) {
         let result = if f.pass { "pass" } else { "FAIL" };
         let _ = writeln!(snapshot, "{result}  {}  [{}]", f.key, f.check);
     }

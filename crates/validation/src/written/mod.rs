@@ -1,8 +1,8 @@
-//! Checks of what leaves the program: it runs as a process, and its files are read back and compared with a second reading of
-//! the scene.
+//! Checks of what leaves the program that need the program: it runs as a process, and its sentences are compared with its files, and these with
+//! those of other runs, for scenes in the plane and in space. The numbers of the files are judged by `validation/audit`.
 
 mod cycles;
-pub(crate) mod motions;
+mod motions;
 mod operating_points;
 pub(crate) mod poses;
 mod sweeps;
@@ -10,18 +10,22 @@ mod sweeps;
 use dwell_findings::Finding;
 use poses::compared::Compared;
 use poses::program::Program;
+use poses::scene_text::Scene;
 use std::path::Path;
 
+/// How the keys of these findings begin: they need the program, which the library has not.
+pub(crate) const WRITTEN_PREFIX: &str = "written-";
+
 /// Compares the files of some commands on a scene; why they cannot be compared, in words.
-type Compare = fn(&mut Compared, &Program, &str) -> Result<(), String>;
+type Compare = fn(&mut Compared, &Program, &Scene) -> Result<(), String>;
 
 /// What the name of the folder ends with, the key of the finding that fails where nothing can be compared, and the comparison.
 const COMPARISONS: [(&str, &str, Compare); 5] = [
-    ("", "written-closure", poses::compare),
-    ("-motion", "written-motion-closure", motions::compare),
+    ("", "written-sentences", poses::compare),
+    ("-motion", "written-motion-again", motions::compare),
     ("-points", "written-linear", operating_points::compare),
-    ("-cycle", "written-cycle", cycles::compare),
-    ("-sweep", "written-sweep-draws", sweeps::compare),
+    ("-cycle", "written-cycle-period", cycles::compare),
+    ("-sweep", "written-sweep", sweeps::compare),
 ];
 
 /// Runs the program at `path` on a case and judges what it writes. A run that fails is a failed finding.
@@ -29,7 +33,8 @@ pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
     let all = COMPARISONS.iter().flat_map(|(end, key, compare)| {
         let program = Program::new(path, &format!("{name}{end}"));
         let mut compared = Compared::default();
-        if let Err(reason) = compare(&mut compared, &program, scene) {
+        let scene = Scene::read(scene);
+        if let Err(reason) = scene.and_then(|scene| compare(&mut compared, &program, &scene)) {
             compared.fail(key, reason);
         }
         compared.findings()

@@ -1,11 +1,9 @@
 //! The tolerances of a case, by finding: written from measurement, in place of those of the code.
 
 use super::{object, parse};
+use crate::written::WRITTEN_PREFIX;
 use dwell_findings::Finding;
 use serde_json::Value;
-
-/// How the keys of findings over written files begin.
-const WRITTEN_PREFIX: &str = "written-";
 
 /// By key of a finding: the largest relative difference allowed.
 #[derive(Debug, Clone, Default, PartialEq)]

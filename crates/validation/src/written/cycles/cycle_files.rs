@@ -1,15 +1,13 @@
 //! The findings over the steady cycle of a case.
 
 use super::multipliers::{Multiplier, multiplier_differences};
-use crate::written::motions::{sentences, simpson};
 use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
+use crate::written::poses::printed_numbers::sentences;
 use crate::written::poses::program::{Program, Run};
-use crate::written::poses::reading::{Measure, Reading};
-use crate::written::poses::rows::{Rows, largest};
-use crate::written::poses::scene_text::{table_of, text_of, value_of};
+use crate::written::poses::rows::Rows;
+use crate::written::poses::scene_text::{Scene, number, text_of, value_of, with_number};
 use crate::written::poses::stated::{result, sentence_differences};
-use crate::written::poses::units::Units;
 use serde_json::Value;
 use std::f64::consts::{PI, TAU};
 use toml::Table;
@@ -26,15 +24,16 @@ const MAX_CYCLES: f64 = 24.0;
 pub(crate) fn compare(
     compared: &mut Compared,
     program: &Program,
-    scene: &str,
+    scene: &Scene,
 ) -> Result<(), String> {
-    let table = &table_of(scene)?;
-    if !table.contains_key("motion") || !table.contains_key("drives") {
+    let table = &scene.table;
+    if !scene.has("motion") || !scene.has("drives") {
         return Ok(());
     }
+    let text = text_of(table)?;
     let wanted = FLUCTUATION.to_string();
     // Without a steady cycle the status is another, and there are no files.
-    let Ok(run) = program.run("cycle", scene, &["cycle", "--fluctuation", &wanted]) else {
+    let Ok(run) = program.run("cycle", &text, &["cycle", "--fluctuation", &wanted]) else {
         return Ok(());
     };
     let summary = run.json("-cycle.json")?;
@@ -43,30 +42,13 @@ pub(crate) fn compare(
     };
     let rows = run.csv("-cycle.csv")?;
     let coordinate = coordinate(&rows).ok_or("the rows have no coordinate")?;
-    compare_rows(compared, (&summary, ""), &rows, &coordinate, "cycle");
-    for (name, work) in rows.ending(".work") {
-        add_works(compared.of("written-cycle"), &summary, name, work);
-    }
-    if let (Ok(rows), Some(_)) = (
-        run.csv("-cycle-flywheel.csv"),
-        result(&summary, "flywheel.inertia"),
-    ) {
-        compare_rows(
-            compared,
-            (&summary, "flywheel."),
-            &rows,
-            &coordinate,
-            "cycle with flywheel",
-        );
-    }
-    add_need(compared.of("written-cycle"), &run, &summary);
+    add_need(compared.of("written-cycle-sentences"), &run, &summary);
     compared.merge("written-cycle-sentences", sentences(&run, &summary));
-    let angle = Units::read(table).map_or(1.0, |units| units.angle);
     compared.merge(
         "written-cycle-sentences",
-        said(&run.printed, &summary, angle),
+        said(&run.printed, &summary, scene.units.angle),
     );
-    with_heavier_body(compared, program, (scene, table, &coordinate), &summary)?;
+    with_heavier_body(compared, program, (scene, &coordinate), &summary)?;
     long_motion(compared, program, (table, &coordinate), &summary, period)
 }
 
@@ -116,37 +98,32 @@ fn said(printed: &str, summary: &Value, angle: f64) -> Differences {
 fn with_heavier_body(
     compared: &mut Compared,
     program: &Program,
-    (scene, table, coordinate): (&str, &Table, &str),
+    (scene, coordinate): (&Scene, &str),
     summary: &Value,
 ) -> Result<(), String> {
-    let reading = Reading::new(scene)?;
-    let turning = reading.coordinates.iter().find(|c| c.name == coordinate);
-    let body = match turning.map(|c| c.measure) {
-        Some(Measure::Angle([first, second])) if reading.bodies[first].is_ground => second,
-        _ => return Ok(()),
+    let actuator = scene.table.get("actuators").and_then(|a| a.get(coordinate));
+    let bodies = actuator.and_then(|actuator| actuator.get("angle")?.as_array());
+    let body = match bodies.map(Vec::as_slice) {
+        Some([ground, body]) if ground.as_str() == Some("ground") => body.as_str(),
+        _ => None,
     };
-    let Some(inertia) = result(summary, "flywheel.inertia") else {
+    let (Some(body), Some(inertia)) = (body, result(summary, "flywheel.inertia")) else {
         return Ok(());
     };
-    let mut heavier = table.clone();
-    let bodies = heavier
-        .get_mut("bodies")
-        .and_then(toml::Value::as_table_mut);
-    let entry =
-        bodies.and_then(|bodies| bodies.get_mut(&reading.bodies[body].name)?.as_table_mut());
-    let Some(entry) = entry else { return Ok(()) };
-    let sum = (reading.bodies[body].inertia + inertia) / reading.units.inertia;
-    entry.insert("inertia".to_owned(), sum.into());
-    let text = text_of(&heavier)?;
+    let of_body = scene.table.get("bodies").and_then(|b| b.get(body));
+    let Some(own) = number(of_body.and_then(|body| body.get("inertia"))) else {
+        return Ok(());
+    };
+    let sum = own + inertia / scene.units.inertia;
+    let heavier = with_number(&scene.table, &["bodies", body, "inertia"], sum);
+    let text = text_of(&heavier.ok_or("the body has no inertia")?)?;
     let run = program.run("heavier", &text, &["cycle"])?;
     let other = run.json("-cycle.json")?;
     let found = compared.of("written-cycle-flywheel");
-    let [wheel, body] = [(summary, "flywheel."), (&other, "")].map(|(of, prefix)| {
-        ["mean_speed", "slowest_speed", "fastest_speed"]
-            .map(|name| result(of, &format!("{prefix}{name}")).unwrap_or(f64::NAN))
-    });
-    for (one, two) in wheel.into_iter().zip(body) {
-        found.add(one - two, two, "rad/s", || "speeds with the flywheel");
+    for name in ["mean_speed", "slowest_speed", "fastest_speed"] {
+        let of = |summary: &Value, name: &str| result(summary, name).unwrap_or(f64::NAN);
+        let [wheel, body] = [of(summary, &format!("flywheel.{name}")), of(&other, name)];
+        found.add(wheel - body, body, "rad/s", || "speeds with the flywheel");
     }
     Ok(())
 }
@@ -160,95 +137,6 @@ fn coordinate(rows: &Rows) -> Option<String> {
     names
         .find(|name| rows.columns.contains_key(*name))
         .map(str::to_owned)
-}
-
-/// Rows of a cycle: rates, the same state at both ends, and speeds of the summary.
-fn compare_rows(
-    compared: &mut Compared,
-    (summary, prefix): (&Value, &str),
-    rows: &Rows,
-    coordinate: &str,
-    file: &str,
-) {
-    let (time, q) = (rows.column("t"), rows.column(coordinate));
-    let [speed, acceleration] =
-        ["velocity", "acceleration"].map(|end| rows.column(&format!("{coordinate}.{end}")));
-    let columns = [time, q, speed, acceleration];
-    add_rates(compared.of("written-cycle-rates"), columns, file);
-    let fastest = largest(speed);
-    let found = compared.of("written-cycle");
-    let place = |what: &str| format!("{file}, {what}");
-    found.add(change(speed), fastest, "rad/s", || {
-        place("speed at both ends")
-    });
-    let mean = change(q) / change(time);
-    let of = |name: &str| result(summary, &format!("{prefix}{name}")).unwrap_or(f64::NAN);
-    found.add(of("mean_speed") - mean, fastest, "rad/s", || {
-        place("mean speed")
-    });
-    if prefix.is_empty() {
-        let period = change(time);
-        found.add(of("period") - period, period, "s", || place("period"));
-    }
-    // A cycle begins in the first revolutions of its coordinate.
-    let turns = result(summary, "revolutions").unwrap_or(f64::NAN);
-    let start = q.first().copied().unwrap_or(f64::NAN);
-    let outside = (-start).max(start - TAU * turns).max(0.0);
-    found.add(outside, TAU, "rad", || place("the first coordinate"));
-    found.add(change(q) - TAU * turns, TAU, "rad", || place("revolutions"));
-    add_speeds(found, &of, speed, file);
-    let fluctuation = (of("fastest_speed").abs() - of("slowest_speed").abs()) / mean.abs();
-    // With the flywheel it is the wanted one.
-    let stated = match prefix {
-        "" => of("coefficient_of_fluctuation"),
-        _ => FLUCTUATION,
-    };
-    found.add(stated - fluctuation, 1.0, "", || {
-        place("coefficient of fluctuation")
-    });
-}
-
-/// The last value less the first.
-fn change(values: &[f64]) -> f64 {
-    let ends = values.last().zip(values.first());
-    ends.map_or(f64::NAN, |(last, first)| last - first)
-}
-
-/// Between rows the motion may be faster or slower, by no more than the largest change from row to row.
-fn add_speeds(to: &mut Differences, of: &dyn Fn(&str) -> f64, speed: &[f64], file: &str) {
-    let changes = speed.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    let change = changes.fold(0.0, f64::max);
-    let sizes = speed.iter().map(|v| v.abs());
-    let (least, most) = (sizes.fold(f64::INFINITY, f64::min), largest(speed));
-    for (beyond, what) in [
-        (least - of("slowest_speed").abs(), "slowest speed"),
-        (of("fastest_speed").abs() - most, "fastest speed"),
-    ] {
-        let excess = (-beyond).max(beyond - change).max(0.0);
-        to.add(excess, most, "rad/s", || format!("{file}, {what}"));
-    }
-}
-
-/// The rows are at equal distances of the coordinate, where t′ = 1/q̇ and (½q̇²)′ = q̈.
-fn add_rates(to: &mut Differences, [time, q, speed, acceleration]: [&[f64]; 4], file: &str) {
-    let slowness: Vec<f64> = speed.iter().map(|v| 1.0 / v).collect();
-    let squares: Vec<f64> = speed.iter().map(|v| 0.5 * v * v).collect();
-    for (values, rate, what) in [
-        (time, &slowness[..], "t"),
-        (&squares, acceleration, "speed"),
-    ] {
-        let place = format!("{file}, {what}");
-        simpson(to, q, [values, rate], largest(values), &place);
-    }
-}
-
-/// The work of a source in a cycle, by its column.
-fn add_works(to: &mut Differences, summary: &Value, name: &str, work: &[f64]) {
-    if let Some(stated) = result(summary, name) {
-        to.add(stated - change(work), largest(work), "J", || {
-            format!("{name} of a cycle")
-        });
-    }
 }
 
 /// The time between the last two revolutions of a motion that has settled is the period.

@@ -1,4 +1,4 @@
-//! The files of `cycle`: rows, summary and works of the steady cycle, and its period in a long motion by `simulate`.
+//! The steady cycle of `cycle` in other runs, and its sentences.
 
 mod cycle_files;
 mod multipliers;

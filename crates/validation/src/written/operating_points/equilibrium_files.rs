@@ -1,12 +1,10 @@
-//! What `equilibria` and `linearise` write of equilibria beside their modes: how far they are from the start, what was searched, the words for
-//! their stability, that both commands find the same, and the extent of the static force, which `statics` gives row by row.
+//! What `equilibria` and `linearise` say of equilibria: what was searched, neutral directions, the words for their stability, and the extent of
+//! the static force, which `statics` gives row by row.
 
-use super::characteristic::{Complex, largest_size};
-use super::modes::eigenvalues;
+use super::eigenvalues::{Complex, eigenvalues};
 use super::starts::{FreeCoordinate, Start};
 use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
-use crate::written::poses::equilibrium::equilibrium;
 use crate::written::poses::program::{Program, Run};
 use crate::written::poses::rows::{extent, largest};
 use crate::written::poses::scene_text::{text_of, value_of};
@@ -22,7 +20,7 @@ const POSITIONS: &str = "361";
 pub(super) fn compare(
     compared: &mut Compared,
     program: &Program,
-    start: &Start<'_>,
+    start: &Start,
     (rest, about): (&Run, Option<&Run>),
 ) -> Result<(), String> {
     let summary = rest.json("-equilibria.json")?;
@@ -30,7 +28,6 @@ pub(super) fn compare(
     let names: Vec<String> = (1..=count).map(|k| format!("equilibrium.{k}")).collect();
     let start_of = compared.of("written-rest-start");
     for name in &names {
-        add_start(start_of, start, &summary, name);
         add_neutral(start_of, start, &summary, name);
     }
     add_searched(start_of, start, &summary);
@@ -40,32 +37,16 @@ pub(super) fn compare(
         let linear = about.json("-linearise.json")?;
         let name = "equilibrium".to_owned();
         let start_of = compared.of("written-rest-start");
-        add_start(start_of, start, &linear, &name);
         add_neutral(start_of, start, &linear, &name);
         let words = compared.of("written-rest-words");
         add_words(words, &about.printed, &linear, std::slice::from_ref(&name));
-        let again = compared.of("written-rest-again");
-        add_same(again, start, (&summary, &names), &linear);
     }
     static_force(compared, program, start, &summary)
 }
 
-/// Each coordinate less that of the start.
-fn add_start(to: &mut Differences, start: &Start<'_>, summary: &Json, name: &str) {
-    for (free, from) in start.free.iter().zip(start.values()) {
-        let at = result(summary, &format!("{name}.{}", free.name));
-        let written = result(summary, &format!("{name}.{}.from_start", free.name));
-        if let (Some(at), Some(written)) = (at, written) {
-            to.add(written - (at - from), free.size.max(from.abs()), "", || {
-                format!("{name}, {} from the start", free.name)
-            });
-        }
-    }
-}
-
 /// A direction in which an equilibrium goes on has 1 as its largest part, and the positions that are one all around it begin before it and end
 /// behind.
-fn add_neutral(to: &mut Differences, start: &Start<'_>, summary: &Json, name: &str) {
+fn add_neutral(to: &mut Differences, start: &Start, summary: &Json, name: &str) {
     for k in 1..=start.free.len() {
         let part = |free: &FreeCoordinate, of: &str| {
             result(summary, &format!("{name}.neutral.{k}.{}{of}", free.name))
@@ -92,7 +73,7 @@ fn add_neutral(to: &mut Differences, start: &Start<'_>, summary: &Json, name: &s
 }
 
 /// Of an angle not more than a revolution is searched, and the start is within.
-fn add_searched(to: &mut Differences, start: &Start<'_>, summary: &Json) {
+fn add_searched(to: &mut Differences, start: &Start, summary: &Json) {
     for (free, from) in start.free.iter().zip(start.values()) {
         let end = |end: &str| result(summary, &format!("searched.{}.{end}", free.name));
         let (Some(low), Some(high)) = (end("from"), end("to")) else {
@@ -103,7 +84,7 @@ fn add_searched(to: &mut Differences, start: &Start<'_>, summary: &Json) {
             format!("{}: the start is not searched", free.name)
         });
         let place = || format!("{}, extent of the search", free.name);
-        let is_whole = start.free.len() > 1 && free.size == 1.0 && start.is_angle(&free.name);
+        let is_whole = start.free.len() > 1 && free.is_angle;
         let difference = match is_whole {
             true => high - low - TAU,
             false => (low - high).max(0.0),
@@ -161,71 +142,12 @@ pub(super) fn is_neutral(summary: &Json, name: &str) -> bool {
     results.is_some_and(|all| all.keys().any(|key| key.starts_with(&start)))
 }
 
-/// The equilibrium of `linearise` is one of the table, with its modes.
-// Long because place, nearness and modes are of one pair of equilibria.
-fn add_same(
-    to: &mut Differences,
-    start: &Start<'_>,
-    (summary, names): (&Json, &[String]),
-    linear: &Json,
-) {
-    let away = |name: &str| {
-        let of = start.free.iter().map(|free| {
-            let at = |of: &Json, name: &str| result(of, &format!("{name}.{}", free.name));
-            let (Some(one), Some(other)) = (at(summary, name), at(linear, "equilibrium")) else {
-                return f64::INFINITY;
-            };
-            (one - other).abs() / free.size
-        });
-        of.fold(0.0, f64::max)
-    };
-    // Where every position is one, it is no other.
-    if names.iter().any(|name| is_neutral(summary, name)) {
-        return;
-    }
-    let Some(nearest) = names.iter().min_by(|a, b| away(a).total_cmp(&away(b))) else {
-        to.fail("`linearise` has an equilibrium, and `equilibria` none");
-        return;
-    };
-    to.add(away(nearest), 1.0, "", || "the place of the equilibrium");
-    if let ([free], [from]) = (
-        start.free.as_slice(),
-        &start.values().collect::<Vec<_>>()[..],
-    ) {
-        let aside = |at: Option<f64>| at.map_or(f64::INFINITY, |at| (at - from).abs());
-        let of_table = |name: &String| result(summary, &format!("{name}.{}", free.name));
-        let all = names.iter().map(|name| aside(of_table(name)));
-        let least = all.fold(f64::INFINITY, f64::min);
-        let this = aside(result(linear, &format!("equilibrium.{}", free.name)));
-        to.add(
-            (this - least).max(0.0),
-            free.size,
-            "",
-            || "an equilibrium nearer to the start",
-        );
-    }
-    let [these, those] = [
-        eigenvalues(linear, "equilibrium"),
-        eigenvalues(summary, nearest),
-    ];
-    let largest = largest_size(&these);
-    if these.len() != those.len() {
-        to.fail(format!("{} and {} eigenvalues", these.len(), those.len()));
-    }
-    for (a, b) in these.iter().zip(&those) {
-        let difference = (a[0] - b[0]).hypot(a[1] - b[1]);
-        to.add(difference, largest, "1/s", || {
-            format!("eigenvalue {} i {}", a[0], a[1])
-        });
-    }
-}
-
 /// The rows of `statics` over the interval that was searched: the smallest and largest static force, and an equilibrium wherever the force
 /// changes its sign.
 fn static_force(
     compared: &mut Compared,
     program: &Program,
-    start: &Start<'_>,
+    start: &Start,
     summary: &Json,
 ) -> Result<(), String> {
     let [free] = start.free.as_slice() else {
@@ -240,7 +162,7 @@ fn static_force(
     if holds(&start.scene) {
         return Ok(());
     }
-    let Some([places, forces]) = static_rows(compared, program, start, free, [from, to])? else {
+    let Some([places, forces]) = static_rows(program, start, free, [from, to])? else {
         return Ok(());
     };
     let found = compared.of("written-static-force");
@@ -278,12 +200,10 @@ fn holds(scene: &Table) -> bool {
     })
 }
 
-/// Coordinates, and what the loads do there, by rows in which each body is in equilibrium under the loads of the scene's text; none where the
-/// loads are refused, as those in time.
+/// Coordinates, and what the loads do there; none where the loads are refused, as those in time.
 fn static_rows(
-    compared: &mut Compared,
     program: &Program,
-    start: &Start<'_>,
+    start: &Start,
     free: &FreeCoordinate,
     interval: [f64; 2],
 ) -> Result<Option<[Vec<f64>; 2]>, String> {
@@ -299,11 +219,6 @@ fn static_rows(
         return Ok(None);
     };
     let mut rows = run.csv("-statics.csv")?;
-    let file = "statics over the searched interval";
-    let forces = equilibrium(&start.motion.reading, &rows, file, true);
-    compared.merge("written-equilibrium", forces.bodies);
-    compared.merge("written-loads", forces.loads);
-    compared.merge("written-totals", forces.totals);
     let mut column = |name: &str| rows.columns.remove(name).ok_or(format!("no column {name}"));
     // The actuator holds what the loads do.
     let forces = column(&format!("{}.actuator_force", free.name))?;

@@ -48,18 +48,6 @@ impl LinearFile {
         self.entries.get(&key).copied()
     }
 
-    /// A: the rates of all states, by state; none where it is empty.
-    pub(super) fn state_matrix(&self) -> Option<Vec<Vec<f64>>> {
-        let rates = self.rows.iter().filter(|(name, _)| name.starts_with("d("));
-        let states = self.columns.get(..rates.clone().count())?;
-        let row = |(rate, _): &(String, String)| {
-            let entries = states.iter().map(|state| self.entry(rate, state));
-            entries.collect::<Option<Vec<f64>>>()
-        };
-        let matrix: Vec<Vec<f64>> = rates.map(row).collect::<Option<_>>()?;
-        (!matrix.is_empty()).then_some(matrix)
-    }
-
     /// The rates and outputs at the state itself, by row, from the archive.
     pub(super) fn values(&self, archive: &Rows) -> Option<BTreeMap<String, f64>> {
         let [rates, outputs] = ["rates", "output"].map(|name| archive.columns.get(name));
@@ -91,8 +79,6 @@ mod tests {
         assert_eq!(file.entry("J.x", "u"), Some(5.0));
         assert_eq!(file.entry("J.x", "q.velocity"), Some(4.0));
         assert_eq!(file.rows[2], ("J.x".to_owned(), "N".to_owned()));
-        let matrix = vec![vec![0.0, 1.0], vec![-4.0, 0.0]];
-        assert_eq!(file.state_matrix(), Some(matrix));
         assert!(LinearFile::read("matrix,row,q\nA,d(q)/dt,x\n").is_none());
     }
 }

@@ -1,18 +1,16 @@
-//! The files of `linearise` and `equilibria`: eigenvalues against the matrix that is written, frequencies against eigenvalues,
-//! and the same numbers in table, summary and sentences.
+//! The files and sentences of `linearise` and `equilibria` against runs from other starts.
 //!
 //! ```text
-//! program as a process ── matrices, table, summary, sentences ── characteristic (determinant), modes ── findings
+//! program as a process ── matrices, table, summary, sentences ───────────────────── findings
 //!      └── starts (changed states and inputs) ── rows of simulate ── slopes (A, B, C, D by differences) ────┤
 //!      └── starts in equilibria ── rows of simulate, modes of linearise ── rest ────────────────────────────┤
 //!      └── starts near equilibria ── places of linearise ── nearest ───────────────────────────────────────┤
 //! summaries, sentences, rows of statics ── equilibrium_files ──────────────────────────────────────────────┘
 //! ```
 
-mod characteristic;
+mod eigenvalues;
 mod equilibrium_files;
 mod linear_file;
-mod modes;
 mod nearest;
 mod point_files;
 mod rest;

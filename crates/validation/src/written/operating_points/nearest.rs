@@ -76,7 +76,7 @@ fn compare_near(
     Ok(())
 }
 
-fn distance(start: &Start<'_>, one: &[f64], other: &[f64]) -> f64 {
+fn distance(start: &Start, one: &[f64], other: &[f64]) -> f64 {
     let free = start.free.iter().zip(one.iter().zip(other));
     free.map(|(free, (a, b))| ((a - b) / free.size).abs())
         .fold(0.0, f64::max)

@@ -2,9 +2,8 @@
 //! must find the same modes there. One that oscillates does so again with a damper that has a known share of its critical
 //! damping.
 
-use super::characteristic::{largest_size, size};
+use super::eigenvalues::{eigenvalues, largest_size, size};
 use super::linear_file::LinearFile;
-use super::modes::eigenvalues;
 use super::nearest;
 use super::runs::{linearise, simulate};
 use super::starts::{Changed, FreeCoordinate, Start};
@@ -23,7 +22,7 @@ const DAMPING_RATIO: f64 = 0.15;
 /// The equilibria of a scene, and the scene's start.
 pub(super) struct Rest<'a> {
     pub(super) program: &'a Program,
-    pub(super) start: &'a Start<'a>,
+    pub(super) start: &'a Start,
     pub(super) rows: &'a Rows,
     pub(super) summary: &'a Json,
 }
@@ -35,44 +34,7 @@ impl Rest<'_> {
             self.compare_place(compared, row)?;
         }
         nearest::compare(self, compared)?;
-        if let Some(order) = self.order() {
-            compared.merge("written-rest-order", order);
-        }
         self.compare_damped(compared)
-    }
-
-    /// Along one coordinate the force at rest crosses zero upwards and downwards in turn: the product of both eigenvalues, the
-    /// stiffness over the inertia, changes its sign from one equilibrium to the next. None with states of drives, and where one of
-    /// the equilibria is neutral.
-    fn order(&self) -> Option<Differences> {
-        let [free] = self.start.free.as_slice() else {
-            return None;
-        };
-        let mut places = Vec::new();
-        for row in 0..self.rows.count {
-            let values = eigenvalues(self.summary, &format!("equilibrium.{}", row + 1));
-            let [[a, b], [c, d]] = *values.as_slice() else {
-                return None;
-            };
-            let [product, whole] = [a * c - b * d, a.hypot(b) * c.hypot(d)];
-            if product.abs() < 1e-6 * whole || whole == 0.0 {
-                return None;
-            }
-            places.push((self.rows.get(row, &free.name)?, product.signum(), row));
-        }
-        places.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let mut all = Differences::default();
-        for pair in places.windows(2) {
-            let rows = [pair[0].2 + 1, pair[1].2 + 1];
-            let place = || {
-                format!(
-                    "stability of the neighbouring equilibria {} and {}",
-                    rows[0], rows[1]
-                )
-            };
-            all.add(pair[0].1 + pair[1].1, 2.0, "", place);
-        }
-        (all.count > 0).then_some(all)
     }
 
     /// Where an equilibrium is, by free coordinate.
@@ -82,7 +44,7 @@ impl Rest<'_> {
     }
 
     /// The scene at rest in an equilibrium, and what the state of a drive adds there.
-    fn place(&self, row: usize) -> Option<(Start<'_>, Changed, f64)> {
+    fn place(&self, row: usize) -> Option<(Start, Changed, f64)> {
         let start = self.start.at_rest_in(&self.coordinates(row)?);
         let state = self
             .start
@@ -97,25 +59,10 @@ impl Rest<'_> {
     }
 
     fn compare_place(&self, compared: &mut Compared, row: usize) -> Result<(), String> {
-        for (free, from) in self.start.free.iter().zip(self.start.values()) {
-            let of = |column: &str| self.rows.get(row, column);
-            let column = format!("{}.deflection", free.name);
-            if let (Some(at), Some(written)) = (of(&free.name), of(&column)) {
-                let place = || format!("equilibrium {}, {column}", row + 1);
-                compared.add(
-                    "written-rest-start",
-                    written - (at - from),
-                    free.size.max(from.abs()),
-                    "",
-                    place,
-                );
-            }
-        }
         let (start, changed, by) = self.place(row).ok_or("an equilibrium without a place")?;
         let text = start.text(changed, by)?;
         let name = format!("rest{row}");
         let simulated = simulate(self.program, &name, &text)?;
-        compared.merge("written-linear-equations", simulated.equations);
         let run = linearise(self.program, &name, &text)?;
         let file = LinearFile::read(&run.text("-linear.csv")?).ok_or("no matrices")?;
         for free in &start.free {
@@ -124,9 +71,7 @@ impl Rest<'_> {
                 file.entry(&rate, &other.name).unwrap_or(0.0).abs() * other.size
             };
             let scale = start.free.iter().map(of).fold(0.0, f64::max);
-            let acceleration = simulated
-                .rows
-                .get(0, &format!("{}.acceleration", free.name));
+            let acceleration = simulated.get(0, &format!("{}.acceleration", free.name));
             let acceleration = acceleration.ok_or("a row without accelerations")?;
             let place = || format!("equilibrium {}, {}", row + 1, free.name);
             compared.add("written-rest", acceleration, scale, "per s²", place);
@@ -191,7 +136,7 @@ impl Rest<'_> {
 }
 
 /// The scene with a damper on its coordinate, N m s/rad or N s/m.
-fn with_damper(start: &Start<'_>, free: &FreeCoordinate, damping: f64) -> Result<String, String> {
+fn with_damper(start: &Start, free: &FreeCoordinate, damping: f64) -> Result<String, String> {
     let mut scene = start.scene.clone();
     let force = format!("-({damping:e})*{}.velocity", free.name);
     let coordinate = free.name.as_str().into();

@@ -1,7 +1,6 @@
 //! A motion that is started in neighbouring states and with changed inputs of its drives, in the plain text of its scene.
 
-use crate::written::motions::{Drive, DriveKind, MotionReading};
-use crate::written::poses::scene_text::{text_of, value_of};
+use crate::written::poses::scene_text::{Scene, entries, number, text_of, value_of};
 use toml::{Table, Value};
 
 /// How far a coordinate is changed, rad or parts of the size of the mechanism; and its velocity, per s.
@@ -29,60 +28,101 @@ pub(super) struct FreeCoordinate {
     pub(super) name: String,
     /// The unit of the scene's text, in SI units.
     pub(super) unit: f64,
+    pub(super) is_angle: bool,
     /// Of its changes.
     pub(super) size: f64,
     value: f64,
     velocity: f64,
 }
 
+/// A drive by the text of its scene.
+#[derive(Debug, Clone)]
+pub(super) struct Drive {
+    pub(super) name: String,
+    pub(super) coordinate: String,
+    /// The key of its input, with the unit in SI units, and the ends of the columns of its input and state; none of a voltage share.
+    input: Option<(&'static str, f64)>,
+    columns: [&'static str; 2],
+    /// What an increase of its state, or of the share of the full voltage, adds to the force, and to the state's rate by itself.
+    pub(super) state_slopes: [f64; 2],
+    /// The rotor's inertia on the coordinate, kg m² or kg.
+    pub(super) rotor_inertia: f64,
+}
+
+impl Drive {
+    fn read(name: &str, keys: &Table, scene: &Scene) -> Option<Self> {
+        let kinds = ["applied-force", "motor", "speed-controller"];
+        let kind = kinds.into_iter().find(|kind| keys.contains_key(*kind))?;
+        let coordinate = keys.get(kind)?.as_str()?;
+        let of = |key: &str| number(keys.get(key));
+        let gear_ratio = of("gear-ratio").unwrap_or(1.0);
+        let [resistance, inductance] =
+            ["resistance", "inductance"].map(|key| of(key).unwrap_or(0.0));
+        let (input, columns, state_slopes) = match kind {
+            "applied-force" => (Some(("magnitude", 1.0)), ["applied_force", ""], [0.0; 2]),
+            "speed-controller" => {
+                let unit = scene.coordinate(coordinate)?.unit;
+                let slopes = [of("integral").unwrap_or(0.0), 0.0];
+                (Some(("speed", unit)), ["set_speed", "integral"], slopes)
+            }
+            _ => match of("stall-torque") {
+                Some(torque) => (None, ["", "voltage"], [gear_ratio * torque, 0.0]),
+                None => {
+                    let slopes = [
+                        gear_ratio * of("torque-constant")?,
+                        -resistance / inductance,
+                    ];
+                    (Some(("voltage", 1.0)), ["voltage", "current"], slopes)
+                }
+            },
+        };
+        Some(Self {
+            name: name.to_owned(),
+            coordinate: coordinate.to_owned(),
+            input,
+            columns,
+            state_slopes,
+            rotor_inertia: gear_ratio.powi(2) * of("inertia").unwrap_or(0.0) * scene.units.inertia,
+        })
+    }
+}
+
 /// The scene of a motion, and where it starts.
-#[derive(Debug)]
-pub(super) struct Start<'a> {
+#[derive(Debug, Clone)]
+pub(super) struct Start {
     pub(super) scene: Table,
-    pub(super) motion: &'a MotionReading,
+    pub(super) drives: Vec<Drive>,
     pub(super) free: Vec<FreeCoordinate>,
 }
 
-impl<'a> Start<'a> {
+impl Start {
     /// The coordinates at the start, in SI units.
     pub(super) fn values(&self) -> impl Iterator<Item = f64> + '_ {
         self.free.iter().map(|free| free.value)
     }
 
-    pub(super) fn is_angle(&self, name: &str) -> bool {
-        let coordinate = self.motion.reading.coordinate(name);
-        coordinate.is_some_and(|c| c.measure.is_angle())
-    }
-
     /// How many drives there are, if the force of each at rest is the same at every coordinate.
     pub(super) fn drives_at_rest(&self) -> Option<usize> {
-        let drives = &self.motion.drives;
-        let is_given = |drive: &Drive| matches!(drive.kind, DriveKind::AppliedForce(_));
-        (!drives.iter().any(is_given)).then_some(drives.len())
+        let is_given = |drive: &Drive| drive.columns[0] == "applied_force";
+        (!self.drives.iter().any(is_given)).then_some(self.drives.len())
     }
 
     /// The start of a scene whose free coordinates have these names and values, then velocities.
-    pub(super) fn new(
-        mut scene: Table,
-        motion: &'a MotionReading,
-        names: &[String],
-        state: &[f64],
-    ) -> Option<Self> {
+    pub(super) fn new(of: &Scene, names: &[String], state: &[f64]) -> Option<Self> {
+        let mut scene = of.everything();
+        let drives = entries(&scene, "drives").map(|(name, keys)| Drive::read(name, keys, of));
+        let drives = drives.collect::<Option<_>>()?;
         let table = scene.get_mut("motion")?.as_table_mut()?;
         table.remove("events");
         table.remove("periods");
         table.insert("duration".to_owned(), Value::Float(DURATION));
         let coordinate = |(k, name): (usize, &String)| {
-            let measure = motion.reading.coordinate(name)?.measure;
-            let unit = motion.reading.unit_of(measure);
+            let coordinate = of.coordinate(name)?;
             Some(FreeCoordinate {
                 name: name.clone(),
-                unit,
-                size: if measure.is_angle() {
-                    1.0
-                } else {
-                    motion.reading.size()
-                },
+                unit: coordinate.unit,
+                is_angle: coordinate.is_angle,
+                size: if coordinate.is_angle { 1.0 } else { of.size() },
                 value: *state.get(k)?,
                 velocity: *state.get(names.len() + k)?,
             })
@@ -91,7 +131,7 @@ impl<'a> Start<'a> {
         let free = free.collect::<Option<Vec<_>>>()?;
         Some(Self {
             scene,
-            motion,
+            drives,
             free,
         })
     }
@@ -108,9 +148,8 @@ impl<'a> Start<'a> {
                 ..free.clone()
             });
         Self {
-            scene: self.scene.clone(),
-            motion: self.motion,
             free: free.collect(),
+            ..self.clone()
         }
     }
 
@@ -122,18 +161,13 @@ impl<'a> Start<'a> {
         let velocities =
             velocities.map(|(k, c)| (Changed::Velocity(k), format!("{}.velocity", c.name)));
         let mut all: Vec<_> = coordinates.chain(velocities).collect();
-        for (k, drive) in self.motion.drives.iter().enumerate() {
-            let name = &drive.name;
-            let (input, state) = match drive.kind {
-                DriveKind::AppliedForce(_) => (Changed::Input(k), ["applied_force", ""]),
-                DriveKind::Circuit { .. } => (Changed::Input(k), ["voltage", "current"]),
-                DriveKind::Line { .. } => (Changed::Force(k), ["voltage", ""]),
-                DriveKind::SpeedController { .. } => (Changed::Input(k), ["set_speed", "integral"]),
-            };
-            all.push((input, format!("{name}.{}", state[0])));
-            if !state[1].is_empty() {
-                all.push((Changed::Force(k), format!("{name}.{}", state[1])));
-            }
+        for (k, drive) in self.drives.iter().enumerate() {
+            let changed = [Changed::Input(k), Changed::Force(k)];
+            let columns = drive.columns.into_iter().zip(changed);
+            let columns = columns.filter(|(column, _)| !column.is_empty());
+            all.extend(
+                columns.map(|(column, changed)| (changed, format!("{}.{column}", drive.name))),
+            );
         }
         all
     }
@@ -147,10 +181,6 @@ impl<'a> Start<'a> {
         }
     }
 
-    pub(super) fn drive(&self, k: usize) -> &Drive {
-        &self.motion.drives[k]
-    }
-
     /// The text of the scene with something changed by so much.
     pub(super) fn text(&self, changed: Changed, by: f64) -> Result<String, String> {
         let mut scene = self.scene.clone();
@@ -159,7 +189,7 @@ impl<'a> Start<'a> {
                 Changed::Input(_) => self.change_input(&mut scene, k, by),
                 _ => self.add_force(&mut scene, k, by),
             };
-            change.ok_or_else(|| format!("drive `{}` cannot be changed", self.drive(k).name))?;
+            change.ok_or_else(|| format!("drive `{}` cannot be changed", self.drives[k].name))?;
         }
         let add = |wanted: Changed| if wanted == changed { by } else { 0.0 };
         self.started(scene, &add)
@@ -186,15 +216,9 @@ impl<'a> Start<'a> {
 
     /// Adds a number to the input of a drive.
     fn change_input(&self, scene: &mut Table, k: usize, by: f64) -> Option<()> {
-        let drive = self.drive(k);
+        let drive = &self.drives[k];
         let drives = scene.get_mut("drives")?.as_table_mut()?;
-        let (key, unit) = match drive.kind {
-            DriveKind::AppliedForce(_) => ("magnitude", 1.0),
-            DriveKind::SpeedController { .. } => {
-                ("speed", self.motion.reading.unit_of(drive.measure))
-            }
-            DriveKind::Circuit { .. } | DriveKind::Line { .. } => ("voltage", 1.0),
-        };
+        let (key, unit) = drive.input?;
         let input = drives.get_mut(&drive.name)?.get_mut(key)?;
         *input = match input {
             Value::String(text) => Value::String(format!("({text}) + {by}")),
@@ -207,12 +231,10 @@ impl<'a> Start<'a> {
 
     /// Adds what a changed state of a drive exerts, as a force of its own.
     fn add_force(&self, scene: &mut Table, k: usize, by: f64) -> Option<()> {
-        let drive = self.drive(k);
+        let drive = &self.drives[k];
         let drives = scene.get_mut("drives")?.as_table_mut()?;
-        let of = drives.get(&drive.name)?.as_table()?;
-        let kinds = ["motor", "speed-controller"];
-        let coordinate = kinds.into_iter().find_map(|kind| of.get(kind))?.clone();
-        let force = drive.state_slopes()[0] * by;
+        let coordinate = drive.coordinate.as_str().into();
+        let force = drive.state_slopes[0] * by;
         let added = value_of([("applied-force", coordinate), ("magnitude", force.into())]);
         drives.insert("added-force".to_owned(), added);
         Some(())

@@ -2,11 +2,20 @@
 //! they are the same.
 
 use super::difference::Differences;
-use super::formats::{is_of_rows, scales};
+use super::largest_values::scales;
 use serde_json::Value;
 
-/// Columns that jump, or are zero over zero where they begin.
-const NOT_SMOOTH: [&str; 2] = [".direction", ".efficiency"];
+/// Columns whose extrema are those of their rows: what jumps, or is zero over zero where it begins, errors, what is infinite in some positions,
+/// and rotations in space.
+const OF_ROWS: [&str; 7] = [
+    ".direction",
+    ".efficiency",
+    "mechanical_advantage",
+    "pole",
+    "balance",
+    "residual",
+    ".rotation.",
+];
 
 /// The extrema of two summaries, each relative to the largest of its unit.
 pub(crate) fn same_extrema([one, other]: [&Value; 2], what: &str) -> Differences {
@@ -16,7 +25,7 @@ pub(crate) fn same_extrema([one, other]: [&Value; 2], what: &str) -> Differences
     let scales = scales(&second);
     for entry in &first {
         let quantity = entry["quantity"].as_str().unwrap_or("");
-        if is_of_rows(quantity) || NOT_SMOOTH.iter().any(|end| quantity.contains(end)) {
+        if OF_ROWS.iter().any(|part| quantity.contains(part)) {
             continue;
         }
         let again = second.iter().find(|e| e["quantity"] == entry["quantity"]);

@@ -1,11 +1,42 @@
 //! A scene rewritten in another system of units: every number of a length, mass, inertia or angle is converted, and the
 //! program must write the same files.
 
-use super::law::number;
-use super::reading::{JointKind, Measure, Reading};
-use super::scene_text::value_of;
+use super::compared::Compared;
+use super::program::Program;
+use super::same_columns::same_columns;
+use super::scene_text::{Coordinate, Scene, entries, number, text_of, value_of};
 use super::units::{ANGLES, LENGTHS, MASSES, Units};
 use toml::{Table, Value};
+
+/// Systems of units in which each case is written again: as many as there are units of length.
+const SYSTEMS: usize = LENGTHS.len();
+
+/// The same files from the scene in other units.
+pub(super) fn compare_units(
+    compared: &mut Compared,
+    program: &Program,
+    scene: &Scene,
+    text: &str,
+) -> Result<(), String> {
+    let moving = Scene::read(text)?;
+    let arguments = ["kinetostatics", "--points", "31"];
+    let rows = |name: &str, text: &str| {
+        let run = program.run(name, text, &arguments);
+        run?.npz("-kinetostatics.npz")
+    };
+    let expected = rows("units", text)?;
+    for system in 0..SYSTEMS {
+        let (other, units) = in_other_units(&moving.table, scene, system);
+        let file = format!("the scene in {units}");
+        match rows("other-units", &text_of(&other)?) {
+            Ok(rows) => {
+                compared.merge("written-units", same_columns(&rows, &expected, &file));
+            }
+            Err(reason) => compared.fail("written-units", format!("{file}: {reason}")),
+        }
+    }
+    Ok(())
+}
 
 /// By which components of directions are multiplied, whose ratio alone counts.
 const LENGTH_OF_DIRECTIONS: f64 = 3.7;
@@ -19,7 +50,7 @@ struct Factors {
 }
 
 /// The scene in other units, and their names: of as many successive systems as there are lengths each unit is one.
-pub(crate) fn in_other_units(scene: &Table, reading: &Reading, system: usize) -> (Table, String) {
+fn in_other_units(table: &Table, scene: &Scene, system: usize) -> (Table, String) {
     let pick = |of: &[(&'static str, f64)], k: usize| of[k % of.len()];
     let (length, mass) = (pick(&LENGTHS, system), pick(&MASSES, system));
     let (inertia_mass, inertia_length) = (pick(&MASSES, system + 1), pick(&LENGTHS, system + 3));
@@ -28,7 +59,7 @@ pub(crate) fn in_other_units(scene: &Table, reading: &Reading, system: usize) ->
         format!("{} {}2", inertia_mass.0, inertia_length.0),
         inertia_mass.1 * inertia_length.1 * inertia_length.1,
     );
-    let old = reading.units;
+    let old = scene.units;
     let new = Units {
         length: length.1,
         mass: mass.1,
@@ -48,9 +79,9 @@ pub(crate) fn in_other_units(scene: &Table, reading: &Reading, system: usize) ->
         ("angle", angle.0),
     ];
     let units = value_of(names.map(|(key, name)| (key, name.into())));
-    let mut changed = scene.clone();
+    let mut changed = table.clone();
     changed.insert("units".to_owned(), units);
-    factors.convert(&mut changed, reading);
+    factors.convert(&mut changed, scene);
     (changed, names.map(|(_, name)| name).join(", "))
 }
 
@@ -76,80 +107,89 @@ fn scale_rows(value: Option<&mut Value>, factors: [f64; 2]) {
     }
 }
 
-fn tables<'a>(
-    scene: &'a mut Table,
+/// The entries of a section.
+fn section<'a>(
+    table: &'a mut Table,
     section: &str,
-) -> impl Iterator<Item = (String, &'a mut Table)> {
-    let section = scene.get_mut(section).and_then(Value::as_table_mut);
-    let entries = section.into_iter().flat_map(|section| section.iter_mut());
+) -> impl Iterator<Item = (&'a String, &'a mut Value)> {
+    let section = table.get_mut(section).and_then(Value::as_table_mut);
+    section.into_iter().flat_map(|section| section.iter_mut())
+}
+
+fn tables<'a>(table: &'a mut Table, name: &str) -> impl Iterator<Item = (String, &'a mut Table)> {
+    let entries = section(table, name);
     entries.filter_map(|(name, value)| Some((name.clone(), value.as_table_mut()?)))
 }
 
+/// Whether a joint is of one of some kinds; that of a pin of three bodies is named after the second.
+fn has_kind(scene: &Scene, name: &str, kinds: &[&str]) -> bool {
+    entries(&scene.table, "joints").any(|(joint, keys)| {
+        let rest = name.strip_prefix(joint.as_str());
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
+            && kinds.iter().any(|kind| keys.contains_key(*kind))
+    })
+}
+
 impl Factors {
-    fn of(&self, measure: Measure) -> f64 {
-        match measure.is_angle() {
+    fn of(&self, coordinate: &Coordinate) -> f64 {
+        match coordinate.is_angle {
             true => self.angle,
             false => self.length,
         }
     }
 
-    fn of_name(&self, reading: &Reading, name: &str) -> Option<f64> {
-        Some(self.of(reading.coordinate(name)?.measure))
+    fn of_name(&self, scene: &Scene, name: &str) -> Option<f64> {
+        scene.coordinate(name).map(|coordinate| self.of(coordinate))
     }
 
     /// Of the coordinate that an entry names under a key.
-    fn of_named(&self, reading: &Reading, entry: &Table, key: &str) -> f64 {
+    fn of_named(&self, scene: &Scene, entry: &Table, key: &str) -> f64 {
         let name = entry.get(key).and_then(Value::as_str).unwrap_or("");
-        self.of_name(reading, name).unwrap_or(1.0)
+        self.of_name(scene, name).unwrap_or(1.0)
     }
 
-    fn convert(&self, scene: &mut Table, reading: &Reading) {
-        for (_, body) in tables(scene, "bodies") {
+    fn convert(&self, table: &mut Table, scene: &Scene) {
+        for (_, body) in tables(table, "bodies") {
             self.convert_body(body);
         }
         // A direction has no unit, and any length.
         for (section, key) in [("loads", "direction"), ("joints", "axis")] {
-            for (_, entry) in tables(scene, section) {
+            for (_, entry) in tables(table, section) {
                 scale(entry.get_mut(key), LENGTH_OF_DIRECTIONS);
             }
         }
-        for (name, joint) in tables(scene, "joints") {
-            self.convert_joint(joint, &name, reading);
+        for (_, joint) in tables(table, "joints") {
+            self.convert_joint(joint, scene);
         }
-        self.convert_assembly(scene, reading);
-        for (name, law) in tables(scene, "prescribed") {
-            let factor = self.of_name(reading, &name).unwrap_or(1.0);
+        self.convert_assembly(table, scene);
+        for (name, law) in tables(table, "prescribed") {
+            let factor = self.of_name(scene, &name).unwrap_or(1.0);
             self.convert_law(law, [1.0, factor]);
         }
-        self.convert_sweep(scene, reading);
-        for (_, load) in tables(scene, "loads") {
+        self.convert_sweep(table, scene);
+        for (_, load) in tables(table, "loads") {
             scale(load.get_mut("free-length"), self.length);
             scale(load.get_mut("free-angle"), self.angle);
             for key in ["magnitude", "stiffness", "damping"] {
                 if let Some(table) = load.get_mut(key).and_then(Value::as_table_mut) {
                     let of = table.get("of").and_then(Value::as_str).unwrap_or("t");
                     let of = of.strip_suffix(".velocity").unwrap_or(of);
-                    let factor = self.of_name(reading, of).unwrap_or(1.0);
+                    let factor = self.of_name(scene, of).unwrap_or(1.0);
                     scale_rows(table.get_mut("table"), [factor, 1.0]);
                 }
             }
         }
-        let is_pin = |name: &str| {
-            let of_pin = format!("{name}-");
-            let is_named = |of: &str| of == name || of.starts_with(&of_pin);
-            let mut joints = reading.joints.iter();
-            joints.any(|j| j.kind == JointKind::Revolute && is_named(&j.name))
-        };
-        for (name, friction) in tables(scene, "friction") {
-            let speed = match is_pin(&name) {
+        for (name, friction) in tables(table, "friction") {
+            let speed = match has_kind(scene, &name, &["revolute"]) {
                 true => self.angle,
                 false => self.length,
             };
-            scale(friction.get_mut("radius"), self.length);
-            scale(friction.get_mut("guide-length"), self.length);
+            for key in ["radius", "guide-length", "bearing-distance"] {
+                scale(friction.get_mut(key), self.length);
+            }
             scale(friction.get_mut("regularization-speed"), speed);
         }
-        self.convert_motion(scene, reading);
+        self.convert_motion(table, scene);
     }
 
     fn convert_body(&self, body: &mut Table) {
@@ -168,21 +208,17 @@ impl Factors {
         }
     }
 
-    fn convert_joint(&self, joint: &mut Table, name: &str, reading: &Reading) {
-        for key in ["length", "radii", "radius"] {
+    fn convert_joint(&self, joint: &mut Table, scene: &Scene) {
+        for key in ["length", "radii", "radius", "pitch"] {
             scale(joint.get_mut(key), self.length);
         }
         for key in ["angle", "pressure-angle"] {
             scale(joint.get_mut(key), self.angle);
         }
-        let found = reading.joints.iter().find(|j| j.name == name);
-        if let Some(JointKind::Coupling {
-            dependent,
-            independent,
-            ..
-        }) = found.map(|j| &j.kind)
-        {
-            let factors = [self.of(*independent), self.of(*dependent)];
+        let names = joint.get("coupling").and_then(Value::as_array).cloned();
+        let of = |name: &Value| self.of_name(scene, name.as_str()?);
+        if let Some([dependent, independent]) = names.as_deref() {
+            let factors = [independent, dependent].map(|name| of(name).unwrap_or(1.0));
             scale(joint.get_mut("start"), factors[1]);
             self.convert_law(joint, factors);
         }
@@ -212,75 +248,79 @@ impl Factors {
         }
     }
 
-    /// Coordinates of actuators, angles of bodies, travels of slides and directions of distances.
-    fn convert_assembly(&self, scene: &mut Table, reading: &Reading) {
-        let Some(assembly) = scene.get_mut("assembly").and_then(Value::as_table_mut) else {
-            return;
-        };
-        for (name, value) in assembly.iter_mut() {
-            let is_slide = reading.body_index(name).is_none() && reading.slide(name).is_some();
-            let usual = if is_slide { self.length } else { self.angle };
-            scale(Some(value), self.of_name(reading, name).unwrap_or(usual));
+    /// Coordinates of actuators, angles of bodies, travels of slides, directions of distances and frames.
+    fn convert_assembly(&self, table: &mut Table, scene: &Scene) {
+        for (name, value) in section(table, "assembly") {
+            if let Value::Table(frame) = value {
+                scale(frame.get_mut("at"), self.length);
+                scale(frame.get_mut("turn"), self.angle);
+                continue;
+            }
+            let usual = match has_kind(scene, name, &["prismatic", "slot"]) {
+                true => self.length,
+                false => self.angle,
+            };
+            scale(Some(value), self.of_name(scene, name).unwrap_or(usual));
         }
     }
 
-    fn convert_sweep(&self, scene: &mut Table, reading: &Reading) {
-        let sweep = scene.get_mut("coordinate-sweep");
+    fn convert_sweep(&self, table: &mut Table, scene: &Scene) {
+        let sweep = table.get_mut("coordinate-sweep");
         let Some(sweep) = sweep.and_then(Value::as_table_mut) else {
             return;
         };
         let swept = sweep.iter().find(|(_, value)| value.is_array());
         let swept = swept.map(|(name, _)| name.as_str());
-        let swept = swept.or_else(|| reading.coordinates.first().map(|c| c.name.as_str()));
-        let speed = swept.and_then(|name| self.of_name(reading, name));
+        let swept = swept.or_else(|| scene.actuators.first().map(|c| c.name.as_str()));
+        let speed = swept.and_then(|name| self.of_name(scene, name));
         let speed = speed.unwrap_or(1.0);
         for (name, value) in sweep.iter_mut() {
             if name == "speed" {
                 scale(Some(value), speed);
-            } else if let Some(factor) = self.of_name(reading, name) {
+            } else if let Some(factor) = self.of_name(scene, name) {
                 scale(Some(value), factor);
             }
         }
     }
 
     /// Free motions, their drives and stops.
-    fn convert_motion(&self, scene: &mut Table, reading: &Reading) {
-        for (_, stop) in tables(scene, "stops") {
-            let factor = self.of_named(reading, stop, "coordinate");
+    fn convert_motion(&self, table: &mut Table, scene: &Scene) {
+        for (_, stop) in tables(table, "stops") {
+            let factor = self.of_named(scene, stop, "coordinate");
             for key in ["min", "max"] {
                 scale(stop.get_mut(key), factor);
             }
         }
-        for (_, drive) in tables(scene, "drives") {
+        for (_, drive) in tables(table, "drives") {
             scale(drive.get_mut("no-load-speed"), self.angle);
             scale(drive.get_mut("inertia"), self.inertia);
-            let factor = self.of_named(reading, drive, "speed-controller");
+            let factor = self.of_named(scene, drive, "speed-controller");
             match drive.get_mut("speed") {
                 Some(Value::Table(table)) => scale_rows(table.get_mut("table"), [1.0, factor]),
                 speed => scale(speed, factor),
             }
         }
-        let Some(motion) = scene.get_mut("motion").and_then(Value::as_table_mut) else {
+        let Some(motion) = table.get_mut("motion").and_then(Value::as_table_mut) else {
             return;
         };
-        let first = reading.coordinates.first();
-        let first = first.map_or(1.0, |c| self.of(c.measure));
+        let first = scene.actuators.first();
+        let first = first.map_or(1.0, |actuator| self.of(actuator));
         for key in ["initial-coordinate", "initial-velocity"] {
             match motion.get_mut(key) {
                 Some(Value::Table(table)) => {
                     for (name, value) in table.iter_mut() {
-                        scale(Some(value), self.of_name(reading, name).unwrap_or(1.0));
+                        scale(Some(value), self.of_name(scene, name).unwrap_or(1.0));
                     }
                 }
                 value => scale(value, first),
             }
         }
         for (name, law) in tables(motion, "prescribed") {
-            let factor = self.of_name(reading, &name).unwrap_or(1.0);
+            let factor = self.of_name(scene, &name).unwrap_or(1.0);
             self.convert_law(law, [1.0, factor]);
         }
         for (_, event) in tables(motion, "events") {
-            let factor = self.of_named(reading, event, "reaches");
+            let factor = self.of_named(scene, event, "reaches");
             scale(event.get_mut("value"), factor);
         }
     }

@@ -1,154 +1,80 @@
-//! Warnings of splines that go beyond their points, against the curves of a second reading.
+//! Warnings of splines that go beyond their points, against the extrema of the motion that follows them.
 
 use super::difference::Differences;
-use super::drawn_laws::DrawnMotion;
-use super::jet::Jet;
+use super::positions::start_of;
 use super::program::Program;
-use super::rows::extent;
-use super::scene_text::{table_of, text_of};
-use super::table_curve::TableCurve;
-use toml::{Table, Value};
+use super::scene_text::{Scene, text_of, value_of};
 
-/// From which part of the range of its points on a spline is warned of.
-const WARNED_FROM: f64 = 0.05;
-/// Values, as parts of a rise, between which a spline swings.
+/// Values, as parts of a rise, between which a spline swings, and the rise, rad or parts of the size, with its duration, s.
 const ABRUPT: [f64; 7] = [0.0, 0.02, 0.0, 1.0, 0.97, 1.0, 0.98];
-/// Parts of a piece in which an extremum is looked for.
-const PARTS: usize = 16;
+const RISE: f64 = 0.2;
+const DURATION: f64 = 1.5;
 
 /// Part of the range in per cent, value and place of the farthest point.
 type Overshoot = [f64; 3];
 
-/// A drawn spline whose values change abruptly: what is warned of it. Its numbers are printed with as many digits as these
-/// differences are relative to.
-pub(super) fn warning_differences(
-    program: &Program,
-    motion: &DrawnMotion,
-) -> Result<Differences, String> {
-    let mut scene = table_of(&motion.text)?;
-    let mut all = Differences::default();
-    let Some(coordinate) = motion.reading.coordinates.first() else {
-        return Ok(all);
+/// A spline whose values change abruptly drives the only actuator: the numbers of its warning, each relative to its last printed digit.
+pub(super) fn warning_differences(program: &Program, scene: &Scene) -> Result<Differences, String> {
+    let actuator = &scene.actuators[0];
+    let size = if actuator.is_angle { 1.0 } else { scene.size() };
+    let start = start_of(scene, &actuator.name);
+    let points = ABRUPT.iter().enumerate().map(|(k, share)| {
+        let time = DURATION * k as f64 / (ABRUPT.len() - 1) as f64;
+        vec![time, start + RISE * size / actuator.unit * share].into()
+    });
+    let law = value_of([
+        ("table", toml::Value::Array(points.collect())),
+        ("interpolation", "spline".into()),
+    ]);
+    let mut table = scene.everything();
+    table.remove("coordinate-sweep");
+    let prescribed = value_of([("duration", DURATION.into()), (&actuator.name, law)]);
+    table.insert("prescribed".to_owned(), prescribed);
+    let run = program.run(
+        "abrupt",
+        &text_of(&table)?,
+        &["kinematics", "--points", "181"],
+    )?;
+    let summary = run.json("-kinematics.json")?;
+    let mut extrema = summary["extrema"].as_array().into_iter().flatten();
+    let of_law = extrema.find(|entry| entry["quantity"] == actuator.name.as_str());
+    let end = |end: &str| {
+        let of = |key: &str| of_law.and_then(|entry| entry[end][key].as_f64());
+        [of("value"), of("at")].map(|x| x.unwrap_or(f64::NAN))
     };
-    let law = scene
-        .get_mut("prescribed")
-        .and_then(|p| p.get_mut(&coordinate.name));
-    let Some(law) = law.and_then(Value::as_table_mut) else {
-        return Ok(all);
+    let mut found = Differences::default();
+    let warnings = warnings(&run.messages);
+    let [warning] = warnings.as_slice() else {
+        let count = warnings.len();
+        found.fail(format!("{count} warnings of a spline instead of one"));
+        return Ok(found);
     };
-    make_abrupt(law).ok_or("the drawn spline has no points")?;
-    let unit = motion.reading.unit_of(coordinate.measure);
-    let expected = TableCurve::read(law, "spline", [1.0, unit]).and_then(|curve| overshoot(&curve));
-    let name = format!("{}-abrupt", motion.name);
-    let run = program.run(&name, &text_of(&scene)?, &["kinematics", "--points", "7"]);
-    let printed = printed(&run?.messages);
-    let expected: Vec<Overshoot> = expected
-        .filter(|o| o[0] > 100.0 * WARNED_FROM)
-        .into_iter()
-        .collect();
-    if printed.len() != expected.len() {
-        all.fail(format!(
-            "{name}: {} warnings of a spline instead of {}",
-            printed.len(),
-            expected.len()
-        ));
-        return Ok(all);
-    }
-    for (printed, expected) in printed
-        .iter()
-        .flatten()
-        .zip(expected.iter().flatten())
-        .enumerate()
-        .map(|(k, p)| ((k, p.0), p.1))
-    {
-        let (k, value) = printed;
+    let range = RISE * size;
+    let [[low, low_at], [high, high_at]] = ["min", "max"].map(end);
+    let beyond = [
+        start * actuator.unit - low,
+        high - start * actuator.unit - range,
+    ];
+    let [value, at] = match beyond[0] > beyond[1] {
+        true => [low, low_at],
+        false => [high, high_at],
+    };
+    let percent = 100.0 * beyond[0].max(beyond[1]) / range;
+    for (printed, expected) in warning.iter().zip([percent, value, at]) {
         // Whole per cents; four digits of value and place.
-        let last_digit = match k {
-            0 => 1.0,
-            _ => 10.0_f64.powf(expected.abs().log10().floor() - 3.0),
+        let last_digit = match expected == percent {
+            true => 1.0,
+            false => 10.0_f64.powf(expected.abs().log10().floor() - 3.0),
         };
-        all.add(value - expected, last_digit, "", || {
-            format!("{name}, number {k} of the warning")
+        found.add(printed - expected, last_digit, "", || {
+            format!("{printed} of the warning of a spline")
         });
     }
-    Ok(all)
-}
-
-/// How many splines of a scene are warned of, against those that go beyond their points.
-pub(super) fn warning_count(scene: &Table, messages: &str) -> Differences {
-    let mut all = Differences::default();
-    let mut expected = 0;
-    count(scene, "spline", &mut expected);
-    let found = printed(messages).len();
-    all.add(
-        found as f64 - expected as f64,
-        1.0,
-        "",
-        || "warnings of splines in `check`",
-    );
-    all
-}
-
-/// Adds the splines of a table of the scene, and of those in it, that go far beyond their points.
-fn count(table: &Table, usual: &str, found: &mut usize) {
-    if let Some(curve) = TableCurve::read(table, usual, [1.0; 2])
-        && overshoot(&curve).is_some_and(|o| o[0] > 100.0 * WARNED_FROM)
-    {
-        *found += 1;
-    }
-    for (key, value) in table {
-        if let Value::Table(inner) = value {
-            // The magnitudes of loads are monotone between their points where nothing else is asked for.
-            count(
-                inner,
-                if key == "loads" { "monotone" } else { usual },
-                found,
-            );
-        }
-    }
-}
-
-/// Changes the values of a law's table to abrupt ones.
-fn make_abrupt(law: &mut Table) -> Option<()> {
-    let rows = law.get_mut("table")?.as_array_mut()?;
-    let value = |row: &Value| row.get(1)?.as_float();
-    let [first, last] = [value(rows.first()?)?, value(rows.last()?)?];
-    for (row, share) in rows.iter_mut().zip(ABRUPT) {
-        *row.get_mut(1)? = Value::Float(first + 0.7 * (last - first) * share);
-    }
-    Some(())
-}
-
-/// Where a spline goes farthest beyond the range of its points; none where it stays within.
-fn overshoot(curve: &TableCurve) -> Option<Overshoot> {
-    let points = curve.points();
-    let [low, high] = extent(points.iter().map(|p| &p[1]));
-    let at = |x: f64| curve.at(Jet([x, 1.0, 0.0])).map(|jet| jet.0);
-    let mut farthest: Option<Overshoot> = None;
-    for piece in points.windows(2) {
-        let step = (piece[1][0] - piece[0][0]) / PARTS as f64;
-        for k in 0..PARTS {
-            let mut ends = [k, k + 1].map(|k| piece[0][0] + step * k as f64);
-            let sign = at(ends[0])?[1].signum();
-            if at(ends[1])?[1].signum() == sign {
-                continue;
-            }
-            for _ in 0..60 {
-                let middle = 0.5 * (ends[0] + ends[1]);
-                ends[usize::from(at(middle)?[1].signum() != sign)] = middle;
-            }
-            let value = at(ends[0])?[0];
-            let beyond = 100.0 * (value - high).max(low - value) / (high - low);
-            if beyond > farthest.map_or(0.0, |o| o[0]) {
-                farthest = Some([beyond, value, ends[0]]);
-            }
-        }
-    }
-    farthest
+    Ok(found)
 }
 
 /// The numbers of all such warnings.
-fn printed(messages: &str) -> Vec<Overshoot> {
+fn warnings(messages: &str) -> Vec<Overshoot> {
     let words = messages.replace('│', " ");
     let text = words.split_whitespace().collect::<Vec<_>>().join(" ");
     let number = |text: &str| text.split_whitespace().next()?.parse::<f64>().ok();
@@ -170,24 +96,6 @@ mod tests {
     #[test]
     fn warnings_are_read_over_broken_lines() {
         let text = "  ⚠ the spline of phi goes beyond its points\n  │ by 12 % of their range: -3.2 at 1.5 (SI\n  │ units); more";
-        assert_eq!(printed(text), [[12.0, -3.2, 1.5]]);
-    }
-
-    /// The parabola through three points goes beyond them by an eighth of their range, a quarter before the last.
-    #[test]
-    fn a_parabola_beyond_its_points() {
-        let table: Table = "table = [[0, 0], [2, 8], [4, 8]]".parse().expect("a table");
-        let curve = TableCurve::read(&table, "spline", [1.0; 2]).expect("a curve");
-        let [percent, value, place] = overshoot(&curve).expect("beyond");
-        assert!(
-            (percent - 12.5).abs() < 1e-12
-                && (value - 9.0).abs() < 1e-14
-                && (place - 3.0).abs() < 1e-7
-        );
-        let mut found = 0;
-        count(&table, "monotone", &mut found);
-        assert_eq!(found, 0);
-        count(&table, "spline", &mut found);
-        assert_eq!(found, 1);
+        assert_eq!(warnings(text), [[12.0, -3.2, 1.5]]);
     }
 }

@@ -38,11 +38,7 @@ pub(crate) fn csv_rows(text: &str) -> Option<Rows> {
         .map(|name| (*name).to_owned())
         .zip(columns)
         .collect();
-    Some(Rows {
-        columns,
-        count,
-        ..Rows::default()
-    })
+    Some(Rows { columns, count })
 }
 
 /// Adds the columns of numbers of a Parquet file to those of the files before it; what is null is no number.
@@ -61,15 +57,6 @@ pub(crate) fn add_parquet_rows(path: &Path, rows: &mut Rows) -> Result<(), Parqu
         rows.count += 1;
     }
     Ok(())
-}
-
-/// The names of the columns with their units; none has "".
-pub(super) fn heads(line: &str) -> Vec<(String, String)> {
-    let split = |head: String| match head.rsplit_once(" [") {
-        Some((name, unit)) => (name.to_owned(), unit.trim_end_matches(']').to_owned()),
-        None => (head, String::new()),
-    };
-    fields(line).into_iter().map(split).collect()
 }
 
 /// The heads of the columns; one with a comma stands in quotes.
@@ -116,9 +103,6 @@ pub(crate) fn npz_rows(bytes: &[u8]) -> Option<Rows> {
         let member = bytes.get(data..data + size)?;
         let column = file.strip_suffix(".npy");
         // What is no array of numbers, such as a text, is no column.
-        if let (Some(name), Some(words)) = (column, words(member)) {
-            rows.words.insert(name.to_owned(), words);
-        }
         if let (Some(column), Some(values)) = (column, array(member)) {
             rows.count = rows.count.max(values.len());
             rows.columns.insert(column.to_owned(), values);
@@ -136,21 +120,6 @@ fn array(bytes: &[u8]) -> Option<Vec<f64>> {
     }
     let (values, _) = data.as_chunks::<8>();
     Some(values.iter().map(|b| f64::from_le_bytes(*b)).collect())
-}
-
-/// The words of a `.npy` array of them: four bytes a character, zeros up to the length that the head states.
-fn words(bytes: &[u8]) -> Option<Vec<String>> {
-    let (head, data) = described(bytes)?;
-    let width: usize = head.split("'<U").nth(1)?.split('\'').next()?.parse().ok()?;
-    let word = |bytes: &[u8]| {
-        let (characters, _) = bytes.as_chunks::<4>();
-        let characters = characters.iter().map(|c| u32::from_le_bytes(*c));
-        characters
-            .take_while(|c| *c != 0)
-            .map(char::from_u32)
-            .collect()
-    };
-    data.chunks(4 * width).map(word).collect()
 }
 
 /// What a `.npy` array says of itself, and its data.

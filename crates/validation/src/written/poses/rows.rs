@@ -1,6 +1,5 @@
 //! The columns of a file that was read back, by name.
 
-use super::jet::Jet;
 use std::collections::BTreeMap;
 
 /// The largest absolute value.
@@ -22,8 +21,6 @@ pub(crate) fn extent<'a>(values: impl IntoIterator<Item = &'a f64>) -> [f64; 2] 
 pub(crate) struct Rows {
     pub(crate) columns: BTreeMap<String, Vec<f64>>,
     pub(crate) count: usize,
-    /// Arrays of words of an archive, and of a CSV file its headings.
-    pub(crate) words: BTreeMap<String, Vec<String>>,
 }
 
 impl Rows {
@@ -37,30 +34,9 @@ impl Rows {
         self.columns.get(name).map_or(&[], Vec::as_slice)
     }
 
-    /// The columns whose names end in this way.
-    pub(crate) fn ending<'a>(
-        &'a self,
-        end: &'a str,
-    ) -> impl Iterator<Item = (&'a String, &'a Vec<f64>)> {
-        self.columns
-            .iter()
-            .filter(move |(name, _)| name.ends_with(end))
-    }
-
     /// The variable of the last row.
     pub(crate) fn end(&self) -> f64 {
         self.time(self.count.saturating_sub(1))
-    }
-
-    /// A quantity with its derivatives, from three columns whose names end like these. Where the file has no derivatives at
-    /// all, they are zero.
-    pub(crate) fn jet(&self, row: usize, prefix: &str, ends: [&str; 3]) -> Option<Jet> {
-        let of = |end: &str| self.get(row, &format!("{prefix}{end}"));
-        Some(Jet([
-            of(ends[0])?,
-            of(ends[1]).unwrap_or(0.0),
-            of(ends[2]).unwrap_or(0.0),
-        ]))
     }
 
     /// The variable of the rows: time, or of a sweep the first coordinate.

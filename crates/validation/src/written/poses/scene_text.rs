@@ -1,39 +1,117 @@
 //! Scenes that the checks write: the scene of a case, changed in its plain TOML.
 
+use super::units::Units;
 use toml::{Table, Value};
 
-/// FNV-1a of a text, 64 bits: the same on every machine.
-pub(crate) fn hash(text: &str) -> u64 {
-    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, step)
+/// A coordinate that the scene names.
+#[derive(Debug, Clone)]
+pub(crate) struct Coordinate {
+    pub(crate) name: String,
+    pub(crate) is_angle: bool,
+    /// The unit of its numbers in the scene, in SI units.
+    pub(crate) unit: f64,
 }
 
-/// Numbers drawn one after another from a seed (SplitMix64).
-#[derive(Debug, Clone)]
-pub(crate) struct Draws(u64);
+/// A scene of a case, in the plane or in space.
+#[derive(Debug)]
+pub(crate) struct Scene {
+    /// As written.
+    pub(crate) table: Table,
+    pub(crate) units: Units,
+    pub(crate) actuators: Vec<Coordinate>,
+    /// The other named coordinates.
+    named: Vec<Coordinate>,
+}
 
-impl Draws {
-    /// The draws of a scene's text.
-    pub(crate) fn of(text: &str) -> Self {
-        Self(hash(text))
+impl Scene {
+    /// Reads the text of a scene; why it cannot, in words.
+    pub(crate) fn read(text: &str) -> Result<Self, String> {
+        let table = table_of(text)?;
+        let units = Units::read(&table).ok_or("unknown units")?;
+        let in_section = |section: &str| -> Vec<Coordinate> {
+            let of_entry = |(name, keys): (&String, &Table)| {
+                let is_angle = keys.contains_key("angle");
+                let unit = if is_angle { units.angle } else { units.length };
+                let name = name.clone();
+                Coordinate {
+                    name,
+                    is_angle,
+                    unit,
+                }
+            };
+            entries(&table, section).map(of_entry).collect()
+        };
+        Ok(Self {
+            actuators: in_section("actuators"),
+            named: in_section("coordinates"),
+            units,
+            table,
+        })
     }
 
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+    /// A scene with a changed table.
+    pub(crate) fn with_table(&self, table: Table) -> Self {
+        Self {
+            table,
+            units: self.units,
+            actuators: self.actuators.clone(),
+            named: self.named.clone(),
+        }
     }
 
-    /// A number from 0 to below `count`.
-    pub(crate) fn below(&mut self, count: usize) -> usize {
-        usize::try_from(self.next() % count.max(1) as u64).unwrap_or(0)
+    pub(crate) fn coordinate(&self, name: &str) -> Option<&Coordinate> {
+        let mut all = self.actuators.iter().chain(&self.named);
+        all.find(|coordinate| coordinate.name == name)
     }
 
-    /// A number between 0 and 1.
-    pub(crate) fn share(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    /// The bodies that move.
+    pub(crate) fn moving_bodies(&self) -> impl Iterator<Item = (&String, &Table)> {
+        entries(&self.table, "bodies").filter(|(name, body)| {
+            let fixed = body.get("fixed").and_then(Value::as_bool);
+            !fixed.unwrap_or(*name == "ground")
+        })
     }
+
+    /// The largest distance of a point from the origin of its body, m.
+    pub(crate) fn size(&self) -> f64 {
+        let points = entries(&self.table, "bodies").flat_map(|(_, body)| {
+            let points = body.get("points").and_then(Value::as_table);
+            points.into_iter().flatten().filter_map(|(_, at)| {
+                let squares = at.as_array()?.iter().filter_map(|x| number(Some(x)));
+                Some(squares.map(|x| x * x).sum::<f64>().sqrt())
+            })
+        });
+        self.units.length * points.fold(0.0, f64::max)
+    }
+
+    /// The scene without its requests: everything is written.
+    pub(crate) fn everything(&self) -> Table {
+        let mut scene = self.table.clone();
+        scene.remove("requests");
+        scene
+    }
+
+    pub(crate) fn has(&self, section: &str) -> bool {
+        self.table.contains_key(section)
+    }
+}
+
+/// A number of a scene.
+pub(crate) fn number(value: Option<&Value>) -> Option<f64> {
+    let value = value?;
+    value
+        .as_float()
+        .or_else(|| value.as_integer().map(|n| n as f64))
+}
+
+/// The tables of a section, by name.
+pub(crate) fn entries<'a>(
+    scene: &'a Table,
+    section: &str,
+) -> impl Iterator<Item = (&'a String, &'a Table)> {
+    let section = scene.get(section).and_then(Value::as_table);
+    let entries = section.into_iter().flatten();
+    entries.filter_map(|(name, value)| Some((name, value.as_table()?)))
 }
 
 /// The table of a scene's text.
@@ -55,31 +133,22 @@ pub(crate) fn has_motion(scene: &Table) -> bool {
     scene.contains_key("prescribed") || scene.contains_key("coordinate-sweep")
 }
 
-/// The scene without what moves and loads it.
-pub(crate) fn without_forces(text: &str) -> Result<Table, String> {
-    let mut scene = table_of(text)?;
-    for section in [
-        "prescribed",
-        "loads",
-        "friction",
-        "drives",
-        "stops",
-        "motion",
-        "calibration",
-    ] {
-        scene.remove(section);
-    }
-    Ok(scene)
-}
-
-/// The scene without its requests: everything is written.
-pub(crate) fn requests_everything(text: &str) -> Result<Table, String> {
-    let mut scene = table_of(text)?;
-    scene.remove("requests");
-    Ok(scene)
-}
-
 /// The text of a changed scene.
 pub(crate) fn text_of(scene: &Table) -> Result<String, String> {
     toml::to_string(scene).map_err(|e| e.to_string())
+}
+
+/// The scene with another number; in an array, by its place.
+pub(crate) fn with_number(scene: &Table, path: &[&str], number: f64) -> Option<Table> {
+    let mut changed = scene.clone();
+    let (first, keys) = path.split_first()?;
+    let mut value = changed.get_mut(*first)?;
+    for key in keys {
+        value = match value {
+            Value::Array(values) => values.get_mut(key.parse::<usize>().ok()?)?,
+            other => other.get_mut(*key)?,
+        };
+    }
+    *value = Value::Float(number);
+    Some(changed)
 }

@@ -1,29 +1,21 @@
 //! Numbers of a summary and of printed lines, against those that they should be.
 
 use super::difference::Differences;
-use super::formats::last_digit;
 use serde_json::Value;
 
 /// A value that should stand somewhere, and its scale.
 pub(crate) type Expected = (f64, f64);
 
+/// Numbers of the results of a summary in a printed unit; none if one is missing.
+pub(crate) fn expected(summary: &Value, names: &[&str], unit: f64) -> Option<Vec<Expected>> {
+    let numbers = names.iter().map(|name| result(summary, name));
+    let in_unit = |x: f64| (x / unit, (x / unit).abs().max(f64::MIN_POSITIVE));
+    numbers.map(|x| x.map(in_unit)).collect()
+}
+
 /// A number of the results of a summary.
 pub(crate) fn result(summary: &Value, name: &str) -> Option<f64> {
     summary["results"][name]["value"].as_f64()
-}
-
-/// Numbers of a summary, by their names.
-pub(super) fn summary_differences<'a>(
-    summary: &Value,
-    expected: impl IntoIterator<Item = (&'a str, Expected)>,
-    command: &str,
-) -> Differences {
-    let mut all = Differences::default();
-    for (name, (value, scale)) in expected {
-        let difference = result(summary, name).unwrap_or(f64::NAN) - value;
-        all.add(difference, scale, "", || format!("{command}, {name}"));
-    }
-    all
 }
 
 /// Numbers of printed lines that begin with given words, to their digits.
@@ -62,6 +54,16 @@ fn numbers_in(line: &str) -> Vec<&str> {
     let parts = parts.map(|part| part.trim_end_matches(['.', '-']));
     let numbers = parts.filter(|part| part.parse::<f64>().is_ok_and(f64::is_finite));
     numbers.collect()
+}
+
+/// The value of one in the last printed digit.
+pub(crate) fn last_digit(number: &str) -> f64 {
+    let (digits, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
+    let decimals = digits
+        .split_once('.')
+        .map_or(0, |(_, decimals)| decimals.len());
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    10_f64.powi(exponent - i32::try_from(decimals).unwrap_or(0))
 }
 
 #[cfg(test)]

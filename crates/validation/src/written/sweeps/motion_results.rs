@@ -4,8 +4,7 @@
 use crate::written::poses::difference::Differences;
 use crate::written::poses::program::Program;
 use crate::written::poses::rows::{Rows, largest};
-use crate::written::poses::scene_text::text_of;
-use crate::written::poses::variants::with_number;
+use crate::written::poses::scene_text::{text_of, with_number};
 use serde_json::Value;
 use toml::Table;
 
