@@ -52,11 +52,11 @@ export async function mechanismTests({ onPage, pages, pictures }) {
   });
 
   await onPage('the crank follows the pointer', file, async page => {
-    // The crank is from A, on the ground, to B, the first pin.
-    const [from, center] = await page.evaluate(() => {
-      const middle = element => { const b = element.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; };
-      return [middle(document.querySelector('.mark-pin circle')), middle(document.querySelector('.mark-ground-pin .pin'))];
-    });
+    // The crank is from A, on the ground, to B: the first two pins.
+    const [center, from] = await page.$$eval('.mark-pin .pin', all => all.map(pin => {
+      const b = pin.getBoundingClientRect();
+      return [b.x + b.width / 2, b.y + b.height / 2];
+    }));
     const [dx, dy] = [from[0] - center[0], from[1] - center[1]];
     // A little inside of the pin, on the bar.
     await page.mouse.move(center[0] + 0.8 * dx, center[1] + 0.8 * dy);

@@ -89,6 +89,10 @@ pub(crate) trait Assembled: fmt::Debug + Send + Sync {
 
     fn equation(&self) -> Result<Box<dyn EquationSource>, Error>;
 
+    /// The mechanism at coordinates as SVG, with what it goes through between the limits of the only one.
+    #[cfg(feature = "pictures")]
+    fn svg(&self, q: &[f64], limits: Option<(f64, f64)>) -> Result<String, Error>;
+
     fn along_motion(&self, analysis: Analysis) -> Result<MotionResults, Error>;
 
     fn simulate(&self, solver: &Solver) -> Result<MotionResults, Error>;
@@ -204,6 +208,26 @@ impl<S: StudyScene> Assembled for AssembledScene<S> {
         let (machine, start) = self.scene.motion_machine()?;
         let scene = Arc::clone(&self.scene);
         Ok(Box::new(SceneEquation::new(scene, machine, start)))
+    }
+
+    #[cfg(feature = "pictures")]
+    fn svg(&self, q: &[f64], limits: Option<(f64, f64)>) -> Result<String, Error> {
+        const INTERVALS: usize = 72;
+        let rest = vec![0.0; q.len()];
+        let at = |q: &[f64]| Ok::<_, Error>(self.states([q, &rest, &rest])?.0);
+        let drawn = at(q)?;
+        let others = match q {
+            [first] => {
+                let (low, high) = limits.unwrap_or((*first, first + std::f64::consts::TAU));
+                let place = |k| low + (high - low) * k as f64 / INTERVALS as f64;
+                // What cannot be reached is not gone through; the limits themselves are singular.
+                (0..=INTERVALS)
+                    .filter_map(|k| at(&[place(k)]).ok())
+                    .collect()
+            }
+            _ => vec![at(q)?],
+        };
+        Ok(self.scene.svg(&*drawn, &others)?)
     }
 
     fn along_motion(&self, analysis: Analysis) -> Result<MotionResults, Error> {

@@ -67,6 +67,15 @@ impl Mechanism {
         })
     }
 
+    /// A picture of it at coordinates, rad or m, as an SVG document.
+    ///
+    /// # Errors
+    /// [`Error`] where the mechanism cannot reach them.
+    #[cfg(feature = "pictures")]
+    pub fn svg(&self, q: &[f64]) -> Result<String, Error> {
+        self.assembled.svg(q, self.names.limits)
+    }
+
     /// The scene it was assembled from.
     ///
     /// ```

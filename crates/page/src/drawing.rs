@@ -5,7 +5,7 @@ use serde::Serialize;
 /// A mechanism in the plane or in space. Points have two or three numbers, in m, in the frame of a body.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Drawing {
-    /// Reference length of symbols, m.
+    /// Reference length of symbols, in space half the length of a hinge, m.
     pub size: f64,
     /// In space the direction from which it is seen first, rad: azimuth about z and elevation. None in the plane.
     pub view: Option<[f64; 2]>,
@@ -50,12 +50,20 @@ pub enum OutlineLook {
     Plate,
     /// A block that slides.
     Block,
-    /// A wheel: its centre, and a point of its rim.
+    /// A wheel: its centre, and from there a point of its rim.
     Wheel,
-    /// A thin rod on which something slides, or that carries a mass.
+    /// The barrel of a cylinder.
+    Barrel,
+    /// A thin rod on which something slides.
     Guide,
-    /// A cam, or a rack.
-    Profile,
+    /// A thin line from a body to its centre of mass.
+    Arm,
+    /// The curve of a cam.
+    Cam,
+    /// A part of such a curve.
+    OpenCam,
+    /// A rack with its teeth.
+    Rack,
     /// A slot or a guide of a moving body.
     Slot,
     /// A line of the ground, hatched on its right.
@@ -66,7 +74,7 @@ pub enum OutlineLook {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LinkLook {
-    /// A massless rod.
+    /// A rod: of a cylinder, or without mass.
     Rod,
     /// A driven length: the barrel of a cylinder in the first half.
     Cylinder,
@@ -74,47 +82,75 @@ pub enum LinkLook {
     Spring,
     /// A damper.
     Damper,
+    /// A rod through a sleeve, which goes on beyond both.
+    Shaft,
+    /// The arrow of a driven length.
+    Drive,
 }
 
 /// The symbol of a joint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MarkLook {
-    /// A pin between moving bodies.
+    /// A pin.
+    #[default]
     Pin,
-    /// A pin on the ground.
-    GroundPin,
+    /// The bearing of a pin on the ground, which is behind the bodies.
+    Support,
     /// A weld.
     Weld,
-    /// A hinge in space, with its axis.
+    // In space.
+    /// A hinge.
     Hinge,
-    /// A sleeve in space, with its axis.
+    /// A sleeve on a rod.
     Sleeve,
-    /// A slide in space, with its axis.
+    /// A screw with a right-handed thread.
+    Screw,
+    /// A screw with a left-handed thread.
+    LeftScrew,
+    /// A block that slides.
     Slide,
-    /// A ball in space.
+    /// A ball.
     Ball,
-    /// A universal joint in space.
-    Universal,
-    /// Two plates that slide on each other in space, with their normal.
-    Planar,
-    /// Teeth in space, with their normal.
+    /// A ball at the end of a massless rod.
+    RodEnd,
+    /// One of the forks of a universal joint, towards its normal, with its arm of the cross.
+    Fork,
+    /// The middle of a universal joint.
+    Cross,
+    /// A plate on which a disc slides, with its normal as the axis.
+    Plate,
+    /// That disc.
+    Disc,
+    /// Teeth, with the normal of their flanks as the axis.
     Teeth,
+    /// The arrow of an actuator about an axis.
+    Turned,
+    /// The arrow of an actuator along an axis.
+    Pushed,
+    /// A body of one point.
+    Ring,
     /// The centre of mass of a body.
     CenterOfMass,
 }
 
 /// A symbol at a point of a body.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Mark {
     /// What it is.
     pub look: MarkLook,
     /// Where it is.
     pub at: Anchor,
-    /// Its axis in the frame of that body, a unit vector; empty where it has none.
+    /// The body in whose frame its axis and a direction across it are.
+    pub frame: usize,
+    /// The axis, a unit vector; empty where it has none.
     pub axis: Vec<f64>,
-    /// Whether it is fixed to the ground.
-    pub on_ground: bool,
+    /// A unit vector at right angles to the axis, or nothing.
+    pub normal: Vec<f64>,
+    /// The body whose colour it has.
+    pub body: usize,
+    /// On the ground the point from which the ground is away, such as the middle of the moving body; of a slide the ends of its rail.
+    pub ground: Vec<Anchor>,
     /// Its label, or nothing.
     pub label: String,
     /// What it is in words, such as `revolute joint A of ground and crank`.
@@ -133,8 +169,6 @@ pub enum Part {
         body: usize,
         /// Its points in the frame of the body, m.
         points: Vec<Vec<f64>>,
-        /// Whether it is closed.
-        closed: bool,
     },
     /// A connection of two points.
     Link {
@@ -142,8 +176,10 @@ pub enum Part {
         look: LinkLook,
         /// Its ends.
         ends: [Anchor; 2],
-        /// The bodies to which its halves belong; none of what has no mass.
-        bodies: [Option<usize>; 2],
+        /// Of a rod through a sleeve its axis in the frame of the first end; else nothing.
+        axis: Vec<f64>,
+        /// The body to which it belongs; none of what has no mass.
+        body: Option<usize>,
         /// What it is in words.
         title: String,
     },

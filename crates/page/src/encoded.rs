@@ -9,7 +9,7 @@ use serde::{Serialize, Serializer};
 use std::collections::HashMap;
 
 /// The format of the description. It changes when a reader of the old one would misread the new one.
-pub const FORMAT: &str = "dwell-page-2";
+pub const FORMAT: &str = "dwell-page-3";
 
 /// Why a page cannot be made.
 #[derive(Debug, thiserror::Error)]

@@ -20,6 +20,7 @@ pub const SCRIPT: &str = concat!(
     include_str!("page/space.js"),
     include_str!("page/mechanism.js"),
     include_str!("page/symbols.js"),
+    include_str!("page/solids.js"),
     include_str!("page/arrows.js"),
     include_str!("page/curve.js"),
     include_str!("page/chart.js"),

@@ -71,6 +71,11 @@ impl Mechanism {
         })
     }
 
+    /// A picture at coordinates, as SVG.
+    fn svg(&self, py: Python<'_>, q: Vec<f64>) -> PyResult<String> {
+        self.mechanism.svg(&q).or_raise(py)
+    }
+
     /// x, y and z of points at many positions, whose coordinates follow one another.
     fn paths<'py>(
         &self,

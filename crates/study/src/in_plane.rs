@@ -23,9 +23,12 @@ use dwell_scene::PlaneScene;
 use dwell_symbolic::ClosedForm;
 #[cfg(feature = "output")]
 use {
-    crate::output::separating_note,
-    crate::trajectory::figures::PictureSpan,
+    crate::assembled::BodyStates,
+    crate::bodies::BodyPose,
+    crate::output::{MechanismDrawing, separating_note},
+    crate::trajectory::figures::{PictureSpan, plane},
     crate::trajectory::output::{TrajectoryOutcome, report},
+    dwell_geometry::vec2,
     dwell_report::TableExport as _,
 };
 
@@ -41,6 +44,21 @@ impl StudyScene for PlaneScene {
 
     fn drawing_of(prepared: &PreparedScene<'_>, q: &[f64]) -> Result<Option<Drawing>, StudyError> {
         Ok(drawing_along(prepared.scene, q))
+    }
+
+    #[cfg(feature = "output")]
+    fn drawn(&self, at: &dyn BodyStates, others: &[Box<dyn BodyStates>]) -> dwell_report::Drawing {
+        let pose = |states: &dyn BodyStates, body| {
+            let [[x, y, _], ..] = states.point(body, [0.0; 3]);
+            let [[cos, sin, _], ..] = states.axes(body);
+            (vec2(x, y), vec2(cos, sin))
+        };
+        let bodies = 0..self.mechanism.bodies.len();
+        let poses = |states| bodies.clone().map(|b| pose(states, b)).collect();
+        let others: Vec<Vec<BodyPose>> = others.iter().map(|states| poses(&**states)).collect();
+        let mut shapes = Vec::new();
+        MechanismDrawing::new(self, &others).draw(&poses(at), 0.0, &mut shapes);
+        plane(String::new(), shapes)
     }
 
     fn prescribes_positions(&self) -> bool {

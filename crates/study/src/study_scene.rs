@@ -16,7 +16,7 @@ use dwell_scene::Scene;
 use dwell_symbolic::ClosedForm;
 #[cfg(feature = "output")]
 use {
-    crate::output::Picture, crate::trajectory::figures::PictureSpan,
+    crate::assembled::BodyStates, crate::output::Picture, crate::trajectory::figures::PictureSpan,
     crate::trajectory::output::TrajectoryOutcome,
 };
 
@@ -50,6 +50,29 @@ pub trait StudyScene: AskedScene + UnitRunScene + CalibratedScene {
     #[cfg(feature = "output")]
     fn range_pictures(_: &Self::Prepared<'_>) -> Result<Option<[Picture; 2]>, StudyError> {
         Ok(None)
+    }
+
+    /// The mechanism in a position, with what it goes through in others.
+    #[cfg(feature = "output")]
+    fn drawn(&self, at: &dyn BodyStates, others: &[Box<dyn BodyStates>]) -> dwell_report::Drawing;
+
+    /// The same as an SVG document with the title of the scene.
+    ///
+    /// # Errors
+    /// [`StudyError::Report`] where the picture is too large.
+    #[cfg(feature = "output")]
+    fn svg(
+        &self,
+        at: &dyn BodyStates,
+        others: &[Box<dyn BodyStates>],
+    ) -> Result<String, StudyError> {
+        let figure = dwell_report::Figure {
+            title: self.title.clone(),
+            columns: 1,
+            panels: vec![self.drawn(at, others).into()],
+            ..Default::default()
+        };
+        Ok(dwell_report::svg(&figure)?)
     }
 
     /// Whether it prescribes a motion or a sweep of its coordinates.

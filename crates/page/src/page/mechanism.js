@@ -9,8 +9,13 @@ const GROUND_PLACES = [1, 0, 4, 6, 5, 3, 2].map(k => LABEL_PLACES[k]);
 const LABEL_SIZE = [9, 13];
 // Letters over letters are worse than letters over a mark; a name that leaves the picture is cut.
 const [OVER_LABEL, OVER_EDGE] = [3, 2];
+const CLOSED = new Set(['plate', 'block', 'cam', 'rack']);
 // In so many rows it is seen what is in their way.
 const LABEL_ROWS = 24;
+// How far a rod goes on beyond its sleeve in space, in half lengths of a hinge.
+const GUIDE_MARGIN = 2.6;
+// The least length of half a hinge, px.
+const LEAST_UNIT = 7;
 
 function createMechanism(state, onMove, onTurn) {
   const root = svg('svg', { class: 'mechanism', role: 'img', tabindex: 0, height: HEIGHT });
@@ -111,27 +116,35 @@ function createMechanism(state, onMove, onTurn) {
     const at = (anchor, r) => view.screen(frames.place(anchor.body, anchor.point, r, w));
     if (part.part === 'outline') return createOutline(part, w);
     if (part.part === 'link') {
-      const looks = { spring: 'spring', damper: 'spring', rod: 'rod', cylinder: 'cylinder' };
-      const [one, two] = [svg('path', { class: `${looks[part.look]} ${colored(part.bodies[0])}` }), svg('path', { class: `rod ${colored(part.bodies[1])}` })];
-      const group = svg('g', {}, svg('title', {}, part.title), part.look === 'cylinder' ? two : null, one);
+      const line = svg('path', { class: `${part.look === 'shaft' ? 'guide' : part.look} ${colored(part.body)}` });
+      const barrel = part.look === 'cylinder' ? svg('path', { class: `barrel ${colored(part.body)}` }) : null;
+      const group = svg('g', { 'data-body': part.body }, svg('title', {}, part.title), line, barrel);
       layers.parts.append(group);
       return {
         element: group,
         renew,
         depth: r => 0.5 * (view.nearness(frames.place(part.ends[0].body, part.ends[0].point, r, w)) + view.nearness(frames.place(part.ends[1].body, part.ends[1].point, r, w))),
         move(r) {
-          const [a, b] = part.ends.map(end => at(end, r));
-          const line = `M${a[0]} ${a[1]}L${b[0]} ${b[1]}`;
-          if (part.look === 'spring') one.setAttribute('d', springPath(a, b, 9));
-          else if (part.look === 'damper') one.setAttribute('d', damperPath(a, b, 7));
-          else if (part.look === 'cylinder') {
-            one.setAttribute('d', `M${a[0]} ${a[1]}L${0.45 * a[0] + 0.55 * b[0]} ${0.45 * a[1] + 0.55 * b[1]}`);
-            two.setAttribute('d', line);
-          } else one.setAttribute('d', line);
+          const [a, b] = part.look === 'shaft' ? shaft(part, r) : part.ends.map(end => at(end, r));
+          line.setAttribute('d', part.look === 'drive' ? drivePath(a, b, unit()) : part.look === 'spring' ? springPath(a, b, 9) : part.look === 'damper' ? damperPath(a, b, 7) : linePath(a, b));
+          if (barrel) barrel.setAttribute('d', linePath(a, [0, 1].map(k => 0.5 * (a[k] + b[k]))));
         },
       };
     }
     return createMark(part, at, w);
+  }
+
+  // Half a hinge in space, px: on small screens no less than can be seen.
+  const unit = () => Math.max(LEAST_UNIT, drawing.size * view.scale);
+
+  // The ends of a rod that goes through a sleeve: beyond the sleeve and beyond where it is fixed to its body.
+  function shaft({ ends, axis }, r) {
+    const [u, a, b] = [[0, 0, 0], [0, 0, 0], [0, 0, 0]];
+    frames.direct(ends[0].body, axis, r, u);
+    frames.place(ends[0].body, ends[0].point, r, a);
+    frames.place(ends[1].body, ends[1].point, r, b);
+    const apart = u.reduce((sum, c, k) => sum + c * (b[k] - a[k]), 0);
+    return [Math.min(apart, 0) - GUIDE_MARGIN * drawing.size, Math.max(apart, 0) + GUIDE_MARGIN * drawing.size].map(s => view.screen(a.map((c, k) => c + s * u[k])));
   }
 
   function createOutline(first, w) {
@@ -141,7 +154,10 @@ function createMechanism(state, onMove, onTurn) {
     const classes = `${part.look} ${colored(part.body)}`;
     const main = svg('path', { class: classes });
     const inner = part.look === 'slot' ? svg('path', { class: 'slot-inside' }) : null;
-    const group = svg('g', { 'data-body': part.body }, title, main, inner);
+    // In space a bar interrupts what is behind it, and a guide of the ground ends at walls.
+    const rim = !frames.isPlane && part.look === 'bar' ? svg('path', { class: 'rim' }) : null;
+    const walls = !frames.isPlane && part.look === 'guide' && frames.isFixed(part.body) ? svg('path', { class: 'ground-line' }) : null;
+    const group = svg('g', { 'data-body': part.body }, title, rim, main, inner, walls);
     layers.parts.append(group);
     if (part.look === 'ground-line') {
       return {
@@ -150,12 +166,13 @@ function createMechanism(state, onMove, onTurn) {
         depth: () => -Infinity,
         move(r) {
           const [a, b] = part.points.map(p => view.screen(frames.place(part.body, p, r, w)));
-          main.setAttribute('d', `M${a[0]} ${a[1]}L${b[0]} ${b[1]}${hatching(a, b)}`);
+          main.setAttribute('d', linePath(a, b) + hatching(a, b));
         },
       };
     }
     const nearness = r => {
-      let sum = 0;
+      // The line to a centre of mass is before all.
+      let sum = part.look === 'arm' ? Infinity : 0;
       for (const p of part.points) sum += view.nearness(frames.place(part.body, p, r, w));
       return sum / part.points.length;
     };
@@ -170,14 +187,22 @@ function createMechanism(state, onMove, onTurn) {
             const [x, y] = view.screen(frames.place(part.body, p, r, w));
             d += `${d ? 'L' : 'M'}${x.toFixed(2)} ${y.toFixed(2)}`;
           }
-          main.setAttribute('d', part.closed ? d + 'Z' : d);
+          main.setAttribute('d', CLOSED.has(part.look) ? d + 'Z' : d);
+          if (!rim && !walls) return;
+          const ends = part.points.map(p => [...frames.place(part.body, p, r, w)]);
+          const [a, b] = ends.map(view.screen);
+          if (rim) rim.setAttribute('d', linePath(...[[5, 1], [1, 5]].map(([s, t]) => [0, 1].map(k => (s * a[k] + t * b[k]) / 6))));
+          else {
+            const seen = Math.hypot(b[0] - a[0], b[1] - a[1]) / (view.scale * Math.hypot(...ends[0].map((c, k) => c - ends[1][k])));
+            walls.setAttribute('d', wallPath(a, [a[0] - b[0], a[1] - b[1]], seen, unit()) + wallPath(b, [b[0] - a[0], b[1] - a[1]], seen, unit()));
+          }
         },
       };
     }
     // In the plane the outline is fixed to its body, in meters; only its frame moves.
     renew = next => {
       part = next;
-      const d = outlinePath(part);
+      const d = outlinePath(part, frames.isFixed(part.body));
       for (const path of [main, inner]) if (path) path.setAttribute('d', d);
     };
     renew(part);
@@ -195,16 +220,15 @@ function createMechanism(state, onMove, onTurn) {
 
   function createMark(first, at, w) {
     let part = first;
-    const shape = svg('g', { class: `mark mark-${part.look} ${colored(part.at.body)}`, 'data-body': part.at.body }, svg('title', {}, part.title), markElements(part.look), !frames.isPlane && part.on_ground && part.look !== 'center-of-mass' ? groundMark() : null);
+    const shape = svg('g', { class: `mark mark-${part.look} ${colored(part.body)}`, 'data-body': part.at.body }, svg('title', {}, part.title), frames.isPlane ? markElements(part.look) : null);
     const label = part.label ? svg('text', { class: 'label' }, part.label) : null;
-    layers.marks.append(shape);
+    const isBehind = part.look === 'support';
+    layers[isBehind ? 'parts' : 'marks'].append(shape);
     if (label) layers.words.append(label);
     // Beside the mark, where no other label is in the row of the first picture.
-    const places = part.look === 'ground-pin' ? GROUND_PLACES : LABEL_PLACES;
+    const places = frames.isPlane && part.ground.length ? GROUND_PLACES : LABEL_PLACES;
     let [place] = places;
     let labelBoxes = [];
-    const axisLine = shape.querySelector('.axis-line');
-    const axisMark = shape.querySelector('.axis-mark');
     return {
       element: shape,
       renew(next) { part = next; },
@@ -212,7 +236,7 @@ function createMechanism(state, onMove, onTurn) {
       boxes(r) {
         const [x, y] = at(part.at, r);
         const own = [[x - 7, y - 7, 14, 14, shape]];
-        if (part.look === 'ground-pin') own.push([x - 20, y + 5, 40, 24, shape]);
+        if (isBehind) own.push([x - 20, y + 5, 40, 24, shape]);
         return own;
       },
       // Takes the place with the least in its way, and adds its own boxes. Says how much is in its way.
@@ -230,8 +254,9 @@ function createMechanism(state, onMove, onTurn) {
         labelBoxes.forEach((box, k) => taken[k].push(box));
         return least;
       },
-      inMarks: true,
-      depth: r => view.nearness(frames.place(part.at.body, part.at.point, r, w)),
+      inMarks: !isBehind,
+      // Centres of mass and what is driven are before all others.
+      depth: r => (['center-of-mass', 'turned', 'pushed'].includes(part.look) ? Infinity : view.nearness(frames.place(part.at.body, part.at.point, r, w))),
       move(r) {
         const [x, y] = at(part.at, r);
         shape.setAttribute('transform', `translate(${x} ${y})`);
@@ -240,13 +265,25 @@ function createMechanism(state, onMove, onTurn) {
           label.setAttribute('y', y + place.y);
           label.setAttribute('text-anchor', place.x < 0 ? 'end' : place.x > 0 ? 'start' : 'middle');
         }
-        if (axisMark && part.axis.length) {
-          const [dx, dy] = view.direction(frames.direct(part.at.body, part.axis, r, w)).map(v => v / view.scale);
-          axisMark.setAttribute('d', axisPath(part.look, [dx, dy]));
-          if (axisLine) axisLine.setAttribute('d', `M${-30 * dx} ${-30 * dy}L${30 * dx} ${30 * dy}`);
-        }
+        if (!frames.isPlane) renewPaths(shape, spatial(part, r, [x, y]));
       },
     };
+  }
+
+  // The symbol of a mark in space.
+  function spatial(part, r, [x, y]) {
+    const direction = axis => (axis.length ? [...frames.direct(part.frame, axis, r, [0, 0, 0])] : [0, 0, 0]);
+    const [a, n] = [direction(part.axis), direction(part.normal)];
+    const c = [a[1] * n[2] - a[2] * n[1], a[2] * n[0] - a[0] * n[2], a[0] * n[1] - a[1] * n[0]];
+    const see = (i, j, k) => {
+      const p = a.map((_, axis) => i * n[axis] + j * c[axis] + k * a[axis]);
+      return [...view.direction(p).map(v => (v * unit()) / view.scale), view.nearness(p)];
+    };
+    const others = part.ground.map(anchor => view.screen(frames.place(anchor.body, anchor.point, r, [0, 0, 0])).map((v, k) => v - [x, y][k]));
+    const away = others.length === 1 ? others[0].map(v => -v) : null;
+    const paths = solidPaths(part.look, see, unit(), away);
+    if (others.length > 1) paths.unshift(['ground-line', railPath(...others, Math.hypot(...see(0, 0, 1).slice(0, 2)) / unit(), unit())]);
+    return paths;
   }
 
   function move(newRow) {
@@ -314,6 +351,17 @@ function labelBox(text, place, [x, y], mark) {
   return Object.assign([x + place.x - before, y + place.y - LABEL_SIZE[1], long, LABEL_SIZE[1], mark], { isLabel: true });
 }
 
+// Paths in a group behind its title: each with its class, and where it is shaded the part of its colour.
+function renewPaths(group, paths) {
+  while (group.children.length > paths.length + 1) group.lastChild.remove();
+  paths.forEach(([name, d, part], k) => {
+    const path = group.children[k + 1] || group.appendChild(svg('path'));
+    path.setAttribute('class', name);
+    path.setAttribute('d', d);
+    path.style.setProperty('--part', part === undefined ? '' : `${part}%`);
+  });
+}
+
 // How much a label is over boxes of others, and over the edges of the picture.
 function inWayOf([left, top, long, high, mark], others, width) {
   let sum = left < 0 || left + long > width || top < 0 || top + high > HEIGHT ? OVER_EDGE : 0;
@@ -326,19 +374,18 @@ function inWayOf([left, top, long, high, mark], others, width) {
 
 // What the elements of a drawing are made of: two drawings of one shape differ in numbers only.
 function shapeOf(drawing) {
-  const part = p => [p.part, p.look, p.title, p.label, p.on_ground, p.closed, p.body, p.bodies, p.at && p.at.body, (p.points || []).length, (p.axis || []).length].join();
+  const part = p => [p.part, p.look, p.title, p.label, p.body, (p.ground || []).length, p.at && p.at.body, (p.points || []).length, (p.axis || []).length].join();
   const arrow = a => [a.name, a.title, a.group, a.direction, a.columns || a.parts.map(part => part.column)].join();
   return [drawing.view === null, drawing.bodies.map(b => `${b.name}|${b.paint}|${b.placements.length}`).join(), ...drawing.parts.map(part), ...drawing.arrows.map(arrow), ...drawing.paths.map(p => `${p.name}|${p.requested}`)].join('\n');
 }
 
-// An outline in the frame of its body, m.
-function outlinePath(part) {
+// An outline in the frame of its body, m. A wheel that turns has a spoke.
+function outlinePath(part, isFixed) {
   if (part.look === 'wheel') {
-    const [[x, y], rim] = part.points;
-    const r = Math.hypot(rim[0] - x, rim[1] - y);
-    return `M${x + r} ${y}A${r} ${r} 0 1 1 ${x - r} ${y}A${r} ${r} 0 1 1 ${x + r} ${y}M${x} ${y}L${rim[0]} ${rim[1]}`;
+    const [[x, y], [r]] = part.points;
+    return `M${x + r} ${y}A${r} ${r} 0 1 1 ${x - r} ${y}A${r} ${r} 0 1 1 ${x + r} ${y}${isFixed ? '' : linePath([x, y], [x + r, y])}`;
   }
-  return part.points.map(([x, y], k) => `${k ? 'L' : 'M'}${x} ${y}`).join('') + (part.closed ? 'Z' : '');
+  return part.points.map(([x, y], k) => `${k ? 'L' : 'M'}${x} ${y}`).join('') + (CLOSED.has(part.look) ? 'Z' : '');
 }
 
 // The row in which a point of a body is nearest to the pointer; of two branches the one that goes on from this row.

@@ -2,7 +2,7 @@
 
 function createRun(description, numbers) {
   const d = typeof description === 'string' ? JSON.parse(description) : description;
-  if (d.format !== 'dwell-page-2') throw new Error(`a page of the format ${d.format} is unknown to this script`);
+  if (d.format !== 'dwell-page-3') throw new Error(`a page of the format ${d.format} is unknown to this script`);
   const rows = d.rows;
   const slot = k => numbers.subarray(k * rows, (k + 1) * rows);
   const columns = d.columns.map((column, index) => ({ ...column, index, values: slot(column.slot), peak: null, extent: null }));

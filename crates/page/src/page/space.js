@@ -85,8 +85,7 @@ function boundsOf(drawing, frames, rows) {
   for (const part of drawing.parts) {
     if (part.part === 'outline') {
       if (part.look === 'wheel') {
-        const [[x, y], rim] = part.points;
-        const r = Math.hypot(rim[0] - x, rim[1] - y);
+        const [[x, y], [r]] = part.points;
         for (const [dx, dy] of [[r, 0], [-r, 0], [0, r], [0, -r]]) add(part.body, [x + dx, y + dy], frames.isFixed(part.body));
       } else for (const point of part.points) add(part.body, point, frames.isFixed(part.body));
     } else if (part.part === 'link') for (const end of part.ends) add(end.body, end.point, frames.isFixed(end.body));

@@ -1,4 +1,4 @@
-// The symbols of joints, springs and the ground, in pixels.
+// The symbols of springs, the ground and the joints in the plane, in pixels.
 
 // A zigzag from one point to another.
 function springPath([ax, ay], [bx, by], half) {
@@ -23,6 +23,13 @@ function damperPath([ax, ay], [bx, by], half) {
   return `M${at(0, 0)}L${at(0.4, 0)}M${at(0.62, 1)}L${at(0.4, 1)}L${at(0.4, -1)}L${at(0.62, -1)}` + `M${at(0.52, 0.7)}L${at(0.52, -0.7)}M${at(0.52, 0)}L${at(1, 0)}`;
 }
 
+// The arrow of a driven length, beside its rod.
+function drivePath([ax, ay], [bx, by], unit) {
+  const [dx, dy] = [bx - ax, by - ay];
+  const aside = (1.2 * unit) / (Math.hypot(dx, dy) || 1);
+  return arrowPath(ax + 0.3 * dx + aside * dy, ay + 0.3 * dy - aside * dx, 0.4 * dx, 0.4 * dy);
+}
+
 // Strokes on the right of a line of the ground, seen along it.
 function hatching([ax, ay], [bx, by]) {
   const [dx, dy] = [bx - ax, by - ay];
@@ -38,50 +45,20 @@ function hatching([ax, ay], [bx, by]) {
   return path;
 }
 
-// A pin of the ground: a triangle on hatched ground below the point.
-function groundPin() {
+function linePath(a, b) {
+  return `M${a[0]} ${a[1]}L${b[0]} ${b[1]}`;
+}
+
+// The bearing of a pin on the ground: a triangle on hatched ground below the point.
+function support() {
   return [
     svg('path', { class: 'ground-body', d: 'M0 0L-13 22L13 22Z' }),
     svg('path', { class: 'ground-line', d: 'M-20 22L20 22' + hatching([20, 22], [-20, 22]).replace(/l[^M]*/g, 'l-7 7') }),
-    svg('circle', { class: 'pin', r: 5.5 }),
   ];
 }
 
-// The hatched ground below a joint in space.
-function groundMark() {
-  return svg('path', { class: 'ground-line', d: 'M-15 17H15M-12 17l-6 6M-5 17l-6 6M2 17l-6 6M9 17l-6 6' });
-}
-
-// The elements of a mark, drawn about its point. Axes in space are drawn by `markPath`.
+// The elements of a mark in the plane, drawn about its point.
 function markElements(look) {
-  switch (look) {
-    case 'ground-pin': return groundPin();
-    case 'pin': return [svg('circle', { class: 'pin', r: 5.5 })];
-    case 'weld': return [svg('circle', { class: 'weld', r: 4 })];
-    case 'ball': return [svg('circle', { class: 'ball', r: 7.5 }), svg('path', { class: 'ball-line', d: 'M-7.5 0A7.5 3 0 0 0 7.5 0' })];
-    case 'center-of-mass': return [svg('circle', { class: 'mass', r: 4.5 }), svg('path', { class: 'mass-filled', d: 'M0 0V-4.5A4.5 4.5 0 0 1 4.5 0ZM0 0V4.5A4.5 4.5 0 0 1 -4.5 0Z' })];
-    case 'universal': return [svg('path', { class: 'axis-mark' }), svg('path', { class: 'cross', d: 'M-7 0H7M0 -7V7' }), svg('circle', { class: 'weld', r: 2.5 })];
-    case 'teeth': return [svg('path', { class: 'axis-mark' }), svg('circle', { class: 'weld', r: 3 })];
-    default: return [svg('path', { class: 'axis-line' }), svg('path', { class: 'axis-mark' })];
-  }
-}
-
-// Half a length and half a width of symbols along an axis, px.
-const AXIS_SIZES = { hinge: [13, 6.5], sleeve: [19, 6.5], slide: [16, 9], universal: [14, 0.1], planar: [4, 16], teeth: [14, 0.1] };
-
-// A cylinder or block along an axis that is seen as (x, y) of a unit vector, so that it is short where it is seen from its end.
-function axisPath(look, [x, y]) {
-  const [half, width] = AXIS_SIZES[look];
-  const seen = Math.min(1, Math.hypot(x, y));
-  const [ux, uy] = seen > 1e-6 ? [x / seen, y / seen] : [1, 0];
-  const [ax, ay] = [ux * half * seen, uy * half * seen];
-  const depth = Math.max(width * Math.sqrt(1 - seen * seen), 0.01);
-  const angle = (Math.atan2(uy, ux) * 180) / Math.PI;
-  const [nx, ny] = [-uy * width, ux * width];
-  if (look === 'slide') {
-    // The near end of a block is a rectangle.
-    return `M${ax + nx} ${ay + ny}L${-ax + nx} ${-ay + ny}L${-ax - nx} ${-ay - ny}L${ax - nx} ${ay - ny}Z`;
-  }
-  return `M${ax + nx} ${ay + ny}L${-ax + nx} ${-ay + ny}A${depth} ${width} ${angle} 0 1 ${-ax - nx} ${-ay - ny}L${ax - nx} ${ay - ny}` +
-    `A${depth} ${width} ${angle} 0 1 ${ax + nx} ${ay + ny}A${depth} ${width} ${angle} 0 1 ${ax - nx} ${ay - ny}`;
+  if (look === 'support') return support();
+  return [look === 'weld' ? svg('circle', { class: 'weld', r: 4 }) : svg('circle', { class: 'pin', r: 5.5 })];
 }

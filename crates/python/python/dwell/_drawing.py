@@ -1,8 +1,7 @@
-"""Pictures: a mechanism as SVG, and with matplotlib where it is installed."""
+"""Pictures with matplotlib, where it is installed."""
 
 from __future__ import annotations
 
-from html import escape
 from typing import TYPE_CHECKING, Any, Protocol, Sequence
 
 import numpy as np
@@ -16,11 +15,6 @@ Array = npt.NDArray[np.float64]
 #: Colours of the bodies, distinct for the colour-blind too (Okabe and Ito 2008).
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c564b"]
 GROUND = "#555555"
-
-# What a picture of a mechanism in space is seen along: 60° to the right of the y-axis and 30° from above, as matplotlib shows it.
-_AZIMUTH, _ELEVATION = np.radians(-60.0), np.radians(30.0)
-RIGHT = np.array([-np.sin(_AZIMUTH), np.cos(_AZIMUTH), 0.0])
-UP = np.array([-np.sin(_ELEVATION) * np.cos(_AZIMUTH), -np.sin(_ELEVATION) * np.sin(_AZIMUTH), np.cos(_ELEVATION)])
 
 
 class _Titled(Protocol):
@@ -56,15 +50,6 @@ def places(mechanism: Drawn, q: float | Sequence[float] | Array | None) -> dict[
     }
 
 
-def seen(bodies: dict[str, dict[str, Array]]) -> dict[str, dict[str, Array]]:
-    """The same on paper: as they are in the plane, and in space by parallel projection."""
-    projection = np.array([RIGHT, UP])
-    return {
-        body: {point: at if len(at) == 2 else projection @ at for point, at in points.items()}
-        for body, points in bodies.items()
-    }
-
-
 def hull(points: Array) -> Array:
     """The corners of the convex hull in order (Andrew 1979): one or two points are their own."""
     ordered = sorted({(float(x), float(y)) for x, y in points})
@@ -95,83 +80,6 @@ def pins(bodies: dict[str, dict[str, Array]]) -> list[tuple[Array, bool]]:
         if meeting and not any(np.linalg.norm(there - at) < 1e-6 * size for there, _ in found):
             found.append((at, "ground" in (body, *meeting)))
     return found
-
-
-def svg(mechanism: Drawn, q: float | Sequence[float] | None = None, width: int = 420) -> str:
-    """The mechanism as SVG: bodies as lines or areas, pins as circles, the ground hatched."""
-    placed = places(mechanism, q)
-    bodies = seen(placed)
-    is_spatial = any(len(at) == 3 for points in placed.values() for at in points.values())
-    all_points = np.array([at for points in bodies.values() for at in points.values()])
-    low, high = all_points.min(axis=0), all_points.max(axis=0)
-    extent = np.maximum(high - low, 1e-9 + 0.25 * (high - low).max())
-    center, scale = (low + high) / 2, (width - 90) / extent[0]
-    height = min(extent[1] * scale + 90, 1.5 * width)
-    scale = min(scale, (height - 90) / extent[1])
-
-    def at(point: Array) -> tuple[float, float]:
-        x, y = (point - center) * scale
-        return round(width / 2 + x, 2), round(height / 2 - y, 2)
-
-    parts: list[str] = []
-    names: list[tuple[str, str]] = []
-    for k, (body, points) in enumerate((b, p) for b, p in bodies.items() if b != "ground" and p):
-        corners = [at(p) for p in hull(np.array(list(points.values())))]
-        colour = COLOURS[k % len(COLOURS)]
-        text = " ".join(f"{x},{y}" for x, y in corners)
-        fill = f' fill="{colour}" fill-opacity="0.15"' if len(corners) > 2 else ' fill="none"'
-        if len(corners) == 1:
-            (x, y) = corners[0]
-            parts.append(
-                f'<rect x="{x - 12}" y="{y - 8}" width="24" height="16" fill="{colour}" fill-opacity="0.3" stroke="{colour}"/>'
-            )
-        else:
-            parts.append(
-                f'<polygon points="{text}"{fill} stroke="{colour}" stroke-width="3" stroke-linejoin="round">'
-                f"<title>{escape(body)}</title></polygon>"
-            )
-        names.append((body, colour))
-    for point, is_ground in pins(placed):
-        x, y = at(point if len(point) == 2 else np.array([RIGHT, UP]) @ point)
-        if is_ground:
-            hatch = " ".join(f"M{x - 10 + 5 * i},{y + 20} l-5,6" for i in range(5))
-            parts.append(f'<path d="M{x},{y} l-9,20 h18 z M{x - 13},{y + 20} h26 {hatch}" fill="none" stroke="{GROUND}"/>')
-        parts.append(f'<circle cx="{x}" cy="{y}" r="4.5" fill="white" stroke="#222222" stroke-width="1.5"/>')
-    if is_spatial:
-        parts += _axes(36.0, height - 36.0)
-    labels, height = _legend(names, width, height)
-    title = escape(mechanism.scene.title)
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{title}" width="{width}" height="{height:.0f}" '
-        f'viewBox="0 0 {width} {height:.0f}" font-family="sans-serif" font-size="12"><rect width="100%" height="100%" fill="white"/>'
-        + "".join(parts + labels)
-        + "</svg>"
-    )
-
-
-def _axes(x: float, y: float) -> list[str]:
-    """The axes of the ground, from a corner of the picture."""
-    parts = []
-    for name, right, up in zip("xyz", RIGHT, UP):
-        to = (x + 24 * right, y - 24 * up)
-        parts.append(f'<line x1="{x}" y1="{y}" x2="{to[0]:.2f}" y2="{to[1]:.2f}" stroke="{GROUND}"/>')
-        parts.append(
-            f'<text x="{x + 32 * right:.2f}" y="{y - 32 * up + 4:.2f}" fill="{GROUND}" text-anchor="middle">{name}</text>'
-        )
-    return parts
-
-
-def _legend(names: Sequence[tuple[str, str]], width: float, top: float) -> tuple[list[str], float]:
-    """The names of the bodies in their colours, in rows below the picture, and where it then ends."""
-    x, y = 14.0, top + 4.0
-    texts: list[str] = []
-    for name, colour in names:
-        advance = 7.5 * len(name) + 18.0
-        if x + advance > width and x > 14.0:
-            x, y = 14.0, y + 18.0
-        texts.append(f'<text x="{x:.1f}" y="{y:.1f}" fill="{colour}" font-weight="bold">{escape(name)}</text>')
-        x += advance
-    return texts, y + 12.0
 
 
 def _pyplot() -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 import numpy as np
@@ -233,9 +234,8 @@ class Mechanism:
         return animate_mechanism(self, motion, frames, interval)
 
     def _repr_svg_(self) -> str:
-        from ._drawing import svg
-
-        return svg(self)
+        # As wide as a picture in a text; the height follows.
+        return re.sub('width="[0-9]+" height="[0-9]+"', 'width="640"', self._native.svg(list(self.start)), count=1)
 
     def _coordinates(self, values: float | Sequence[float]) -> list[float]:
         """A number for each actuator: one stands for all of them."""

@@ -4,7 +4,7 @@ mod contacts;
 #[cfg(test)]
 mod tests;
 
-use super::plane::{anchor, anchors, point};
+use crate::symbols::{anchor, anchors, point};
 use crate::trajectory::compute::{Quantity, TrajectoryResults};
 use contacts::{coupling_arrow, rolling_arrows, tooth_arrows};
 use dwell_geometry::{BodyId, Component, Joint, JointId, JointKind, Reaction, Vec2};

@@ -21,11 +21,14 @@ use dwell_symbolic::ClosedForm;
 #[cfg(feature = "output")]
 use {
     super::trajectory::{drawn_positions, figures},
+    super::views::SpacePositions,
+    crate::assembled::BodyStates,
     crate::explain::NamedScene as _,
     crate::output::Picture,
     crate::trajectory::document::Document,
     crate::trajectory::figures::PictureSpan,
     crate::trajectory::output::{TrajectoryOutcome, outcome_of},
+    dwell_geometry::space::{Placement, Rotation, vec3},
     dwell_report::TableExport as _,
 };
 
@@ -56,6 +59,30 @@ impl StudyScene for SpaceScene {
         let figure = Picture::figure(scene, name("png"), true, positions.figure());
         let animation = Picture::animation(scene, name("gif"), positions.animation());
         Ok(Some([figure, animation]))
+    }
+
+    #[cfg(feature = "output")]
+    fn drawn(&self, at: &dyn BodyStates, others: &[Box<dyn BodyStates>]) -> dwell_report::Drawing {
+        let vector = |[x, y, z]: [f64; 3]| vec3(x, y, z);
+        let placement = |states: &dyn BodyStates, body| Placement {
+            position: vector(states.point(body, [0.0; 3])[0]),
+            rotation: Rotation {
+                columns: states.axes(body).map(vector),
+            },
+        };
+        let bodies = 0..self.mechanism.bodies.len();
+        let placements = |states| bodies.clone().map(|b| placement(states, b)).collect();
+        let all = others
+            .iter()
+            .map(|states| (placements(&**states), String::new()));
+        let positions = SpacePositions {
+            scene: self,
+            drawn: placements(at),
+            drawn_at: String::new(),
+            all: all.collect(),
+            provenance: String::new(),
+        };
+        positions.axonometric()
     }
 
     fn prescribes_positions(&self) -> bool {

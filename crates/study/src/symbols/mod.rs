@@ -3,13 +3,13 @@
 
 mod kinematic;
 mod outline;
+mod parts;
 
 #[cfg(feature = "output")]
-pub(crate) use kinematic::{PitchCurve, circle, spring_outline};
-pub(crate) use kinematic::{pitch_curve, rack_outline};
-pub(crate) use outline::{
-    BodyOutline, blocks_on, common_joint_name, is_cylinder, outline_of, reach,
-};
+pub(crate) use kinematic::{circle, spring_outline};
+use kinematic::{pitch_curve, rack_outline};
+use outline::{blocks_on, common_joint_name, is_cylinder, outline_of, reach};
+pub(crate) use parts::{DrawnIn, PlaneParts, anchor, anchors, point};
 
 use crate::bodies::{BodyPose, point_position};
 use crate::ranges::extent;
@@ -24,21 +24,21 @@ const SYMBOL_RATIO: f64 = 0.6;
 const MIN_SYMBOL_RATIO: f64 = 0.4;
 const MAX_SYMBOL_RATIO: f64 = 0.85;
 /// Half the distance of the rails of a guide, and of a slot, and the height of the teeth of a rack, in reference lengths.
-pub(crate) const RAIL_DISTANCE: f64 = 0.055;
-pub(crate) const SLOT_DISTANCE: f64 = 0.035;
-pub(crate) const TOOTH: f64 = 0.012;
+const RAIL_DISTANCE: f64 = 0.055;
+const SLOT_DISTANCE: f64 = 0.035;
+const TOOTH: f64 = 0.012;
 /// How far a track goes on beyond the travel, in reference lengths.
-pub(crate) const TRACK_MARGIN: f64 = 0.25;
+const TRACK_MARGIN: f64 = 0.25;
 
 /// The reference length of the symbols of a scene that is drawn at these positions, m.
-pub(crate) fn symbol_size(scene: &PlaneScene, positions: &[Vec<BodyPose>]) -> f64 {
+fn symbol_size(scene: &PlaneScene, positions: &[Vec<BodyPose>]) -> f64 {
     let (size, drawn) = (scene.mechanism.size(), drawn_size(scene, positions));
     let bound = if drawn > 0.0 { drawn } else { f64::INFINITY };
     (SYMBOL_RATIO * size).clamp(MIN_SYMBOL_RATIO * drawn, MAX_SYMBOL_RATIO * bound)
 }
 
 /// By joint: the range of its second point along its axis over all positions, m.
-pub(crate) fn travels(scene: &PlaneScene, positions: &[Vec<BodyPose>]) -> Vec<Option<[f64; 2]>> {
+fn travels(scene: &PlaneScene, positions: &[Vec<BodyPose>]) -> Vec<Option<[f64; 2]>> {
     let travel = |joint: &Joint| {
         let axis = axis_of(joint.kind)?;
         let [one, two] = joint.bodies.map(|b| b.0);

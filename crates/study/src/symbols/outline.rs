@@ -1,21 +1,12 @@
 //! The outlines of bodies, in their frames, and the labels of joints.
 
 use dwell_geometry::{ActuatorKind, BodyId, Joint, JointId, JointKind, Vec2};
+use dwell_page::OutlineLook;
 use dwell_scene::PlaneScene;
 
 /// Half the height of a block that slides, in reference lengths, and its length in heights.
 const BLOCK: f64 = 0.045;
 const BLOCK_LENGTH: f64 = 1.6;
-
-/// How a body is drawn, in its frame.
-pub(crate) enum BodyOutline {
-    /// A small block that slides.
-    Block([Vec2; 4]),
-    /// A plate through three or more points.
-    Plate(Vec<Vec2>),
-    /// A bar through points of one line.
-    Bar(Vec<Vec2>),
-}
 
 /// The largest distance of two points of a body, m.
 pub(crate) fn reach(scene: &PlaneScene, body: usize) -> f64 {
@@ -26,8 +17,9 @@ pub(crate) fn reach(scene: &PlaneScene, body: usize) -> f64 {
     pairs.fold(0.0, f64::max)
 }
 
-/// The outline of a body for symbols of this reference length, m.
-pub(crate) fn outline_of(scene: &PlaneScene, body: usize, size: f64) -> BodyOutline {
+/// The outline of a body in its frame, for symbols of this reference length, m: a small block that slides, a plate through three or more
+/// points, or a bar through points of one line.
+pub(crate) fn outline_of(scene: &PlaneScene, body: usize, size: f64) -> (OutlineLook, Vec<Vec2>) {
     let mut points: Vec<Vec2> = Vec::new();
     for (_, p) in &scene.points[body] {
         if !points.contains(p) {
@@ -35,7 +27,7 @@ pub(crate) fn outline_of(scene: &PlaneScene, body: usize, size: f64) -> BodyOutl
         }
     }
     if let (&[middle], Some(axis)) = (points.as_slice(), slide_axis(scene, body)) {
-        return BodyOutline::Block(block(middle, axis, size));
+        return (OutlineLook::Block, block(middle, axis, size).into());
     }
     let sum = points.iter().fold(Vec2::ZERO, |sum, p| sum + *p);
     let middle = sum * (1.0 / points.len().max(1) as f64);
@@ -45,10 +37,10 @@ pub(crate) fn outline_of(scene: &PlaneScene, body: usize, size: f64) -> BodyOutl
     let off_line = |p: &Vec2| line.cross(*p - middle).abs() > 1e-6 * line.norm().powi(2);
     if points.len() > 2 && points.iter().any(off_line) {
         points.sort_by(|a, b| (*a - middle).angle().total_cmp(&(*b - middle).angle()));
-        BodyOutline::Plate(points)
+        (OutlineLook::Plate, points)
     } else {
         points.sort_by(|a, b| line.dot(*a).total_cmp(&line.dot(*b)));
-        BodyOutline::Bar(points)
+        (OutlineLook::Bar, points)
     }
 }
 

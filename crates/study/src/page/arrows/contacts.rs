@@ -1,7 +1,7 @@
 //! Arrows of forces that act at contacts: teeth at their pitch point, wheels on their track, and what follows a coupling.
 
 use super::{JointForces, along_body, force_arrow, pushing_apart};
-use crate::page::plane::{anchor, anchors, point};
+use crate::symbols::{anchor, anchors, point};
 use crate::trajectory::compute::Quantity;
 use dwell_geometry::{Component, Coordinate, Vec2, vec2};
 use dwell_kinetostatics::{LoadKind, Magnitude, Mesh, PitchLines};

@@ -205,6 +205,20 @@ impl<'a> SpaceDrawing<'a> {
         side.point + side.axis.scaled(self.shifts[joint])
     }
 
+    /// Whether a body is drawn as the block of a slide.
+    pub(super) fn is_block(&self, body: BodyId) -> bool {
+        let joints = self.scene.mechanism.joints.iter();
+        let mut slides = joints.filter(|joint| matches!(joint.kind, JointKind::Prismatic));
+        slides.any(|joint| joint.bodies[1 - self.guide_side(joint)] == body)
+    }
+
+    /// The middle of a body's drawn points, in its frame, m.
+    pub(super) fn middle(&self, body: BodyId) -> Vec3 {
+        let points = self.drawn_points(body.0);
+        let sum = points.iter().fold(Vec3::ZERO, |sum, p| sum + *p);
+        sum.scaled(1.0 / points.len().max(1) as f64)
+    }
+
     pub(super) fn is_ground(&self, body: BodyId) -> bool {
         body.0 == self.scene.mechanism.ground
     }

@@ -1,10 +1,10 @@
 //! The symbols of joints in space.
 
-use super::arrangement::{ARM, GUIDE_MARGIN};
-use super::drawing::{BEFORE, Scenery};
-use super::solids::{Axes, ball, block, cylinder, thread};
-use dwell_geometry::JointId;
-use dwell_geometry::space::{ActuatorKind, Joint, JointKind, Vec3};
+use super::arrangement::ARM;
+use super::drawing::{BEFORE, Scenery, driven};
+use super::solids::{Axes, ball, block, center_of_mass, circle, cylinder, named, thread};
+use dwell_geometry::space::Vec3;
+use dwell_page::{Mark, MarkLook};
 use dwell_report::{Paint, Pen, Shape};
 use std::f64::consts::{PI, TAU};
 
@@ -14,83 +14,81 @@ const BALL_RADIUS: f64 = 0.55;
 const BLOCK: [f64; 2] = [0.8, 1.3];
 const SLEEVE: f64 = 1.3;
 const PLATE: [f64; 2] = [2.4, 0.08];
-/// Width of guides and massless rods, pixels.
-const ROD: f64 = 3.5;
 
-impl<'a> Scenery<'a> {
-    /// The symbol of a joint, with the ground's hatching.
+impl Scenery<'_> {
+    /// A mark, with the ground's hatching.
     //
-    // Long: a few lines for each kind of joint.
-    pub(super) fn joint(&mut self, j: usize) {
-        let joint = &self.drawing.scene.mechanism.joints[j];
-        let unit = self.drawing.unit;
-        let [one, two] = joint.bodies;
-        let ends = [self.anchor(j, 0), self.anchor(j, 1)];
-        let at = ends[1];
-        let axes = self.axes(joint, 0);
+    // Long: a few lines for each mark.
+    pub(super) fn mark(&mut self, mark: &Mark) {
+        let (unit, view) = (self.drawing.unit, self.picture.view);
+        let at = self.place(&mark.at);
+        let direction = |of: &Self, d: &[f64]| match d {
+            [] => Vec3::ZERO,
+            d => of.turned(mark.frame, d),
+        };
+        let axes = Axes::new(direction(self, &mark.axis), direction(self, &mark.normal));
+        let (color, name) = (self.drawing.color(mark.body), self.name(mark.body));
         let sleeve = [HINGE_RADIUS * unit, SLEEVE * unit];
-        let plain = |of: &Self| (of.drawing.color(two), None);
-        match joint.kind {
-            JointKind::Revolute => {
+        match mark.look {
+            MarkLook::Hinge => {
                 self.center_line(at, axes.axis);
-                // In the colour of the body that moves, so that one of two hinges close together is seen, too.
-                let body = if self.drawing.is_ground(two) {
-                    one
-                } else {
-                    two
-                };
-                let paint = (self.drawing.color(body), self.name(body));
-                self.cylinder(at, &axes, [HINGE_RADIUS * unit, unit], paint);
-                self.ground_mark(joint, at, Some(axes.axis));
+                self.cylinder(at, &axes, [HINGE_RADIUS * unit, unit], (color, name));
             }
-            JointKind::Spherical => {
-                self.ball(at, BALL_RADIUS);
-                self.ground_mark(joint, at, None);
-            }
-            JointKind::Cylindrical if joint.bodies.iter().any(|b| self.drawing.is_ground(*b)) => {
-                self.grounded_sleeve(j);
-            }
-            JointKind::Cylindrical => {
-                self.guide(j);
-                self.cylinder(at, &axes, sleeve, plain(self));
-            }
-            JointKind::Helical { pitch } => {
-                self.guide(j);
-                self.cylinder(at, &axes, sleeve, plain(self));
-                let thread = thread(&self.picture.view, at, &axes, sleeve, pitch >= 0.0);
+            MarkLook::Ball => self.ball(at, BALL_RADIUS),
+            MarkLook::RodEnd => self.ball(at, 0.75 * BALL_RADIUS),
+            MarkLook::Weld => self.ball(at, 0.4),
+            MarkLook::Cross => self.ball(at, 0.3),
+            MarkLook::Sleeve => self.cylinder(at, &axes, sleeve, (color, None)),
+            MarkLook::Screw | MarkLook::LeftScrew => {
+                self.cylinder(at, &axes, sleeve, (color, None));
+                let thread = thread(&view, at, &axes, sleeve, mark.look == MarkLook::Screw);
                 self.picture.add(self.before(at), vec![thread]);
             }
-            JointKind::Prismatic => self.slide(j),
-            JointKind::Universal => self.universal(j, at),
-            JointKind::Planar => {
+            MarkLook::Slide => {
+                let size = BLOCK.map(|s| s * unit);
+                let block = block(&view, at, &axes, size, color, name);
+                self.picture.add(self.before(at), block);
+                return self.rail(mark, at);
+            }
+            MarkLook::Fork => return self.fork(mark, at, &axes),
+            MarkLook::Plate => {
                 let foot = at + axes.axis.scaled(-0.3 * unit);
-                let size = PLATE.map(|s| s * unit);
-                let plate = self.drawing.color(one);
-                let plane = block(&self.picture.view, foot, &axes, size, plate, None);
+                let plane = block(&view, foot, &axes, PLATE.map(|s| s * unit), color, None);
                 self.picture.add(self.before(at) - unit, plane);
-                self.cylinder(at, &axes, [unit, 0.3 * unit], plain(self));
-                self.ground_mark(joint, at, Some(axes.normal));
             }
-            JointKind::Distance { .. } => {
-                self.bar(ends, (Paint::Grey, ROD), None);
-                for (end, body) in ends.into_iter().zip(joint.bodies) {
-                    self.ball(end, 0.75 * BALL_RADIUS);
-                    if self.drawing.is_ground(body) {
-                        self.hatching(end, None, -(self.middle(two) - end));
-                    }
-                }
-            }
-            JointKind::Weld => {
-                self.ball(at, 0.4);
-                self.ground_mark(joint, at, None);
-            }
+            MarkLook::Disc => self.cylinder(at, &axes, [unit, 0.3 * unit], (color, None)),
             // The normal of the teeth, through the pitch point.
-            JointKind::Gear { .. } => {
+            MarkLook::Teeth => {
                 let ends = [-0.9, 0.9].map(|s| at + axes.axis.scaled(s * unit));
                 let normal = self.segment(ends, Pen::new(Paint::Ink, 2.5));
                 self.picture.add(self.before(at), vec![normal]);
                 self.ball(at, 0.3);
             }
+            MarkLook::Turned | MarkLook::Pushed => {
+                let arrow = self.arrow(mark.look, at, &axes);
+                self.picture
+                    .add(view.nearness(at) + 2.0 * BEFORE * unit, arrow);
+            }
+            // About a body of one point.
+            MarkLook::Ring => {
+                let outline = circle(view.place(at), 0.9 * unit);
+                let ring = named(Shape::line(outline, Pen::new(color, 4.0)), name);
+                self.picture.add(view.nearness(at), vec![ring]);
+            }
+            MarkLook::CenterOfMass => {
+                let shapes = center_of_mass(view.place(at), 0.33 * unit);
+                self.picture.add(f64::INFINITY, shapes);
+            }
+            MarkLook::Pin | MarkLook::Support => {}
+        }
+        let along = match mark.look {
+            MarkLook::Hinge | MarkLook::Sleeve => Some(axes.axis),
+            MarkLook::Disc => Some(axes.normal),
+            _ => None,
+        };
+        // On the side away from the moving body.
+        if let [middle] = &mark.ground[..] {
+            self.hatching(at, along, at - self.place(middle));
         }
     }
 
@@ -110,16 +108,6 @@ impl<'a> Scenery<'a> {
         self.picture.add(self.before(at), shapes);
     }
 
-    fn segment(&self, ends: [Vec3; 2], pen: Pen) -> Shape {
-        Shape::line(ends.map(|end| self.picture.view.place(end)).to_vec(), pen)
-    }
-
-    /// The axes of a joint on one of its bodies, in those of the ground.
-    fn axes(&self, joint: &Joint, k: usize) -> Axes {
-        let (body, side) = (joint.side_body(k), &joint.sides[k]);
-        Axes::new(self.turned(body, side.axis), self.turned(body, side.normal))
-    }
-
     /// The axis of a hinge beyond its ends.
     fn center_line(&mut self, at: Vec3, axis: Vec3) {
         let ends = [-2.1, 2.1].map(|s| at + axis.scaled(s * self.drawing.unit));
@@ -127,24 +115,16 @@ impl<'a> Scenery<'a> {
         self.picture.add(self.picture.view.nearness(at), vec![line]);
     }
 
-    /// A block on its guide: a hatched line of the ground, or a rod of the other body.
-    fn slide(&mut self, j: usize) {
-        let joint = &self.drawing.scene.mechanism.joints[j];
+    /// The ground beside a block that slides on it.
+    fn rail(&mut self, mark: &Mark, at: Vec3) {
         let (unit, view) = (self.drawing.unit, self.picture.view);
-        let on = self.drawing.guide_side(joint);
-        let block_body = joint.bodies[1 - on];
-        let (at, axes) = (self.anchor(j, 1 - on), self.axes(joint, on));
-        let size = BLOCK.map(|s| s * unit);
-        let (color, name) = (self.drawing.color(block_body), self.name(block_body));
-        let block = block(&view, at, &axes, size, color, name);
-        self.picture.add(self.before(at), block);
-        if !self.drawing.is_ground(joint.bodies[on]) {
-            return self.guide(j);
-        }
-        if view.length(axes.axis) < 0.4 {
+        let [from, to] = &mark.ground[..] else {
+            return;
+        };
+        if view.length(self.turned(mark.frame, &mark.axis)) < 0.4 {
             return self.hatching(at, None, -view.up());
         }
-        let [from, to] = self.guide_ends(j).map(|end| view.place(end));
+        let [from, to] = [from, to].map(|end| view.place(self.place(end)));
         let length = (to[0] - from[0]).hypot(to[1] - from[1]);
         let mut normal = [(to[1] - from[1]) / length, (from[0] - to[0]) / length];
         if normal[1] > 0.0 {
@@ -154,51 +134,10 @@ impl<'a> Scenery<'a> {
         self.ground_line(middle, normal, 0.5 * length, view.nearness(at));
     }
 
-    /// The ends of the guide of a sliding joint.
-    fn guide_ends(&self, j: usize) -> [Vec3; 2] {
-        let joint = &self.drawing.scene.mechanism.joints[j];
-        let (on, unit) = (self.drawing.guide_side(joint), self.drawing.unit);
-        let (start, axis) = (self.anchor(j, on), self.axes(joint, on).axis);
-        let [low, high] = self.drawing.travels[j];
-        let [low, high] = if on == 0 { [low, high] } else { [-high, -low] };
-        [low - GUIDE_MARGIN * unit, high + GUIDE_MARGIN * unit].map(|s| start + axis.scaled(s))
-    }
-
-    /// The straight rod of one body on which the other one slides.
-    fn guide(&mut self, j: usize) {
-        let joint = &self.drawing.scene.mechanism.joints[j];
-        let on = self.drawing.guide_side(joint);
-        let (body, axis) = (joint.bodies[on], self.axes(joint, on).axis);
-        let ends = self.guide_ends(j);
-        self.bar(ends, (self.drawing.color(body), ROD), None);
-        if self.drawing.is_ground(body) {
-            for (end, sign) in ends.into_iter().zip([-1.0, 1.0]) {
-                self.wall(end, axis.scaled(sign));
-            }
-        }
-    }
-
-    /// A sleeve on the ground, through which a rod of the other body goes.
-    fn grounded_sleeve(&mut self, j: usize) {
-        let joint = &self.drawing.scene.mechanism.joints[j];
-        let (unit, on) = (self.drawing.unit, self.drawing.guide_side(joint));
-        let (at, rod) = (self.anchor(j, on), self.anchor(j, 1 - on));
-        let axes = self.axes(joint, on);
-        let sleeve = [HINGE_RADIUS * unit, SLEEVE * unit];
-        self.cylinder(at, &axes, sleeve, (Paint::Grey, None));
-        self.ground_mark(joint, at, Some(axes.axis));
-        let apart = axes.axis.dot(rod - at);
-        let margin = GUIDE_MARGIN * unit;
-        let ends = [apart.min(0.0) - margin, apart.max(0.0) + margin];
-        let body = joint.bodies[1 - on];
-        let ends = ends.map(|s| at + axes.axis.scaled(s));
-        self.bar(ends, (self.drawing.color(body), ROD), None);
-    }
-
     /// A hatched wall across the end of a guide; from its end below it.
-    fn wall(&mut self, at: Vec3, out: Vec3) {
+    pub(super) fn wall(&mut self, at: Vec3, out: Vec3) {
         let (view, unit) = (self.picture.view, self.drawing.unit);
-        if view.length(out) < 0.4 {
+        if view.length(out) < 0.4 * out.norm() {
             return self.hatching(at, None, -view.up());
         }
         let [x, y] = view.place(at);
@@ -206,15 +145,6 @@ impl<'a> Scenery<'a> {
         let length = u.hypot(v);
         let [n, m] = [u / length, v / length];
         self.ground_line([x, y], [n, m], 0.8 * unit, view.nearness(at));
-    }
-
-    /// The hatching of a joint on the ground, along a direction, on the side away from the moving body.
-    fn ground_mark(&mut self, joint: &Joint, at: Vec3, along: Option<Vec3>) {
-        let Some(k) = (0..2).find(|k| self.drawing.is_ground(joint.bodies[*k])) else {
-            return;
-        };
-        let away = at - self.middle(joint.bodies[1 - k]);
-        self.hatching(at, along, away);
     }
 
     fn hatching(&mut self, at: Vec3, along: Option<Vec3>, away: Vec3) {
@@ -242,25 +172,21 @@ impl<'a> Scenery<'a> {
         self.picture.add(near, vec![Shape::GroundLine { from, to }]);
     }
 
-    /// A Hooke joint: the cross, and the fork of each body.
-    fn universal(&mut self, j: usize, at: Vec3) {
-        let joint = &self.drawing.scene.mechanism.joints[j];
+    /// Half of a Hooke joint: the arm of the cross, and the fork about it.
+    fn fork(&mut self, mark: &Mark, at: Vec3, axes: &Axes) {
         let arm = ARM * self.drawing.unit;
-        for k in 0..2 {
-            let (body, axis) = (joint.bodies[k], self.axes(joint, k).axis);
-            let stem = self.turned(body, self.drawing.stem(j, k));
-            let color = self.drawing.color(body);
-            self.fork([at, axis.scaled(arm), stem.scaled(arm)], color);
-            let ends = [-1.0, 1.0].map(|s| at + axis.scaled(s * arm));
-            for half in ends {
-                self.line_before(at, half, Pen::new(Paint::Ink, 4.0));
-                self.ball(half, 0.24);
-            }
-            if self.drawing.is_ground(body) {
-                self.hatching(at + stem.scaled(arm), None, stem);
-            }
+        let stem = axes.normal.scaled(arm);
+        self.half_ring(
+            [at, axes.axis.scaled(arm), stem],
+            self.drawing.color(mark.body),
+        );
+        for half in [-1.0, 1.0].map(|s| at + axes.axis.scaled(s * arm)) {
+            self.line_before(at, half, Pen::new(Paint::Ink, 4.0));
+            self.ball(half, 0.24);
         }
-        self.ball(at, 0.3);
+        if !mark.ground.is_empty() {
+            self.hatching(at + stem, None, axes.normal);
+        }
     }
 
     /// A line between two points, as near as its middle.
@@ -271,7 +197,7 @@ impl<'a> Scenery<'a> {
     }
 
     /// Half a ring from one end of the axis to the other.
-    fn fork(&mut self, [at, axis, stem]: [Vec3; 3], color: Paint) {
+    fn half_ring(&mut self, [at, axis, stem]: [Vec3; 3], color: Paint) {
         const STEPS: usize = 16;
         let point = |k: usize| {
             let (sin, cos) = (PI * k as f64 / STEPS as f64).sin_cos();
@@ -283,48 +209,22 @@ impl<'a> Scenery<'a> {
     }
 
     /// The arrow of an actuator: about the axis of its joint, or along it.
-    pub(super) fn driven(&mut self, kind: ActuatorKind) {
-        let JointId(j) = kind.joint();
-        let joint = &self.drawing.scene.mechanism.joints[j];
+    fn arrow(&self, look: MarkLook, at: Vec3, axes: &Axes) -> Vec<Shape> {
+        const STEPS: usize = 24;
         let (unit, view) = (self.drawing.unit, self.picture.view);
-        let (at, axes) = (self.anchor(j, 1), self.axes(joint, 0));
-        let pen = Pen::new(Paint::Ink, 2.5);
-        let near = view.nearness(at) + 2.0 * BEFORE * unit;
-        let arrow = |[from, to]: [[f64; 2]; 2]| Shape::Arrow {
-            from,
-            to,
-            pen,
-            name: None,
+        if look == MarkLook::Pushed {
+            let offset = axes.normal.scaled(1.5 * unit);
+            let point = |s: f64| view.place(at + offset + axes.axis.scaled(s * unit));
+            return vec![driven([-1.6, 1.6].map(point))];
+        }
+        let middle = at + axes.axis.scaled(1.7 * unit);
+        let point = |k: usize| {
+            let (sin, cos) = (0.75 * TAU * k as f64 / STEPS as f64).sin_cos();
+            let rim = axes.normal.scaled(cos) + axes.across.scaled(sin);
+            view.place(middle + rim.scaled(1.15 * unit))
         };
-        let shapes = match kind {
-            ActuatorKind::Angle(_) => {
-                const STEPS: usize = 24;
-                let middle = at + axes.axis.scaled(1.7 * unit);
-                let point = |k: usize| {
-                    let (sin, cos) = (0.75 * TAU * k as f64 / STEPS as f64).sin_cos();
-                    let rim = axes.normal.scaled(cos) + axes.across.scaled(sin);
-                    view.place(middle + rim.scaled(1.15 * unit))
-                };
-                let arc: Vec<[f64; 2]> = (0..STEPS).map(point).collect();
-                let head = arrow([STEPS - 3, STEPS + 1].map(point));
-                vec![Shape::line(arc, pen), head]
-            }
-            // Beside the rod, from one of its ends towards the other.
-            ActuatorKind::Length(_) => {
-                let ends = [self.anchor(j, 0), at].map(|end| view.place(end));
-                let [dx, dy] = [0, 1].map(|k| ends[1][k] - ends[0][k]);
-                let long = dx.hypot(dy).max(f64::MIN_POSITIVE);
-                let aside = [-dy, dx].map(|d| 1.2 * unit * d / long);
-                let point =
-                    |s: f64| [0, 1].map(|k| ends[0][k] + s * (ends[1][k] - ends[0][k]) + aside[k]);
-                vec![arrow([0.3, 0.7].map(point))]
-            }
-            ActuatorKind::Travel(_) => {
-                let offset = axes.normal.scaled(1.5 * unit);
-                let point = |s: f64| view.place(at + offset + axes.axis.scaled(s * unit));
-                vec![arrow([-1.6, 1.6].map(point))]
-            }
-        };
-        self.picture.add(near, shapes);
+        let arc = (0..STEPS).map(point).collect();
+        let head = driven([STEPS - 3, STEPS + 1].map(point));
+        vec![Shape::line(arc, Pen::new(Paint::Ink, 2.5)), head]
     }
 }

@@ -8,6 +8,7 @@ mod drawing;
 mod joints;
 mod loads;
 mod page;
+mod parts;
 #[cfg(feature = "output")]
 mod paths;
 #[cfg(feature = "output")]
@@ -19,7 +20,8 @@ mod segments;
 #[cfg(feature = "output")]
 mod solids;
 
-pub(crate) use self::page::{anchor, page_drawing};
+pub(crate) use self::page::page_drawing;
+pub(crate) use self::parts::anchor;
 #[cfg(feature = "output")]
 pub(crate) use self::pictures::SpacePositions;
 pub(crate) use self::points::placed;

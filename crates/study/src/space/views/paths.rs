@@ -40,7 +40,7 @@ pub(super) fn paths(
         if stays || is_known || drawing.is_ground(point.0) {
             continue;
         }
-        let pen = Pen::new(drawing.color(point.0), WIDTH).lightness(LIGHTNESS);
+        let pen = Pen::new(drawing.color(point.0.0), WIDTH).lightness(LIGHTNESS);
         let line = path.iter().map(|p| view.place(*p)).collect();
         shapes.push(Shape::line(line, pen));
         known.push(path);

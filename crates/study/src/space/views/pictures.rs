@@ -14,6 +14,7 @@ use crate::output::figure;
 use crate::ranges::extent;
 use crate::trajectory::figures::animated;
 use dwell_geometry::space::{JointKind, Placement, Vec3};
+use dwell_page::Part;
 use dwell_report::{Animation, Axis, Drawing, Figure, Paint, Panel, Pen, Shape, TextPlacement};
 use dwell_scene::SpaceScene;
 use std::collections::BTreeMap;
@@ -71,6 +72,7 @@ pub(crate) struct SpacePositions<'a> {
 struct Views<'a> {
     positions: &'a SpacePositions<'a>,
     drawing: SpaceDrawing<'a>,
+    parts: Vec<Part>,
     axonometric: View,
     /// What is seen there of the points: for all of its pictures.
     axonometric_bounds: [[f64; 2]; 2],
@@ -110,6 +112,14 @@ impl SpacePositions<'_> {
         Figure {
             columns: 2,
             ..figure
+        }
+    }
+
+    /// The axonometric view alone.
+    pub(crate) fn axonometric(&self) -> Drawing {
+        Drawing {
+            title: String::new(),
+            ..Views::new(self).axonometric_panel(&self.drawn, true)
         }
     }
 
@@ -159,8 +169,10 @@ impl<'a> Views<'a> {
         } else {
             size_about_a_point(positions)
         };
+        let drawing = SpaceDrawing::new(scene, all, size);
         Self {
-            drawing: SpaceDrawing::new(scene, all, size),
+            parts: drawing.parts(),
+            drawing,
             positions,
             axonometric,
             axonometric_bounds,
@@ -238,7 +250,7 @@ impl<'a> Views<'a> {
         let bodies = scene.mechanism.bodies.iter().enumerate();
         let moving = bodies.filter(|(b, _)| *b != scene.mechanism.ground);
         let entry = |(b, body): (usize, &dwell_geometry::Body)| {
-            let pen = Pen::new(self.drawing.color(dwell_geometry::BodyId(b)), 6.0);
+            let pen = Pen::new(self.drawing.color(b), 6.0);
             Shape::line(Vec::new(), pen).named(&body.name)
         };
         moving.map(entry).collect()
@@ -246,7 +258,10 @@ impl<'a> Views<'a> {
 
     fn shapes(&self, view: View, placements: &[Placement], detail: Detail) -> Vec<Shape> {
         let mut shapes = paths(&self.positions.all, &self.drawing, view);
-        shapes.extend(self.drawing.drawn_from(view, placements, detail));
+        shapes.extend(
+            self.drawing
+                .drawn_from(&self.parts, view, placements, detail),
+        );
         shapes
     }
 

@@ -199,7 +199,7 @@ impl<'a> FigureContext<'a> {
 }
 
 /// A drawing in the plane of the mechanism.
-fn plane(title: String, shapes: Vec<Shape>) -> Drawing {
+pub(crate) fn plane(title: String, shapes: Vec<Shape>) -> Drawing {
     Drawing {
         title,
         x: Axis::new("x", "m"),
