@@ -10,13 +10,17 @@ fn kind_of(name: &str, is_point: bool) -> String {
         return format!("c.{load}");
     }
     let end = name.rsplit('.').next().unwrap_or(name);
+    if end.starts_with("moment-") || matches!(end, "mx" | "my" | "mz") {
+        return "moment".to_owned();
+    }
     let kind = match end.split('@').next().unwrap_or(end) {
         "half_dm" => "m",
-        "x" | "y" if is_point && !end.contains('@') => "position",
-        "vx" | "vy" => "v",
-        "ax" | "ay" => "a",
-        "x" | "y" | "normal" | "tangent" | "tooth" | "axial" | "force" | "magnitude" | "fx"
-        | "fy" | "load_force" => "force",
+        "x" | "y" | "z" if is_point && !end.contains('@') => "position",
+        "travel" => "position",
+        "vx" | "vy" | "vz" => "v",
+        "ax" | "ay" | "az" => "a",
+        "x" | "y" | "z" | "normal" | "tangent" | "tooth" | "axial" | "across" | "force"
+        | "magnitude" | "fx" | "fy" | "fz" | "load_force" => "force",
         "moment" | "load_moment" => "moment",
         _ if name.starts_with("power.") || end == "power" => "power",
         other => other,

@@ -72,6 +72,13 @@ impl Scene {
         })
     }
 
+    /// Whether it is in space: its points have three numbers.
+    pub(crate) fn is_in_space(&self) -> bool {
+        let points = entries(&self.table, "bodies").filter_map(|(_, body)| body.get("points"));
+        let mut places = points.filter_map(Value::as_table).flatten();
+        places.any(|(_, at)| at.as_array().is_some_and(|at| at.len() == 3))
+    }
+
     /// The largest distance of a point from the origin of its body, m.
     pub(crate) fn size(&self) -> f64 {
         let points = entries(&self.table, "bodies").flat_map(|(_, body)| {

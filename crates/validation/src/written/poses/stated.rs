@@ -26,16 +26,16 @@ pub(crate) fn sentence_differences(
 ) -> Differences {
     let mut all = Differences::default();
     for (line, values) in expected {
-        let mut said = printed.lines().map(str::trim_start);
-        let numbers = said.find_map(|said| said.strip_prefix(line.as_str()));
-        let numbers = numbers.map_or_else(Vec::new, numbers_in);
-        if numbers.len() < values.len() {
+        let said = printed.lines().map(str::trim_start);
+        let said = said.filter_map(|said| said.strip_prefix(line.as_str()));
+        let mut said = said.map(numbers_in);
+        let Some(numbers) = said.find(|numbers| numbers.len() >= values.len()) else {
             let count = values.len();
             all.fail(format!(
                 "`{command}` prints no line `{line}` with {count} numbers"
             ));
             continue;
-        }
+        };
         for (number, (value, scale)) in numbers.iter().zip(values) {
             let read = number.parse::<f64>().unwrap_or(f64::NAN);
             // Half of the last printed digit is rounding.
@@ -56,14 +56,19 @@ fn numbers_in(line: &str) -> Vec<&str> {
     numbers.collect()
 }
 
-/// The value of one in the last printed digit.
+/// The value of one in the last printed digit; zeros at the end of a whole number are none.
 pub(crate) fn last_digit(number: &str) -> f64 {
     let (digits, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
     let decimals = digits
         .split_once('.')
         .map_or(0, |(_, decimals)| decimals.len());
+    let zeros = match digits.contains('.') {
+        true => 0,
+        false => digits.len() - digits.trim_end_matches('0').len(),
+    };
     let exponent: i32 = exponent.parse().unwrap_or(0);
-    10_f64.powi(exponent - i32::try_from(decimals).unwrap_or(0))
+    let [decimals, zeros] = [decimals, zeros].map(|n| i32::try_from(n).unwrap_or(0));
+    10_f64.powi(exponent - decimals + zeros)
 }
 
 #[cfg(test)]
