@@ -42,7 +42,8 @@
 //! The example `gallery` draws one of each. Six colours, ink and grey distinguish eight curves, also for colour-blind
 //! readers; from the seventh curve on use [`Stroke::Dashed`] too.
 //!
-//! Pages are written as SVG, which resvg turns into pixels. Ticks, margins and the positions of labels are decided here, from
+//! plotters draws the pages on a backend of our own that writes SVG, which resvg turns into pixels. Its coordinates of a chart are not used:
+//! they end in whole units, and its ticks leave out what is below 2e-16. Ticks, margins and the positions of labels are decided here, from
 //! measured text and from where the data lie, because a picture that hides the datum it reports is no evidence.
 
 mod animation;
