@@ -33,9 +33,9 @@ const MAX_TOLERANCE: f64 = 1e-9;
 /// How far from the change point poses are fitted, rad, or parts of the size: the farthest of the good ones is taken.
 const FIT_RADII: [f64; 5] = [0.15, 0.3, 0.5, 0.8, 1.2];
 /// Largest gap between a fit and the plan at the window's ends, in first and second derivatives.
-pub(crate) const MAX_GAP: f64 = 1e-6;
+const MAX_GAP: f64 = 1e-6;
 /// A gap below this is as good as any.
-pub(crate) const GAP_ROUNDING: f64 = 1e-11;
+const GAP_ROUNDING: f64 = 1e-11;
 
 /// A result that fails with a [`ChangePointFitError`] unless another error is named.
 pub(crate) type Result<T, E = ChangePointFitError> = std::result::Result<T, E>;
@@ -135,9 +135,24 @@ impl FitWindow {
     }
 }
 
-/// How far poses are fitted about half a window, in the `unit` of the coordinate, where so much is free.
-pub(crate) fn fit_radii([half_width, unit]: [f64; 2], free: f64) -> [f64; 5] {
-    FIT_RADII.map(|radius| (radius * unit).max(1.5 * half_width).min(free))
+/// The farthest of the good fits about half a window, in the `unit` of the coordinate, where so much is free: its gap, how far it is
+/// good to either side, and the fit that is made with such a radius.
+pub(crate) fn farthest_good_fit<F>(
+    [half_width, unit]: [f64; 2],
+    free: f64,
+    mut fit_within: impl FnMut(f64) -> Result<(f64, F)>,
+) -> Result<(f64, f64, F)> {
+    let mut fits = Vec::with_capacity(FIT_RADII.len());
+    for radius in FIT_RADII {
+        let radius = (radius * unit).max(1.5 * half_width).min(free);
+        let (gap, fit) = fit_within(radius)?;
+        fits.push((gap, radius, fit));
+    }
+    let least = fits.iter().map(|f| f.0).fold(f64::INFINITY, f64::min);
+    // A large radius catches steps that lead over the window.
+    let good = |gap: f64| gap <= (10.0 * least).max(GAP_ROUNDING) && gap <= MAX_GAP;
+    let best = fits.into_iter().rev().find(|f| good(f.0));
+    best.ok_or(ChangePointFitError::NotSmooth { gap: least })
 }
 
 /// Half the window for a tolerance, rad: where N·eps/|sin θ|³ exceeds it.
@@ -223,19 +238,11 @@ impl ChangePointFit {
             None => f64::INFINITY,
         };
         let max_radius = available_radius(branches[0]).min(available_radius(branches[1]));
-        let mut fits: Vec<(f64, f64, PolynomialFit)> = Vec::with_capacity(FIT_RADII.len());
-        for fit_radius in fit_radii([half_width, coordinate_scale], max_radius) {
-            let fit = Self::polynomials(branches, center, half_width, fit_radius)?;
-            let gap = derivative_gap(&fit, branches, center, [half_width, coordinate_scale])?;
-            fits.push((gap, fit_radius, fit));
-        }
-        let min_gap = fits.iter().map(|f| f.0).fold(f64::INFINITY, f64::min);
-        // A large radius catches steps that lead over the window.
-        let good = |gap: f64| gap <= (10.0 * min_gap).max(GAP_ROUNDING);
-        let best = fits.into_iter().rev().find(|f| good(f.0));
-        let Some((gap, fit_radius, fit)) = best.filter(|f| f.0 <= MAX_GAP) else {
-            return Err(ChangePointFitError::NotSmooth { gap: min_gap });
-        };
+        let scales = [half_width, coordinate_scale];
+        let (gap, fit_radius, polynomials) = farthest_good_fit(scales, max_radius, |radius| {
+            let fit = Self::polynomials(branches, center, half_width, radius)?;
+            Ok((derivative_gap(&fit, branches, center, scales)?, fit))
+        })?;
         let mut built = Self {
             center,
             half_width,
@@ -244,7 +251,7 @@ impl ChangePointFit {
             mobility: 1,
             indeterminate: Vec::new(),
             branches: branches.map(Clone::clone),
-            polynomials: fit,
+            polynomials,
         };
         built.analyse_center(mechanism);
         Ok(built)

@@ -7,10 +7,12 @@ use crate::progress::Progress;
 use crate::reduce::compute::{Reduction, peak_between_rows};
 use crate::reduce::page_of;
 use crate::study_scene::{PageAndStop, StudyScene};
-use crate::trajectory::compute::{Analysis, ComputedTrajectory};
+use crate::trajectory::compute::{
+    Analysis, ComputedTrajectory, RowSource, RowStorage, compute_trajectory_in,
+};
 use dwell_dynamics::Orbit;
 use dwell_export::{Export, SeveralFreedomsExport};
-use dwell_findings::{Finding, Record};
+use dwell_findings::{Finding, Record, RecordedEvent};
 use dwell_page::Page;
 use dwell_symbolic::ClosedForm;
 #[cfg(feature = "output")]
@@ -23,6 +25,7 @@ use {
     crate::symbolic::output::{FormulaFormat, WrittenForm, closed_form_outcome},
     crate::trajectory::figures::PictureSpan,
     crate::trajectory::output::TrajectoryOutcome,
+    dwell_report::TableExport as _,
 };
 
 /// Describes a scene: degrees of freedom, groups, assembly modes, range, pruning and requests. It writes
@@ -60,7 +63,7 @@ pub fn compute_trajectory<'a, S: StudyScene>(
     points: Option<usize>,
     progress: Progress<'_>,
 ) -> Result<ComputedTrajectory<'a>, StudyError> {
-    scene.trajectory(analysis, points, progress)
+    compute_trajectory_in(RowStorage::Whole, scene, analysis, points, progress)
 }
 
 /// The page of an analysis of a scene along its prescribed motion, its sweep, or the range of its only actuator: the rows of its table,
@@ -88,7 +91,12 @@ pub fn trajectory_page<S: StudyScene>(
     points: Option<usize>,
     progress: Progress<'_>,
 ) -> Result<PageAndStop, StudyError> {
-    scene.trajectory_page(analysis, points, progress)
+    let rows = scene.rows()?;
+    let source = RowSource::new(scene, &rows);
+    let computed = source.analysed(analysis, points, progress)?;
+    let mut page = S::page(&source, &computed);
+    page.printed = computed.notes;
+    Ok((page, computed.early_stop))
 }
 
 /// The page of a free motion, and why it ended early or misses the required accuracy, if so.
@@ -119,7 +127,17 @@ pub fn free_motion_page<S: StudyScene>(
     solver: &MotionSolver,
     progress: Progress<'_>,
 ) -> Result<PageAndStop, StudyError> {
-    scene.free_motion_page(solver, progress)
+    scene.simulate_then(solver, None, progress, |source, described| {
+        let FreeMotion {
+            computed, events, ..
+        } = described.motion;
+        let mut page = S::page(source, &computed);
+        let description = (described.description)();
+        page.printed = description.summary;
+        page.numbers = description.record.numbers;
+        page.events = recorded(events);
+        (page, computed.early_stop)
+    })
 }
 
 /// Analyses a scene along its prescribed motion, its sweep, or the range of its only actuator, at
@@ -149,7 +167,18 @@ pub fn analyse_trajectory_within<S: StudyScene>(
     span: PictureSpan,
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
-    scene.trajectory_outcome(analysis, points, span, progress)
+    let rows = scene.rows()?;
+    let source = RowSource {
+        storage: RowStorage::Bounded,
+        ..RowSource::new(scene, &rows)
+    };
+    let computed = source.analysed(analysis, points, progress)?;
+    let mut outcome = S::report(&source, &computed, span)?;
+    outcome.summary += &computed.notes;
+    Ok(TrajectoryOutcome {
+        outcome,
+        early_stop: computed.early_stop,
+    })
 }
 
 /// Computes the reduced parameters of a scene over its range, at `points` positions (two or more) if given.
@@ -228,7 +257,7 @@ pub fn compute_free_motion<S: StudyScene>(
     solver: &MotionSolver,
     progress: Progress<'_>,
 ) -> Result<FreeMotion, StudyError> {
-    scene.simulated(solver, progress)
+    scene.simulate_then(solver, None, progress, |_, described| described.motion)
 }
 
 /// The period (s) and the energy (J) of the free motion of a scene, by quadrature: for one free coordinate and conservative
@@ -307,8 +336,32 @@ pub fn simulate_within<S: StudyScene>(
     span: PictureSpan,
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
-    scene.free_motion_outcome(solver, times, span, progress)
+    scene.simulate_then(solver, times, progress, |source, described| {
+        let FreeMotion {
+            computed, events, ..
+        } = described.motion;
+        let mut outcome = S::report(source, &computed, span)?;
+        let description = (described.description)();
+        if !events.is_empty() {
+            let name = format!("{}-motion-events.csv", scene.name);
+            outcome.files.add(name, description.event_table.csv()?);
+        }
+        outcome.summary += &description.summary;
+        outcome.record.extend(description.record);
+        outcome.record.events = recorded(events);
+        Ok(TrajectoryOutcome {
+            outcome,
+            early_stop: computed.early_stop,
+        })
+    })?
 }
+
+/// The events that happened, with their times.
+fn recorded(events: Vec<(f64, String)>) -> Vec<RecordedEvent> {
+    let event = |(t, name)| RecordedEvent { name, t };
+    events.into_iter().map(event).collect()
+}
+
 /// Closed forms of a scene, and their comparison with the exact model.
 ///
 /// # Errors

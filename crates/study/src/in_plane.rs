@@ -3,33 +3,27 @@
 use crate::check;
 use crate::explain::StudyError;
 use crate::export::{ExportRequest, fit_in_plane, only_as_c, several_freedoms_in_plane};
-use crate::free_motion::compute::{
-    FreeMotion, MotionSolver, compute_free_motion_at, orbit_in_plane,
-};
+use crate::free_motion::compute::orbit_in_plane;
 use crate::models::PreparedScene;
 use crate::page::{drawing_along, plane_page};
-use crate::progress::Progress;
-use crate::study_scene::{PageAndStop, StudyScene};
+use crate::study_scene::StudyScene;
 use crate::symbolic::compute::closed_form_in_plane;
-use crate::trajectory::compute::{
-    Analysis, ComputedTrajectory, RowStorage, compute_trajectory_in, reject_unknown_variables,
-};
+use crate::trajectory::compute::{ComputedTrajectory, RowSource, reject_unknown_variables};
 use crate::unit_runs::compute::UnitRunScene as _;
 use dwell_dynamics::Orbit;
 use dwell_export::{Export, SeveralFreedomsExport};
-use dwell_findings::{Finding, Record, RecordedEvent};
-use dwell_page::Drawing;
+use dwell_findings::{Finding, Record};
+use dwell_page::{Drawing, Page};
 use dwell_scene::PlaneScene;
 use dwell_symbolic::ClosedForm;
 #[cfg(feature = "output")]
 use {
     crate::assembled::BodyStates,
     crate::bodies::BodyPose,
-    crate::output::{MechanismDrawing, separating_note},
+    crate::output::{MechanismDrawing, Outcome, separating_note},
     crate::trajectory::figures::{PictureSpan, plane},
-    crate::trajectory::output::{TrajectoryOutcome, report},
+    crate::trajectory::output::report,
     dwell_geometry::vec2,
-    dwell_report::TableExport as _,
 };
 
 impl StudyScene for PlaneScene {
@@ -61,94 +55,17 @@ impl StudyScene for PlaneScene {
         plane(String::new(), shapes)
     }
 
-    fn prescribes_positions(&self) -> bool {
-        self.prescribed.is_some() || self.sweep.is_some()
-    }
-
-    fn trajectory(
-        &self,
-        analysis: Analysis,
-        points: Option<usize>,
-        progress: Progress<'_>,
-    ) -> Result<ComputedTrajectory<'_>, StudyError> {
-        compute_trajectory_in(RowStorage::Whole, self, analysis, points, progress)
-    }
-
-    fn trajectory_page(
-        &self,
-        analysis: Analysis,
-        points: Option<usize>,
-        progress: Progress<'_>,
-    ) -> Result<PageAndStop, StudyError> {
-        let computed = self.trajectory(analysis, points, progress)?;
-        let mut page = plane_page(self, &computed);
-        page.printed = computed.notes;
-        Ok((page, computed.early_stop))
+    fn page(source: &RowSource<'_, '_, Self>, computed: &ComputedTrajectory<'_>) -> Page {
+        plane_page(source.scene, computed)
     }
 
     #[cfg(feature = "output")]
-    fn trajectory_outcome(
-        &self,
-        analysis: Analysis,
-        points: Option<usize>,
+    fn report(
+        source: &RowSource<'_, '_, Self>,
+        computed: &ComputedTrajectory<'_>,
         span: PictureSpan,
-        progress: Progress<'_>,
-    ) -> Result<TrajectoryOutcome, StudyError> {
-        let computed =
-            compute_trajectory_in(RowStorage::Bounded, self, analysis, points, progress)?;
-        let mut outcome = report(self, &computed, span)?;
-        outcome.summary += &computed.notes;
-        Ok(TrajectoryOutcome {
-            outcome,
-            early_stop: computed.early_stop,
-        })
-    }
-
-    fn simulated(
-        &self,
-        solver: &MotionSolver,
-        progress: Progress<'_>,
-    ) -> Result<FreeMotion, StudyError> {
-        Ok(compute_free_motion_at(self, solver, None, progress)?.motion)
-    }
-
-    fn free_motion_page(
-        &self,
-        solver: &MotionSolver,
-        progress: Progress<'_>,
-    ) -> Result<PageAndStop, StudyError> {
-        let described = compute_free_motion_at(self, solver, None, progress)?;
-        let mut page = plane_page(&described.loaded_scene, &described.motion.computed);
-        page.printed = described.summary;
-        page.numbers = described.record.numbers;
-        page.events = recorded(described.motion.events);
-        Ok((page, described.motion.computed.early_stop))
-    }
-
-    #[cfg(feature = "output")]
-    fn free_motion_outcome(
-        &self,
-        solver: &MotionSolver,
-        times: Option<&[f64]>,
-        span: PictureSpan,
-        progress: Progress<'_>,
-    ) -> Result<TrajectoryOutcome, StudyError> {
-        let described = compute_free_motion_at(self, solver, times, progress)?;
-        let FreeMotion {
-            computed, events, ..
-        } = described.motion;
-        let mut outcome = report(&described.loaded_scene, &computed, span)?;
-        if !events.is_empty() {
-            let name = format!("{}-motion-events.csv", self.name);
-            outcome.files.add(name, described.event_table.csv()?);
-        }
-        outcome.summary += &described.summary;
-        outcome.record.extend(described.record);
-        outcome.record.events = recorded(events);
-        Ok(TrajectoryOutcome {
-            outcome,
-            early_stop: computed.early_stop,
-        })
+    ) -> Result<Outcome, StudyError> {
+        report(source.scene, computed, span)
     }
 
     fn orbit(&self) -> Result<Orbit, StudyError> {
@@ -190,10 +107,4 @@ impl StudyScene for PlaneScene {
     fn several_freedoms_error(&self) -> StudyError {
         only_as_c(self)
     }
-}
-
-/// The events that happened, with their times.
-fn recorded(events: Vec<(f64, String)>) -> Vec<RecordedEvent> {
-    let event = |(t, name)| RecordedEvent { name, t };
-    events.into_iter().map(event).collect()
 }

@@ -1,12 +1,10 @@
 //! What differs between scenes in the plane and in space, for all analyses: everything above knows a scene by this trait alone.
 
-use crate::assembled::AskedScene;
 use crate::calibrate::CalibratedScene;
 use crate::explain::StudyError;
 use crate::export::ExportRequest;
-use crate::free_motion::compute::{FreeMotion, MotionSolver};
-use crate::progress::Progress;
-use crate::trajectory::compute::{Analysis, ComputedTrajectory};
+use crate::free_motion::compute::SimulatedScene;
+use crate::trajectory::compute::{ComputedTrajectory, RowSource};
 use crate::unit_runs::compute::UnitRunScene;
 use dwell_dynamics::Orbit;
 use dwell_export::{Export, SeveralFreedomsExport};
@@ -16,15 +14,16 @@ use dwell_scene::Scene;
 use dwell_symbolic::ClosedForm;
 #[cfg(feature = "output")]
 use {
-    crate::assembled::BodyStates, crate::output::Picture, crate::trajectory::figures::PictureSpan,
-    crate::trajectory::output::TrajectoryOutcome,
+    crate::assembled::BodyStates,
+    crate::output::{Outcome, Picture},
+    crate::trajectory::figures::PictureSpan,
 };
 
 /// A page, and why its motion ended early, if it did.
 pub type PageAndStop = (Page, Option<StudyError>);
 
 /// A scene in the plane or in space.
-pub trait StudyScene: AskedScene + UnitRunScene + CalibratedScene {
+pub trait StudyScene: SimulatedScene + UnitRunScene + CalibratedScene {
     /// What [`check`](crate::check()) prints; the numbers in it are recorded.
     ///
     /// # Errors
@@ -76,75 +75,24 @@ pub trait StudyScene: AskedScene + UnitRunScene + CalibratedScene {
     }
 
     /// Whether it prescribes a motion or a sweep of its coordinates.
-    fn prescribes_positions(&self) -> bool;
+    fn prescribes_positions(&self) -> bool {
+        let (motion, sweep) = self.prescribed();
+        motion.is_some() || sweep.is_some()
+    }
 
-    /// The results of [`compute_trajectory`](crate::compute_trajectory).
+    /// The page of rows.
+    fn page(source: &RowSource<'_, '_, Self>, computed: &ComputedTrajectory<'_>) -> Page;
+
+    /// Tables, figures and text of rows.
     ///
     /// # Errors
-    /// As of that.
-    fn trajectory(
-        &self,
-        analysis: Analysis,
-        points: Option<usize>,
-        progress: Progress<'_>,
-    ) -> Result<ComputedTrajectory<'_>, StudyError>;
-
-    /// The results of [`trajectory_page`](crate::trajectory_page).
-    ///
-    /// # Errors
-    /// As of that.
-    fn trajectory_page(
-        &self,
-        analysis: Analysis,
-        points: Option<usize>,
-        progress: Progress<'_>,
-    ) -> Result<PageAndStop, StudyError>;
-
-    /// The results of [`analyse_trajectory_within`](crate::analyse_trajectory_within).
-    ///
-    /// # Errors
-    /// As of that.
+    /// [`StudyError::Scene`] where the span of the curves is not within the trajectory.
     #[cfg(feature = "output")]
-    fn trajectory_outcome(
-        &self,
-        analysis: Analysis,
-        points: Option<usize>,
+    fn report(
+        source: &RowSource<'_, '_, Self>,
+        computed: &ComputedTrajectory<'_>,
         span: PictureSpan,
-        progress: Progress<'_>,
-    ) -> Result<TrajectoryOutcome, StudyError>;
-
-    /// The results of [`compute_free_motion`](crate::compute_free_motion).
-    ///
-    /// # Errors
-    /// As of that.
-    fn simulated(
-        &self,
-        solver: &MotionSolver,
-        progress: Progress<'_>,
-    ) -> Result<FreeMotion, StudyError>;
-
-    /// The results of [`free_motion_page`](crate::free_motion_page).
-    ///
-    /// # Errors
-    /// As of that.
-    fn free_motion_page(
-        &self,
-        solver: &MotionSolver,
-        progress: Progress<'_>,
-    ) -> Result<PageAndStop, StudyError>;
-
-    /// The results of [`simulate_within`](crate::simulate_within).
-    ///
-    /// # Errors
-    /// As of that.
-    #[cfg(feature = "output")]
-    fn free_motion_outcome(
-        &self,
-        solver: &MotionSolver,
-        times: Option<&[f64]>,
-        span: PictureSpan,
-        progress: Progress<'_>,
-    ) -> Result<TrajectoryOutcome, StudyError>;
+    ) -> Result<Outcome, StudyError>;
 
     /// The results of [`compute_period`](crate::compute_period).
     ///

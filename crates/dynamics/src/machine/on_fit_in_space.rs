@@ -3,9 +3,7 @@
 
 use super::workspace::EquationWorkspace;
 use super::{Machine, MachineState, MovingModel};
-use crate::change_point_fit::{
-    ChangePointFitError, GAP_ROUNDING, MAX_GAP, fit_radii, half_width_of_groups,
-};
+use crate::change_point_fit::{ChangePointFitError, farthest_good_fit, half_width_of_groups};
 use crate::error::{Result, positive_inertia};
 use dwell_geometry::PositionError;
 use dwell_geometry::space::{BranchFit, BranchFitWorkspace, ChangePoint};
@@ -114,17 +112,12 @@ fn fit_across(
     };
     let free = others.filter(|other| *other != q).chain(ends).map(distance);
     let largest = FREE_PART * free.fold(period.unwrap_or(f64::INFINITY), f64::min);
-    let mut fits = Vec::new();
-    for radius in fit_radii([half_width, unit], largest) {
+    let scales = [half_width, unit];
+    let (.., fit) = farthest_good_fit(scales, largest, |radius| {
         let fit = plan.fit_branch(q, [half_width, radius])?;
-        fits.push((gap(model, &fit, q, [half_width, unit])?, fit));
-    }
-    let gaps = fits.iter().map(|(gap, _)| *gap);
-    let least = gaps.fold(f64::INFINITY, f64::min);
-    let good = |gap: f64| gap <= (10.0 * least).max(GAP_ROUNDING) && gap <= MAX_GAP;
-    let best = fits.into_iter().rev().find(|(gap, _)| good(*gap));
-    best.map(|(_, fit)| fit)
-        .ok_or(ChangePointFitError::NotSmooth { gap: least })
+        Ok((gap(model, &fit, q, scales)?, fit))
+    })?;
+    Ok(fit)
 }
 
 /// The largest gap between a fit and the plan at the window's ends, in the velocities and accelerations of all bodies at unit speed, of

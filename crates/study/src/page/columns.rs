@@ -84,15 +84,13 @@ pub(crate) fn page_columns(results: &TrajectoryResults, choice: &RowChoice) -> V
 fn group(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Time => "Time",
-        Quantity::ActuatorCoordinate(..)
-        | Quantity::Measured(..)
-        | Quantity::MeasuredInSpace(..) => "Coordinates",
+        Quantity::ActuatorCoordinate(..) | Quantity::Measured(..) => "Coordinates",
         Quantity::ActuatorForce(_) => "Actuator forces",
-        Quantity::BodyAngle(..) | Quantity::RotationInSpace(..) => "Bodies",
+        Quantity::Rotation(..) => "Bodies",
         Quantity::VelocityRatio(_) => "Velocity ratios",
         Quantity::MechanicalAdvantage(..) => "Mechanical advantages",
         Quantity::Pole(..) => "Poles",
-        Quantity::PointCoordinate(..) | Quantity::PointInSpace(..) => "Points",
+        Quantity::Point(..) => "Points",
         Quantity::TransmissionAngle(_) => "Transmission angles",
         Quantity::ForceMagnitude(_) | Quantity::MomentMagnitude(_) => "Reactions, magnitudes",
         Quantity::ForceDirection(_) => "Reactions, directions",

@@ -128,8 +128,8 @@ impl AskedScene for SpaceScene {
 }
 
 /// The states of all bodies.
-#[derive(Debug)]
-struct SpaceStates(Vec<(Placement, BodyMotion)>);
+#[derive(Debug, Clone)]
+pub(super) struct SpaceStates(pub(super) Vec<(Placement, BodyMotion)>);
 
 fn numbers(v: Vec3) -> [f64; 3] {
     [v.x, v.y, v.z]

@@ -2,11 +2,11 @@
 
 use super::explain::{explain_load_error, explain_loads, explain_position};
 use super::prepared::{PreparedSpaceScene, compile, reaction_unit, sort_reactions};
-use super::trajectory::{JointReactions, reject_unknown_variables};
 use super::views::page_drawing;
 use crate::explain::{StudyError, explain_any_motion, scene_error};
 use crate::machines::{MachineScene, MotionStart};
 use crate::models::{coordinate_modes, end_stops};
+use crate::trajectory::compute::reject_unknown_variables;
 use dwell_dynamics::{DynamicsError, Machine, MachineError};
 use dwell_kinetostatics::Drive;
 use dwell_kinetostatics::space::{Coordinate, Model, Reaction};
@@ -55,11 +55,7 @@ impl MachineScene for SpaceScene {
     }
 
     fn reject_unknown_columns(&self) -> Result<(), StudyError> {
-        if self.variables.is_none() {
-            return Ok(());
-        }
-        let (reactions, model) = JointReactions::new(self)?;
-        reject_unknown_variables(self, (&reactions, model.plan()))
+        reject_unknown_variables(self)
     }
 
     fn drawing_along(&self, coordinate: &[f64]) -> Option<Drawing> {

@@ -1,66 +1,38 @@
 //! What scenes in space are swept for.
 
 use super::explain::explain_position;
-use super::motion::SpaceMotionProblem;
 use super::prepared::{compile, range_limits, reaction_unit};
-use super::trajectory::{JointReactions, computed_rows};
+use super::trajectory::SpaceRows;
 use crate::explain::StudyError;
-use crate::free_motion::compute::MotionSolver;
-use crate::models::SolverSettings;
 use crate::progress::no_progress;
 use crate::sweep::compute::{
     Design, ExtremeValues, IndexedReaction, RangeCurves, RequestedQuantities, ResultKind, Results,
     SweptScene, VariantFamily,
 };
-use crate::trajectory::compute::{Analysis, ComputedTrajectory, Quantity};
+use crate::trajectory::compute::{Analysis, Quantity, RowSource};
 use dwell_kinetostatics::ExactModel;
 use dwell_kinetostatics::space::{Model, Reaction};
 use dwell_scene::{SceneError, SpaceScene};
 
 impl SweptScene for SpaceScene {
-    type Compiled = (JointReactions, Model);
-
-    fn compiled(&self) -> Result<(JointReactions, Model), StudyError> {
-        JointReactions::new(self)
-    }
-
-    fn model_of((_, model): &(JointReactions, Model)) -> &Model {
-        model
-    }
-
     /// By their index.
-    fn swept_reactions(&self, (reactions, _): &(JointReactions, Model)) -> Vec<IndexedReaction> {
-        let all = reactions.requested.iter().enumerate();
+    fn swept_reactions(&self, rows: &SpaceRows) -> Vec<IndexedReaction> {
+        let all = rows.requested.iter().enumerate();
         let named = all.map(|(k, r)| (k, self.reaction_name(*r), reaction_unit(r)));
         named.collect()
     }
 
-    /// As in the plane.
-    fn analysis_of_peaks(&self) -> Option<Analysis> {
-        if self.prescribed.is_some() || self.sweep.is_some() {
-            return Some(Analysis::Kinetostatics);
-        }
-        let is_single = self.mechanism.actuators.len() == 1;
-        (is_single && !self.loads.is_empty()).then_some(Analysis::Statics)
-    }
-
-    fn free_motion(&self) -> Result<ComputedTrajectory<'static>, StudyError> {
-        let solver = MotionSolver::Settings(SolverSettings::default());
-        let problem = SpaceMotionProblem::new(self)?.for_solver(&solver);
-        Ok(problem.simulate(&solver, None, &no_progress)?.computed)
-    }
-
-    fn inertia_extremes(&self, _: &(JointReactions, Model)) -> Result<ExtremeValues, StudyError> {
+    fn inertia_extremes(&self, _: &SpaceRows) -> Result<ExtremeValues, StudyError> {
         Ok(range_curves(self, compile(self, &[])?, RangeCurves::of_inertia)?.extremes())
     }
 
     /// A variant may leave open what the scene as it is determines: its point says so.
     fn reject_open(
         &self,
-        (reactions, _): &(JointReactions, Model),
+        rows: &SpaceRows,
         requested: &RequestedQuantities,
     ) -> Result<(), StudyError> {
-        let mut open = reactions.indeterminate.iter();
+        let mut open = rows.indeterminate.iter();
         let open = open.find(|r| is_requested(requested, &self.reaction_name(**r)));
         match open {
             None => Ok(()),
@@ -74,12 +46,12 @@ impl SweptScene for SpaceScene {
 
     fn compute_free_reactions(
         &self,
-        (reactions, _): &(JointReactions, Model),
+        rows: &SpaceRows,
         energy: f64,
         requested: &RequestedQuantities,
         results: &mut Results<'_>,
     ) {
-        let all = reactions.requested.iter();
+        let all = rows.requested.iter();
         let named = all.map(|reaction| (*reaction, self.reaction_name(*reaction)));
         let named: Vec<_> = named
             .filter(|(_, name)| is_requested(requested, name))
@@ -95,12 +67,12 @@ impl SweptScene for SpaceScene {
 
     fn compute_peaks(
         &self,
-        (reactions, model): (JointReactions, Model),
+        rows: SpaceRows,
         analysis: Analysis,
         _: &RequestedQuantities,
         results: &mut Results<'_>,
     ) -> Result<(), StudyError> {
-        match peaks(self, (&reactions, &model), analysis) {
+        match peaks(self, &rows, analysis) {
             Ok([of_reactions, of_actuators]) => {
                 results.set_named(ResultKind::Reaction, Ok(of_reactions));
                 results.set_named(ResultKind::ActuatorForce, Ok(of_actuators));
@@ -136,11 +108,12 @@ fn is_requested(requested: &RequestedQuantities, reaction: &str) -> bool {
 /// The largest magnitudes of reactions and of actuator forces, also between the rows.
 fn peaks(
     scene: &SpaceScene,
-    (reactions, model): (&JointReactions, &Model),
+    rows: &SpaceRows,
     analysis: Analysis,
 ) -> Result<[Vec<(String, f64)>; 2], StudyError> {
     // The abscissa is among them.
-    let is_wanted = |quantity: Quantity| {
+    let mut source = RowSource::new(scene, rows);
+    source.is_wanted = |quantity| {
         matches!(
             quantity,
             Quantity::Time
@@ -149,9 +122,7 @@ fn peaks(
                 | Quantity::Reaction(_)
         )
     };
-    let study = (analysis, None);
-    let (mut computed, _) =
-        computed_rows(scene, (reactions, model), study, &is_wanted, &no_progress)?;
+    let mut computed = source.analysed(analysis, None, &no_progress)?;
     if let Some(error) = computed.early_stop.take() {
         return Err(error);
     }

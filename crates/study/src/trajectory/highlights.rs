@@ -51,9 +51,9 @@ impl Movement<'_> {
     /// By how much the bodies that move most swing, and the joints that slide most travel.
     fn swings(&self, record: &mut Record) -> String {
         let is_of_kind = |c: &Column, is_angle: bool| match c.quantity {
-            Quantity::BodyAngle(_, 0) => is_angle,
-            Quantity::Measured(_, 0) => !is_angle && c.unit == "m",
-            Quantity::MeasuredInSpace(_, 0) => (c.unit == "rad") == is_angle,
+            Quantity::Rotation(_, 0, _) => is_angle && c.unwraps,
+            // In the plane bodies have their angles.
+            Quantity::Measured(_, 0) => (c.unit == "rad") == is_angle && !c.unwraps,
             _ => false,
         };
         let mut text = String::new();
@@ -110,7 +110,7 @@ impl Movement<'_> {
         else {
             return String::new();
         };
-        let column = Quantity::BodyAngle(request.body, 0);
+        let column = Quantity::Rotation(request.body, 0, 2);
         let Some(angle) = self.results.column_index(column) else {
             return String::new();
         };

@@ -11,18 +11,15 @@
 
 use crate::estimate::relative;
 use crate::explain::StudyError;
-use crate::machines::MachineScene;
-use crate::models::{PreparedScene, loaded_model};
+use crate::models::PreparedScene;
 use crate::progress::Progress;
 use crate::reduce::compute::{
     ReducedCurves, ReducedScene, RoundingErrors, TabulatedScene, coefficient_units, flat,
     inertia_units,
 };
-use crate::trajectory::compute::{
-    Analysis, RowStorage, Spacing, Trajectory, compute_along, default_limits,
-};
+use crate::trajectory::compute::{Analysis, RowScene, RowSource, Spacing, Trajectory};
 use dwell_findings::{Column, Table};
-use dwell_kinetostatics::Coefficients;
+use dwell_kinetostatics::{Coefficients, ReducibleModel as _};
 use dwell_laws::{Law, Polynomial};
 use dwell_scene::{PlaneScene, PrescribedMotion, Requests};
 
@@ -62,7 +59,8 @@ pub fn compute_unit_runs<'a, S: UnitRunScene>(
     let prepared = scene.prepared_without_loads()?;
     let points = points.unwrap_or(DEFAULT_POINTS).max(2);
     let runs = [UnitRun::Speed, UnitRun::Acceleration];
-    let [one, two] = runs.map(|run| scene.run_table(run, points, progress));
+    let alone = scene.with_masses_alone();
+    let [one, two] = runs.map(|run| run.table(&alone, points, progress));
     let runs = [one?, two?];
     let combined = combine(&prepared, &runs);
     let reduced = ReducedCurves::at(&prepared, combined.q.clone())?;
@@ -86,16 +84,19 @@ pub enum UnitRun {
 }
 
 impl UnitRun {
-    /// The table that an analysis finds along the motion from the lower to the upper end of a range, rad or m.
+    /// The table of a scene along the motion from the lower to the upper end of the range of its coordinate.
     ///
     /// # Errors
     /// [`StudyError`] where a position cannot be reached.
-    pub(crate) fn table(
+    fn table<S: RowScene>(
         self,
-        [from, to]: [f64; 2],
-        (period, points): (Option<f64>, usize),
-        analyse: impl FnOnce(Trajectory<'_>) -> Result<(Table, Option<StudyError>), StudyError>,
+        scene: &S,
+        points: usize,
+        progress: Progress<'_>,
     ) -> Result<Table, StudyError> {
+        let rows = scene.rows()?;
+        let model = S::model_of(&rows);
+        let ([from, to], ..) = scene.default_limits(model);
         let (law, duration, spacing) = match self {
             Self::Speed => (
                 Polynomial::motion(from, 1.0, 0.0),
@@ -114,16 +115,18 @@ impl UnitRun {
             laws: vec![Law::Polynomial(law)],
         };
         let along = (&motion, spacing);
+        let period = model.range().period();
         let along = Trajectory::prescribed(along, period, Analysis::Kinetostatics, points);
-        match analyse(along)? {
-            (_, Some(error)) => Err(error),
-            (table, None) => Ok(table),
+        let computed = RowSource::new(scene, &rows).along(along, None, progress)?;
+        match computed.early_stop {
+            Some(error) => Err(error),
+            None => Ok(computed.table),
         }
     }
 }
 
 /// A scene of which the runs can be made.
-pub trait UnitRunScene: MachineScene {
+pub trait UnitRunScene: RowScene {
     /// The scene with its model.
     type Prepared<'a>: TabulatedScene
     where
@@ -135,16 +138,8 @@ pub trait UnitRunScene: MachineScene {
     /// [`StudyError`] when the mechanism cannot be assembled or has several actuators.
     fn prepared_without_loads(&self) -> Result<Self::Prepared<'_>, StudyError>;
 
-    /// All columns of a run of the mechanism with its masses alone: what loads do, is not part of the coefficients.
-    ///
-    /// # Errors
-    /// [`StudyError`] where a position cannot be reached.
-    fn run_table(
-        &self,
-        run: UnitRun,
-        points: usize,
-        progress: Progress<'_>,
-    ) -> Result<Table, StudyError>;
+    /// The same mechanism with its masses alone: what loads do, is not part of the coefficients.
+    fn with_masses_alone(&self) -> Self;
 }
 
 impl UnitRunScene for PlaneScene {
@@ -154,12 +149,7 @@ impl UnitRunScene for PlaneScene {
         PreparedScene::without_loads(self)
     }
 
-    fn run_table(
-        &self,
-        run: UnitRun,
-        points: usize,
-        progress: Progress<'_>,
-    ) -> Result<Table, StudyError> {
+    fn with_masses_alone(&self) -> Self {
         let mut scene = self.clone();
         scene.loads.clear();
         scene.drives.clear();
@@ -170,14 +160,7 @@ impl UnitRunScene for PlaneScene {
             reactions: scene.requests.reactions.clone(),
             ..Requests::default()
         };
-        let model = loaded_model(&scene)?;
-        let plan = model.plan();
-        let (limits, ..) = default_limits(&scene, plan);
-        run.table(limits, (plan.range().period(), points), |trajectory| {
-            let along = (trajectory, None);
-            let computed = compute_along(RowStorage::Whole, &scene, &model, along, progress)?;
-            Ok((computed.table, computed.early_stop))
-        })
+        scene
     }
 }
 

@@ -1,54 +1,16 @@
 //! A computed motion between its samples: at its steps, and at any time within a step.
 
-use crate::free_motion::compute::within_steps::{MAX_STEPS, StatesWithinSteps, exact_state};
 use crate::free_motion::compute::{
-    FreeMotionProblem, MotionSolver, PlaceInMotion, SegmentedMotion, sides_of_step,
+    ChartedProblem as _, FreeMotionProblem, MotionSolver, PlaceInMotion, SegmentedMotion,
+    StatesWithinSteps, exact_state,
 };
 use crate::trajectory::compute::{SamplePrecision, TrajectorySample};
-use dwell_dynamics::{
-    EventSide, Machine, MachineOde, MachineWorkspace, Method, OdeState, Solution,
-};
+use dwell_dynamics::{EventSide, Machine, MachineOde, MachineWorkspace, Method, OdeState};
 use dwell_geometry::body_states::CoordinateFunction;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::f64::consts::TAU;
 impl FreeMotionProblem<'_> {
-    /// The motion at its steps, of which so many may be left out between two; none if there are too many of them.
-    pub(crate) fn steps_as_samples(
-        &self,
-        motion: &SegmentedMotion,
-        max_skipped: usize,
-    ) -> Option<Vec<(f64, TrajectorySample)>> {
-        if motion.steps().count() > MAX_STEPS {
-            return None;
-        }
-        let coordinates = &motion.actuator_coordinates.steps;
-        let mut thinning = Thinning {
-            max_skipped,
-            skipped: 0,
-        };
-        let mut wanted = |solution: &Solution, k: usize| {
-            let is_kept = thinning.keeps(&solution.steps, k);
-            let sides = sides_of_step(solution, k);
-            match is_kept || sides.len() > 1 {
-                true => sides,
-                false => Vec::new(),
-            }
-        };
-        self.evaluated(motion, |solution| &solution.steps, &mut wanted, coordinates)
-            .ok()
-    }
-
-    /// Whether a time (s) is in a step that begins or ends within the window of a change point's fit.
-    pub(crate) fn is_in_fit_window(&self, motion: &SegmentedMotion, t: f64) -> bool {
-        let is_fit = |(chart, step): (usize, &OdeState)| {
-            self.machine_in(motion, chart).is_in_fit_window(&step.y)
-        };
-        let before = motion.steps().filter(|(_, step)| step.t <= t).last();
-        let after = motion.steps().find(|(_, step)| step.t >= t);
-        before.is_some_and(is_fit) || after.is_some_and(is_fit)
-    }
-
     /// A motion at any of its times.
     pub(crate) fn sampler<'m>(&'m self, motion: &'m SegmentedMotion) -> MotionSampler<'m> {
         MotionSampler {
@@ -84,15 +46,23 @@ pub(super) fn max_skipped(solver: &MotionSolver) -> usize {
 }
 
 /// Steps of which at most so many are left out between two, where their lengths are alike.
-struct Thinning {
+pub(super) struct Thinning {
     max_skipped: usize,
     /// Those that have been left out since the last one.
     skipped: usize,
 }
 
 impl Thinning {
+    pub(super) fn new(max_skipped: usize) -> Self {
+        let skipped = 0;
+        Self {
+            max_skipped,
+            skipped,
+        }
+    }
+
     /// Whether the `k`th step is kept, after those before it.
-    fn keeps(&mut self, steps: &[OdeState], k: usize) -> bool {
+    pub(super) fn keeps(&mut self, steps: &[OdeState], k: usize) -> bool {
         let around = k.checked_sub(1).and_then(|before| steps.get(before..k + 2));
         let is_alike = around.is_some_and(|around| {
             let [before, after] = [around[1].t - around[0].t, around[2].t - around[1].t];

@@ -2,8 +2,8 @@
 
 use crate::estimate::{self, beyond_rounding, error_scale, relative};
 use crate::free_motion::compute::{
-    ComputedMotion, Energies, FreeMotionProblem, MotionProblem as _, NamedContacts,
-    SegmentedMotion, balance_line, class_line, cost_line, event_line, times_of,
+    ChartedProblem as _, ComputedMotion, Energies, FreeMotionProblem, MotionProblem as _,
+    NamedContacts, SegmentedMotion, balance_line, class_line, cost_line, event_line, times_of,
 };
 use crate::models::SolverSettings;
 use crate::number_format::digits;

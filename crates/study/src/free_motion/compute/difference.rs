@@ -1,7 +1,9 @@
 //! The difference of two computations of one motion.
 
 use crate::estimate::{beyond_rounding, error_scale, relative};
-use crate::free_motion::compute::{FreeMotionProblem, MotionProblem, SegmentedMotion};
+use crate::free_motion::compute::{
+    ChartedProblem as _, FreeMotionProblem, MotionProblem, SegmentedMotion,
+};
 use crate::trajectory::compute::{TrajectorySample, force_scales};
 use dwell_dynamics::DynamicsError;
 use dwell_kinetostatics::{KinematicState, MachineModel};

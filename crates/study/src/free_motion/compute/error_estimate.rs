@@ -4,7 +4,8 @@ use crate::estimate::{self, is_rounding};
 use crate::explain::StudyError;
 use crate::free_motion::compute::difference::pair_by_time;
 use crate::free_motion::compute::{
-    ComputedMotion, FreeMotionProblem, LARGE_ERROR, MotionProblem as _, SegmentedMotion,
+    ChartedProblem as _, ComputedMotion, FreeMotionProblem, LARGE_ERROR, MotionProblem as _,
+    SegmentedMotion,
 };
 use crate::number_format::digits;
 use crate::ranges::extent;

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod between_samples;
+mod charted_problem;
 mod contacts;
 mod description;
 mod difference;
@@ -23,6 +24,7 @@ mod tried_motion;
 mod within_steps;
 
 pub(crate) use accuracy::find_motion;
+pub(crate) use charted_problem::{ChartedProblem, Picked};
 pub(crate) use contacts::NamedContacts;
 pub(crate) use difference::{Compared, Difference, pair_by_time, reactions_at};
 pub(crate) use ending::end_where_impossible;
@@ -35,9 +37,9 @@ pub use problem::FreeMotionProblem;
 pub use segmented_motion::SegmentedMotion;
 pub(crate) use segmented_motion::{ComputedMotion, PlaceInMotion};
 pub(crate) use shortfall::{LARGE_ERROR, not_accurate, not_resolved, too_many_steps};
+pub(crate) use simulation::MotionDescription;
 pub(crate) use simulation::check_times;
-pub(crate) use simulation::compute_free_motion_at;
-pub use simulation::{FreeMotion, MotionSolver};
+pub use simulation::{DescribedMotion, FreeMotion, MotionSolver, SimulatedScene};
 pub(crate) use summary_lines::{
     Energies, balance_line, class_line, cost_line, event_line, first_changes, times_of,
 };

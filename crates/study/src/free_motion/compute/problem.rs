@@ -5,13 +5,14 @@ use crate::explain::{
     StudyError, explain_machine, explain_model, explain_motion, explain_position_in,
 };
 use crate::free_motion::compute::{
-    MotionProblem, SegmentedMotion, compiled_event, end_where_impossible, first_changes,
+    ChartedProblem, MotionProblem, Picked, SegmentedMotion, compiled_event, end_where_impossible,
+    first_changes,
 };
 use crate::models::{build_machine, loaded_model};
 use crate::number_format::digits;
-use crate::trajectory::compute::check_variables;
+use crate::trajectory::compute::{TrajectorySample, check_variables};
 use dwell_dynamics::atlas::{
-    Atlas, AtlasError, ChartChange, ChartChangeReason, ContinuedMotion, CoordinateHistory,
+    Atlas, AtlasError, Chart, ChartChange, ChartChangeReason, ContinuedMotion, CoordinateHistory,
     MachineDescription,
 };
 use dwell_dynamics::{DynamicsError, Event, Machine, Options, solve};
@@ -171,16 +172,6 @@ impl<'a> FreeMotionProblem<'a> {
         descriptions
     }
 
-    /// The machine of a chart.
-    pub(crate) fn machine_in<'m>(
-        &'m self,
-        motion: &'m SegmentedMotion,
-        chart: usize,
-    ) -> &'m Machine {
-        let chart = motion.charts.get(chart);
-        chart.map_or(&self.machine, |c| &c.machine)
-    }
-
     /// The scene's events, in their order.
     pub(crate) fn events(&self) -> Vec<Event> {
         let mechanism = &self.loaded_scene.mechanism;
@@ -190,6 +181,29 @@ impl<'a> FreeMotionProblem<'a> {
         let events = self.spec.events.iter();
         let events = events.map(|named| compiled_event(named, coordinate, reaction));
         events.filter_map(Result::ok).collect()
+    }
+}
+
+impl ChartedProblem for FreeMotionProblem<'_> {
+    type Chart = Chart;
+
+    fn machine_in<'m>(&'m self, motion: &'m SegmentedMotion, chart: usize) -> &'m Machine {
+        let chart = motion.charts.get(chart);
+        chart.map_or(&self.machine, |c| &c.machine)
+    }
+
+    fn own_coordinate(
+        &self,
+        motion: &SegmentedMotion,
+        (segment, picked, k): (usize, Picked, usize),
+        _: &TrajectorySample,
+    ) -> Option<[f64; 3]> {
+        let history = &motion.actuator_coordinates;
+        let coordinates = match picked {
+            Picked::Steps => &history.steps,
+            Picked::Samples => &history.samples,
+        };
+        coordinates.get(segment)?.get(k).copied()
     }
 }
 

@@ -37,10 +37,9 @@ impl ComputedMotion {
 }
 
 /// A free motion as a sequence of segments, each in one chart.
-#[derive(Default)]
-pub struct SegmentedMotion {
-    /// Empty if the mechanism's own coordinate is used throughout.
-    pub charts: Vec<Chart>,
+pub struct SegmentedMotion<C = Chart> {
+    /// Empty if the mechanism's own coordinate is used throughout. In space without that coordinate, which is chart 0.
+    pub charts: Vec<C>,
     /// By segment: its chart and its solution.
     pub segments: Vec<(usize, Solution)>,
     /// By segment, at its steps and its samples: the only actuator's coordinate with two derivatives.
@@ -54,7 +53,21 @@ pub struct SegmentedMotion {
     pub(crate) statistics: Statistics,
 }
 
-impl SegmentedMotion {
+impl<C> Default for SegmentedMotion<C> {
+    fn default() -> Self {
+        Self {
+            charts: Vec::new(),
+            segments: Vec::new(),
+            actuator_coordinates: CoordinateHistory::default(),
+            orbit: None,
+            chart_changes: Vec::new(),
+            failure: None,
+            statistics: Statistics::default(),
+        }
+    }
+}
+
+impl<C> SegmentedMotion<C> {
     /// A motion in the mechanism's own coordinates, whose last instant is a sample.
     pub(crate) fn single_segment(mut solution: Solution) -> Self {
         solution.sample_end();

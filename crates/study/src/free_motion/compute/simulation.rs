@@ -4,15 +4,15 @@ use crate::estimate;
 use crate::explain::StudyError;
 use crate::free_motion::compute::between_samples::max_skipped;
 use crate::free_motion::compute::{
-    ComputedMotion, FreeMotionProblem, MotionProblem as _, motion_to_simulate, named_events,
-    not_accurate, not_resolved, too_many_steps,
+    ChartedProblem as _, ComputedMotion, FreeMotionProblem, MotionProblem as _, SegmentedMotion,
+    motion_to_simulate, named_events, not_accurate, not_resolved, too_many_steps,
 };
 use crate::models::{SolverSettings, with_drive_loads};
 use crate::number_format::digits;
 use crate::progress::Progress;
 use crate::trajectory::compute::{
-    ComputedTrajectory, MotionBetweenRows, RowStorage, Sampler, SecondRows, Trajectory,
-    TrajectorySample, compute_along,
+    ComputedTrajectory, MotionBetweenRows, RowScene, RowSource, Sampler, SecondRows, Trajectory,
+    TrajectorySample,
 };
 use dwell_dynamics::{DynamicsError, Options};
 use dwell_findings::{Record, Table};
@@ -51,12 +51,16 @@ pub struct FreeMotion {
     pub estimated_error: Option<f64>,
 }
 
-/// A free motion in the plane, and what is said of it.
-pub(crate) struct DescribedMotion {
+/// A free motion, and what is said of it.
+pub struct DescribedMotion<'m> {
     /// The motion.
     pub(crate) motion: FreeMotion,
-    /// The scene with the loads through which its drives act.
-    pub(crate) loaded_scene: PlaneScene,
+    /// What is said of it, to be computed where it is asked for.
+    pub(crate) description: Box<dyn FnOnce() -> MotionDescription + 'm>,
+}
+
+/// What is said of a free motion.
+pub(crate) struct MotionDescription {
     /// By event that happened: its time and number, and the actuator coordinates and speeds then.
     #[cfg_attr(
         not(feature = "output"),
@@ -72,64 +76,34 @@ pub(crate) struct DescribedMotion {
 /// A motion at its rows, and what is known between them.
 type FollowedMotion<'s> = (Trajectory<'static>, Option<MotionBetweenRows<'s>>);
 
-/// The free motion of a scene in the plane, with rows at wanted times (s, ascending) and at the end of the motion.
-pub(crate) fn compute_free_motion_at(
-    scene: &PlaneScene,
-    solver: &MotionSolver,
-    times: Option<&[f64]>,
-    progress: Progress<'_>,
-) -> Result<DescribedMotion, StudyError> {
-    let spec = motion_to_simulate(scene, scene.motion.as_ref())?;
-    let loaded_scene = with_drive_loads(scene)?;
-    let problem = FreeMotionProblem::new(scene, &loaded_scene, spec)?;
-    let duration = problem.duration()?;
-    times.map_or(Ok(()), |times| check_times(times, duration))?;
-    let mut integrated = problem.integrate(solver, duration)?;
-    let [evaluated, others] = std::mem::take(&mut integrated.evaluated);
-    let motion = &integrated.motion;
-    // Where branches are too close at the start, the scene is a valid one.
-    let is_refused = |error: &&DynamicsError| !matches!(error, DynamicsError::NearBranches { .. });
-    let failure = motion.failure.as_ref().filter(is_refused);
-    if let Some(error) = failure.filter(|_| motion.end_time() == 0.0) {
-        return Err(problem.explain(error));
+/// A scene whose free motion is simulated.
+pub trait SimulatedScene: RowScene {
+    /// Does something with its free motion, with rows at wanted `times` (s, ascending) and at its end, or else equally spaced.
+    ///
+    /// # Errors
+    /// As of [`compute_free_motion`](crate::compute_free_motion).
+    fn simulate_then<R>(
+        &self,
+        solver: &MotionSolver,
+        times: Option<&[f64]>,
+        progress: Progress<'_>,
+        then: impl FnOnce(&RowSource<'_, '_, Self>, DescribedMotion<'_>) -> R,
+    ) -> Result<R, StudyError>;
+}
+
+impl SimulatedScene for PlaneScene {
+    fn simulate_then<R>(
+        &self,
+        solver: &MotionSolver,
+        times: Option<&[f64]>,
+        progress: Progress<'_>,
+        then: impl FnOnce(&RowSource<'_, '_, Self>, DescribedMotion<'_>) -> R,
+    ) -> Result<R, StudyError> {
+        let spec = motion_to_simulate(self, self.motion.as_ref())?;
+        let loaded_scene = with_drive_loads(self)?;
+        let problem = FreeMotionProblem::new(self, &loaded_scene, spec)?;
+        problem.simulated(solver, times, progress, then)
     }
-    let (trajectory, steps) = rayon::join(
-        || problem.trajectory(motion, evaluated, &integrated.method_text, times),
-        || problem.steps_as_samples(motion, max_skipped(solver)),
-    );
-    let trajectory = trajectory.map_err(|e| problem.explain(&e))?;
-    let sampler = || -> Sampler<'_> {
-        let mut sampler = problem.sampler(motion);
-        Box::new(move |t, precision| sampler.sample_at(t, precision))
-    };
-    let between = steps.map(|further| MotionBetweenRows {
-        further,
-        sampler: &sampler,
-    });
-    let second = || problem.second_rows(&integrated, others, times);
-    let followed = ((trajectory, between), second);
-    let rows = problem.rows_and_summary(&integrated, followed, duration, progress);
-    let (mut computed, (mut summary, mut record)) = rows?;
-    if let Some(end) = computed.end_of_rows() {
-        integrated.end_at(end);
-        (summary, record) = problem.summary(&integrated, duration);
-    }
-    let shortfall = problem.shortfall(&integrated, solver);
-    computed.early_stop = shortfall.or(computed.early_stop);
-    record.extend(integrated.record.clone());
-    summary += &problem.notes;
-    summary += &integrated.remarks;
-    Ok(DescribedMotion {
-        motion: FreeMotion {
-            computed,
-            events: named_events(&problem, &integrated.motion.segments),
-            estimated_error: integrated.accuracy.map(|[_, error]| error),
-        },
-        event_table: problem.event_table(&integrated.motion),
-        summary,
-        record,
-        loaded_scene,
-    })
 }
 
 /// Refuses a sample interval beyond the duration (s), or of more than the highest number of samples.
@@ -200,6 +174,81 @@ impl MotionSolver {
 }
 
 impl FreeMotionProblem<'_> {
+    /// Does something with the motion by a solver, as [`SimulatedScene::simulate_then`] does.
+    fn simulated<R>(
+        &self,
+        solver: &MotionSolver,
+        times: Option<&[f64]>,
+        progress: Progress<'_>,
+        then: impl FnOnce(&RowSource<'_, '_, PlaneScene>, DescribedMotion<'_>) -> R,
+    ) -> Result<R, StudyError> {
+        let duration = self.duration()?;
+        times.map_or(Ok(()), |times| check_times(times, duration))?;
+        let mut integrated = self.integrate(solver, duration)?;
+        let [evaluated, others] = std::mem::take(&mut integrated.evaluated);
+        let motion = &integrated.motion;
+        // Where branches are too close at the start, the scene is a valid one.
+        let is_refused =
+            |error: &&DynamicsError| !matches!(error, DynamicsError::NearBranches { .. });
+        let failure = motion.failure.as_ref().filter(is_refused);
+        if let Some(error) = failure.filter(|_| motion.end_time() == 0.0) {
+            return Err(self.explain(error));
+        }
+        let (trajectory, steps) = rayon::join(
+            || self.trajectory(motion, evaluated, &integrated.method_text, times),
+            || self.steps_as_samples(motion, max_skipped(solver)),
+        );
+        let trajectory = trajectory.map_err(|e| self.explain(&e))?;
+        let sampler = || -> Sampler<'_> {
+            let mut sampler = self.sampler(motion);
+            Box::new(move |t, precision| sampler.sample_at(t, precision))
+        };
+        let between = steps.map(|further| MotionBetweenRows {
+            further,
+            sampler: &sampler,
+        });
+        let second = || self.second_rows(&integrated, others, times);
+        let followed = ((trajectory, between), second);
+        let rows = self.rows_and_summary(&integrated, followed, duration, progress);
+        let (mut computed, (mut summary, mut record)) = rows?;
+        if let Some(end) = computed.end_of_rows() {
+            integrated.end_at(end);
+            (summary, record) = self.summary(&integrated, duration);
+        }
+        let shortfall = self.shortfall(&integrated, solver);
+        computed.early_stop = shortfall.or(computed.early_stop);
+        let source = self.row_source(&integrated.motion);
+        let said = (summary, record);
+        Ok(then(&source, self.described(&integrated, computed, said)))
+    }
+
+    /// A motion with its rows, and what is said of it besides its method.
+    fn described<'m>(
+        &'m self,
+        integrated: &'m ComputedMotion,
+        computed: ComputedTrajectory<'static>,
+        (mut summary, mut record): (String, Record),
+    ) -> DescribedMotion<'m> {
+        let motion = FreeMotion {
+            computed,
+            events: named_events(self, &integrated.motion.segments),
+            estimated_error: integrated.accuracy.map(|[_, error]| error),
+        };
+        let description = Box::new(move || {
+            record.extend(integrated.record.clone());
+            summary = summary + &self.notes + &integrated.remarks;
+            MotionDescription {
+                event_table: self.event_table(&integrated.motion),
+                summary,
+                record,
+            }
+        });
+        DescribedMotion {
+            motion,
+            description,
+        }
+    }
+
     fn integrate(
         &self,
         solver: &MotionSolver,
@@ -262,8 +311,9 @@ impl FreeMotionProblem<'_> {
             scope.spawn(|_| {
                 beside = Some((second_rows(), self.summary(integrated, duration)));
             });
-            let (scene, model) = (self.loaded_scene, &self.output_model);
-            compute_along(RowStorage::Whole, scene, model, followed, progress)
+            let (trajectory, between) = followed;
+            self.row_source(&integrated.motion)
+                .along(trajectory, between, progress)
         });
         let mut computed = computed?;
         let (second, summary) = beside.unwrap_or_default();
@@ -279,8 +329,19 @@ impl FreeMotionProblem<'_> {
         times: Option<&[f64]>,
     ) -> Option<SecondRows> {
         let second = integrated.comparison.as_ref()?;
-        let second = self.trajectory(second, evaluated, &integrated.method_text, times);
-        SecondRows::in_plane(self.loaded_scene, &self.output_model, &second.ok()?)
+        let trajectory = self.trajectory(second, evaluated, &integrated.method_text, times);
+        SecondRows::new(&self.row_source(second), &trajectory.ok()?)
+    }
+
+    /// What the rows of a motion are evaluated of.
+    fn row_source<'p>(&'p self, motion: &'p SegmentedMotion) -> RowSource<'p, 'p, PlaneScene> {
+        let charts = motion.charts.iter();
+        RowSource {
+            charts: charts
+                .map(|c| (self.loaded_scene, &c.output_model))
+                .collect(),
+            ..RowSource::new(self.loaded_scene, &self.output_model)
+        }
     }
 
     /// Why a motion is not what was required: it ended early, or is less accurate.

@@ -1,7 +1,9 @@
 //! The samples and the events of a motion as tables.
 
 use crate::free_motion::compute::motors::motor_values;
-use crate::free_motion::compute::{FreeMotionProblem, MotionProblem, SegmentedMotion, event_table};
+use crate::free_motion::compute::{
+    ChartedProblem as _, FreeMotionProblem, MotionProblem, SegmentedMotion, event_table,
+};
 use crate::trajectory::compute::{
     FreeTrajectory, SamplePrecision, Trajectory, TrajectorySample, extra_columns,
 };
@@ -11,10 +13,7 @@ use dwell_dynamics::{
 };
 use dwell_findings::Table;
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_kinetostatics::{Drive, Model};
-
-/// The times (s) under which a picked state of a solution is kept, each with the side of an event that it is evaluated on.
-type WantedTimes<'a> = dyn FnMut(&Solution, usize) -> Vec<(f64, EventSide)> + 'a;
+use dwell_kinetostatics::Drive;
 
 impl FreeMotionProblem<'_> {
     /// A computed motion as a trajectory, with its samples, which may have been `evaluated` already, or else with wanted times
@@ -32,57 +31,9 @@ impl FreeMotionProblem<'_> {
             (None, None) => self.samples(motion)?,
             (Some(times), _) => self.samples_at(motion, times)?,
         };
-        let charts = motion.charts.iter().map(|c| c.output_model.clone());
         let period = self.output_model.plan().range().period();
-        let computed = (samples, charts.collect(), method_text);
+        let computed = (samples, !motion.charts.is_empty(), method_text);
         Ok(free_trajectory(self, computed, (end, period)))
-    }
-
-    /// Every sample with its accelerations, drive magnitudes and energies. Within the window of a change
-    /// point's fit there are no reactions, and no row.
-    pub(crate) fn samples(
-        &self,
-        motion: &SegmentedMotion,
-    ) -> Result<Vec<TrajectorySample>, DynamicsError> {
-        let coordinates = &motion.actuator_coordinates.samples;
-        let evaluated = self.evaluated(
-            motion,
-            |solution| &solution.samples,
-            &mut |solution, k| vec![(solution.samples[k].t, EventSide::After)],
-            coordinates,
-        )?;
-        let samples: Vec<_> = evaluated.into_iter().map(|(_, sample)| sample).collect();
-        let initial = samples.first().map_or(0.0, |s| self.energy_balance(s));
-        Ok(since_start(samples, self.balance_index(), initial))
-    }
-
-    /// A motion's picked states on the sides of events that are wanted, each under a time (s), evaluated: without those within the window of a
-    /// change point's fit. `coordinates` are those of the actuator, by segment.
-    pub(super) fn evaluated(
-        &self,
-        motion: &SegmentedMotion,
-        picked: fn(&Solution) -> &[OdeState],
-        wanted: &mut WantedTimes<'_>,
-        coordinates: &[Vec<[f64; 3]>],
-    ) -> Result<Vec<(f64, TrajectorySample)>, DynamicsError> {
-        let mut all = Vec::new();
-        for (segment, (chart, solution)) in motion.segments.iter().enumerate() {
-            let machine = self.machine_in(motion, *chart);
-            let mut workspace = machine.workspace();
-            for (k, point) in picked(solution).iter().enumerate() {
-                if machine.is_in_fit_window(&point.y) {
-                    continue;
-                }
-                for (t, side) in wanted(solution, k) {
-                    let place = (*chart, machine, &mut workspace);
-                    let mut sample = self.sample(place, point, (&solution.modes, side))?;
-                    let coordinates = coordinates.get(segment);
-                    sample.actuator_coordinate = coordinates.and_then(|s| s.get(k)).copied();
-                    all.push((t, sample));
-                }
-            }
-        }
-        Ok(all)
     }
 
     /// The motion at wanted times (s) up to its end, and at its end.
@@ -162,14 +113,14 @@ impl FreeMotionProblem<'_> {
 /// that of the only coordinate.
 pub(crate) fn free_trajectory(
     problem: &impl MotionProblem,
-    (samples, charts, method_text): (Vec<TrajectorySample>, Vec<Model>, &str),
+    (samples, in_charts, method_text): (Vec<TrajectorySample>, bool, &str),
     (end, period): (f64, Option<f64>),
 ) -> Trajectory<'static> {
     let motion = FreeTrajectory {
         samples,
         extra_columns: extra_columns(problem.scene(), problem.machine()),
         prescribed: problem.spec().laws.iter().map(Option::is_some).collect(),
-        charts,
+        in_charts,
     };
     let mut trajectory = Trajectory::of_free_motion(period, motion, end);
     method_text.clone_into(&mut trajectory.method_text);

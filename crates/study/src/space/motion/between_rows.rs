@@ -2,22 +2,10 @@
 
 use super::problem::SpaceMotionProblem;
 use super::run::Run;
-use crate::free_motion::compute::{MAX_STEPS, StatesWithinSteps, exact_state, sides_of_step};
+use crate::free_motion::compute::{StatesWithinSteps, exact_state};
 use crate::trajectory::compute::{SamplePrecision, TrajectorySample};
 use dwell_dynamics::{EventSide, MachineOde, MachineWorkspace, OdeState, Solution};
 use dwell_kinetostatics::space::Model;
-
-impl SpaceMotionProblem<'_> {
-    /// The motion at its steps; none if there are too many of them.
-    pub(super) fn steps_as_samples(&self, run: &Run) -> Option<Vec<(f64, TrajectorySample)>> {
-        let steps = run.motion.solutions().map(|solution| solution.steps.len());
-        if steps.sum::<usize>() > MAX_STEPS {
-            return None;
-        }
-        self.evaluated(&run.motion, |solution| &solution.steps, sides_of_step)
-            .ok()
-    }
-}
 
 /// A motion at any of its times, with the working memory to compute it.
 pub(super) struct MotionSampler<'m> {
@@ -36,7 +24,7 @@ struct PartSampler<'m> {
 
 impl<'m> MotionSampler<'m> {
     pub(super) fn new(problem: &'m SpaceMotionProblem<'_>, run: &'m Run) -> Self {
-        let parts = run.motion.parts(problem);
+        let parts = problem.parts(&run.motion);
         let parts = parts.map(|(problem, solution)| PartSampler::new(problem, solution));
         Self {
             run,

@@ -34,25 +34,19 @@ fn count_below(window: &SpaceFitWindow, q: f64) -> f64 {
 }
 
 impl SpaceMotionProblem<'_> {
-    /// Whether a time (s) is in a step that begins or ends within the window of a change point.
-    pub(super) fn crosses_at(&self, run: &Run, t: f64) -> bool {
-        run.motion.parts(self).any(|(problem, solution)| {
-            let steps = &solution.steps;
-            let next = steps.partition_point(|step| step.t <= t);
-            let ends = [next.checked_sub(1), Some(next)].into_iter().flatten();
-            let mut ends = ends.filter_map(|k| steps.get(k));
-            ends.any(|step| problem.machine.is_in_fit_window(&step.y))
-        })
-    }
-
     /// Lines of the summary: where the motion changes its coordinate, and where it passes change points, and how.
     pub(super) fn describe_changes(&self, run: &Run) -> String {
-        let changes = run.motion.changes(self).map(|(t, [from, to])| {
-            let t = digits(t, 6);
-            format!("t = {t} s: coordinate changed from {from} (next to its dead point) to {to}")
-        });
+        let changes = self
+            .changes(&run.motion)
+            .into_iter()
+            .map(|(t, [from, to])| {
+                let t = digits(t, 6);
+                format!(
+                    "t = {t} s: coordinate changed from {from} (next to its dead point) to {to}"
+                )
+            });
         let text = first_change_lines(changes.collect());
-        let parts = run.motion.parts(self);
+        let parts = self.parts(&run.motion);
         let passed = parts.map(|(problem, solution)| problem.describe_change_points(solution));
         text + &passed.collect::<String>()
     }

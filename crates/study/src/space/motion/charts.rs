@@ -6,8 +6,9 @@
 
 use super::problem::SpaceMotionProblem;
 use crate::explain::StudyError;
-use crate::free_motion::compute::MotionProblem as _;
-use dwell_dynamics::{DynamicsError, Machine, OdeState, Solution, Statistics};
+use crate::free_motion::compute::{ChartedProblem, MotionProblem as _, Picked, SegmentedMotion};
+use crate::trajectory::compute::TrajectorySample;
+use dwell_dynamics::{Machine, OdeState, Solution};
 use dwell_geometry::JointId;
 use dwell_geometry::space::{
     Actuator, ActuatorKind, Coordinate, CoordinateFunction, JointKind, Placement, Plan, Pose,
@@ -33,122 +34,69 @@ pub(super) struct OfChart {
     offset: f64,
 }
 
-/// A motion through one coordinate or more.
-#[derive(Default)]
-pub(crate) struct Motion {
-    /// By part: its chart (0: the scene's own coordinate) and its solution.
-    pub(in crate::space) parts: Vec<(usize, Solution)>,
-    /// The charts from number 1 on.
-    pub(super) charts: Vec<SpaceMotionProblem<'static>>,
-}
+/// A motion through one coordinate or more: its charts are those from number 1 on.
+pub(super) type Motion = SegmentedMotion<SpaceMotionProblem<'static>>;
 
-impl Motion {
-    /// A motion in the scene's own coordinate.
-    pub(super) fn of(solution: Solution) -> Self {
-        Self {
-            parts: vec![(0, solution)],
-            charts: Vec::new(),
-        }
-    }
-
-    /// The problem of each part, and its solution.
+impl SpaceMotionProblem<'_> {
+    /// The problem of each segment of a motion, and its solution.
     pub(super) fn parts<'p>(
         &'p self,
-        own: &'p SpaceMotionProblem<'_>,
+        motion: &'p Motion,
     ) -> impl DoubleEndedIterator<Item = (&'p SpaceMotionProblem<'p>, &'p Solution)> + Clone {
-        let parts = self.parts.iter();
-        parts.map(move |(chart, solution)| (self.problem(own, *chart), solution))
+        let parts = motion.segments.iter();
+        parts.map(move |(chart, solution)| (self.in_chart(motion, *chart), solution))
     }
 
     /// The problem in a chart.
-    pub(super) fn problem<'p>(
+    pub(super) fn in_chart<'p>(
         &'p self,
-        own: &'p SpaceMotionProblem<'_>,
+        motion: &'p Motion,
         chart: usize,
     ) -> &'p SpaceMotionProblem<'p> {
-        let chart = chart.checked_sub(1).and_then(|k| self.charts.get(k));
-        chart.unwrap_or(own)
+        let chart = chart.checked_sub(1).and_then(|k| motion.charts.get(k));
+        chart.unwrap_or(self)
     }
 
-    pub(super) fn solutions(&self) -> impl Iterator<Item = &Solution> {
-        self.parts.iter().map(|(_, solution)| solution)
-    }
-
-    /// The last part.
-    pub(super) fn last(&self) -> Option<&Solution> {
-        self.parts.last().map(|(_, solution)| solution)
-    }
-
-    /// Goes on in a chart: its number, and the state there.
-    pub(super) fn enter(&mut self, next: NextChart) -> (usize, OdeState) {
-        match next {
-            NextChart::Known(number, state) => (number, state),
-            NextChart::New(chart, state) => {
-                self.charts.push(*chart);
-                (self.charts.len(), state)
-            }
-        }
-    }
-
-    /// Ends it with an error.
-    pub(super) fn end_with(&mut self, error: DynamicsError) {
-        if let Some((_, solution)) = self.parts.last_mut() {
-            solution.error = Some(error);
-            solution.sample_end();
-        }
-    }
-
-    /// Ends it at its last sample up to a time, s: where the table of a load ends, what follows is not known.
-    pub(super) fn end_at(&mut self, t: f64) {
-        self.parts
-            .iter_mut()
-            .for_each(|(_, solution)| solution.end_at(t));
-        self.parts
-            .retain(|(_, solution)| !solution.steps.is_empty());
-    }
-
-    /// The error that ended it early, if one did.
-    pub(super) fn error(&self) -> Option<&DynamicsError> {
-        self.last().and_then(|solution| solution.error.as_ref())
-    }
-
-    /// The same in the names of the scene.
-    pub(super) fn explained_error(&self, own: &SpaceMotionProblem<'_>) -> Option<StudyError> {
-        let (problem, solution) = self.parts(own).next_back()?;
-        let error = solution.error.as_ref()?;
+    /// The error that ended a motion early, in the names of the scene, if one did.
+    pub(super) fn explained_end(&self, motion: &Motion) -> Option<StudyError> {
+        let (problem, solution) = self.parts(motion).next_back()?;
+        let error = motion.failure.as_ref()?;
         let explained = problem.explain(error);
         Some(problem.with_instant(error, explained, solution.steps.last()))
     }
 
-    /// When it ends, s.
-    pub(super) fn end(&self) -> f64 {
-        let step = self.last().and_then(|solution| solution.steps.last());
-        step.map_or(0.0, |step| step.t)
-    }
-
-    /// The work done.
-    pub(super) fn statistics(&self) -> Statistics {
-        let each = self.solutions().map(|solution| solution.statistics);
-        each.fold(Statistics::default(), Statistics::plus)
-    }
-
-    /// The times at which the coordinate changes, s, and the new ones' names.
-    pub(super) fn changes(
-        &self,
-        own: &SpaceMotionProblem<'_>,
-    ) -> impl Iterator<Item = (f64, [String; 2])> {
+    /// The times at which the coordinate changes, s, with the names before and after.
+    pub(super) fn changes(&self, motion: &Motion) -> Vec<(f64, [String; 2])> {
         let name = |chart: usize| {
-            let scene = self.problem(own, chart).scene();
+            let scene = self.in_chart(motion, chart).scene();
             scene.mechanism.actuators[0].name.clone()
         };
-        let pairs = self.parts.windows(2).filter_map(move |pair| {
+        let pairs = motion.segments.windows(2).filter_map(|pair| {
             let [(from, _), (to, solution)] = pair else {
                 return None;
             };
             let start = solution.steps.first().filter(|_| from != to)?;
             Some((start.t, [name(*from), name(*to)]))
         });
-        pairs.collect::<Vec<_>>().into_iter()
+        pairs.collect()
+    }
+}
+
+impl ChartedProblem for SpaceMotionProblem<'_> {
+    type Chart = SpaceMotionProblem<'static>;
+
+    fn machine_in<'m>(&'m self, motion: &'m Motion, chart: usize) -> &'m Machine<Model> {
+        &self.in_chart(motion, chart).machine
+    }
+
+    fn own_coordinate(
+        &self,
+        motion: &Motion,
+        (segment, ..): (usize, Picked, usize),
+        sample: &TrajectorySample,
+    ) -> Option<[f64; 3]> {
+        let (chart, _) = motion.segments.get(segment)?;
+        self.in_chart(motion, *chart).scene_coordinate(sample)
     }
 }
 
@@ -169,8 +117,13 @@ impl SpaceMotionProblem<'_> {
             && !self.spec.events.iter().any(counts)
     }
 
+    /// In a chart, the coordinate of the scene with its rate and acceleration at a sample.
+    pub(super) fn scene_coordinate(&self, sample: &TrajectorySample) -> Option<[f64; 3]> {
+        self.coordinate_of(self.chart?, [&sample.q, &sample.q_dot, &sample.q_ddot])
+    }
+
     /// The coordinate of the scene with its rate and acceleration, at a state of a chart.
-    pub(super) fn own_coordinate(&self, chart: OfChart, at: [&[f64]; 3]) -> Option<[f64; 3]> {
+    fn coordinate_of(&self, chart: OfChart, at: [&[f64]; 3]) -> Option<[f64; 3]> {
         let (plan, pose) = moved(self.machine.model().plan(), at)?;
         let [value, rate, acceleration] = plan.coordinate(&pose, chart.own);
         Some([value + chart.offset, rate, acceleration])
@@ -286,8 +239,7 @@ impl SpaceMotionProblem<'_> {
         let spec = scene.motion.as_mut()?;
         spec.initial_coordinates = vec![q];
         spec.initial_velocities = vec![q_dot];
-        let reactions = Some(self.reactions.clone());
-        let mut chart = SpaceMotionProblem::compiled(Cow::Owned(scene), reactions).ok()?;
+        let mut chart = SpaceMotionProblem::compiled(Cow::Owned(scene), Some(&self.rows)).ok()?;
         if let Some(tolerance) = self.tolerance {
             chart = chart.with_tolerance(tolerance);
         }
@@ -374,7 +326,7 @@ impl SpaceMotionProblem<'_> {
 
     /// The scene's own coordinate at a coordinate and a speed of this chart.
     fn own_value(&self, [q, q_dot]: [f64; 2]) -> Option<f64> {
-        let found = self.own_coordinate(self.chart?, [&[q], &[q_dot], &[0.0]]);
+        let found = self.coordinate_of(self.chart?, [&[q], &[q_dot], &[0.0]]);
         found.map(|[value, ..]| value)
     }
 

@@ -8,7 +8,7 @@ use crate::free_motion::compute::{
 use crate::machines::MachineScene;
 use crate::space::explain::{explain_position, with_loads};
 use crate::space::prepared::compile;
-use crate::space::trajectory::JointReactions;
+use crate::space::trajectory::SpaceRows;
 use dwell_dynamics::{DynamicsError, Event, Machine};
 use dwell_kinetostatics::MachineModel as _;
 use dwell_kinetostatics::space::{Coordinate, CoordinateFunction, Model, Reaction};
@@ -29,9 +29,8 @@ pub(crate) struct SpaceMotionProblem<'a> {
     pub(super) chart: Option<OfChart>,
     /// The tolerance to which its machine crosses change points, if it has one.
     pub(super) tolerance: Option<f64>,
-    /// The reactions of the model for outputs, and that model with all loads.
-    pub(super) reactions: JointReactions,
-    pub(in crate::space) output_model: Model,
+    /// The model for outputs with all loads, and its reactions.
+    pub(in crate::space) rows: SpaceRows,
     /// The equations of motion.
     pub(in crate::space) machine: Machine<Model>,
     /// The same with the requested reactions, for their impulses where there are end stops.
@@ -53,15 +52,12 @@ impl<'a> SpaceMotionProblem<'a> {
     /// The same with reactions that are sorted already.
     pub(super) fn compiled(
         scene: Cow<'a, SpaceScene>,
-        sorted: Option<JointReactions>,
+        sorted: Option<&SpaceRows>,
     ) -> Result<Self, StudyError> {
         let spec = motion_to_simulate(&scene, scene.motion.as_ref())?.clone();
-        let (reactions, output_model) = match sorted {
-            None => JointReactions::new(&scene)?,
-            Some(reactions) => {
-                let model = reactions.model(&scene)?;
-                (reactions, model)
-            }
+        let rows = match sorted {
+            None => SpaceRows::new(&scene)?,
+            Some(rows) => rows.of_chart(&scene)?,
         };
         let of_events = spec.events.iter().filter_map(|event| match event.trigger {
             EventTrigger::Reaction(reaction, _) => Some(reaction),
@@ -72,7 +68,7 @@ impl<'a> SpaceMotionProblem<'a> {
         let of_events: Vec<Reaction> = of_events.collect();
         let event_model = with_loads(&scene, compile(&scene, &of_events)?)?;
         let has_impacts = !scene.stops.is_empty();
-        let impact_machine = has_impacts.then(|| scene.machine(&reactions.requested));
+        let impact_machine = has_impacts.then(|| scene.machine(&rows.requested));
         let mut problem = Self {
             machine: scene.machine(&[])?,
             scene,
@@ -80,8 +76,7 @@ impl<'a> SpaceMotionProblem<'a> {
             chart: None,
             tolerance: None,
             impact_machine: impact_machine.transpose()?,
-            reactions,
-            output_model,
+            rows,
             events: Vec::new(),
             event_model,
         };
@@ -169,11 +164,11 @@ impl MotionProblem for SpaceMotionProblem<'_> {
     }
 
     fn impact_machine(&self) -> Option<(&Machine<Model>, usize)> {
-        let requested = self.reactions.requested.len();
+        let requested = self.rows.requested.len();
         Some((self.impact_machine.as_ref()?, requested))
     }
 
     fn explain(&self, error: &DynamicsError) -> StudyError {
-        MachineScene::explain(self.scene(), &self.output_model, error)
+        MachineScene::explain(self.scene(), &self.rows.model, error)
     }
 }

@@ -1,13 +1,13 @@
 //! A free motion in space by a method, or to an accuracy, with its estimated error.
 
 use super::change_points::Barrier;
-use super::charts::Motion;
+use super::charts::{Motion, NextChart};
 use super::problem::SpaceMotionProblem;
 use crate::estimate;
 use crate::explain::StudyError;
 use crate::free_motion::compute::{
-    Compared, Difference, MotionProblem as _, MotionSolver, TriedMotion, end_where_impossible,
-    error_of, find_motion, pair_by_time, reactions_at,
+    ChartedProblem as _, Compared, Difference, MotionProblem as _, MotionSolver, TriedMotion,
+    end_where_impossible, error_of, find_motion, pair_by_time, reactions_at,
 };
 use crate::ranges::extent;
 use crate::space::prepared::reaction_unit;
@@ -82,7 +82,7 @@ impl SpaceMotionProblem<'_> {
             || self.through_charts(&finer, duration),
         );
         let motion = first.map_err(|e| self.explain(&e))?;
-        let (failed, end) = (motion.error().is_some(), motion.end());
+        let (failed, end) = (motion.failure.is_some(), motion.end_time());
         let second = match (failed, end > 0.0) {
             // Up to a little before: at a barrier the second run may be there first.
             (true, true) => self.through_charts(&finer, end * (1.0 - BEFORE_END)).ok(),
@@ -91,7 +91,7 @@ impl SpaceMotionProblem<'_> {
         };
         Ok(Run {
             motion,
-            second: second.filter(|second| second.error().is_none()),
+            second: second.filter(|second| second.failure.is_none()),
             orbit: None,
             method_text,
             options,
@@ -102,22 +102,39 @@ impl SpaceMotionProblem<'_> {
 
     /// The motion in as many coordinates as it takes.
     fn through_charts(&self, options: &Options, end: f64) -> Result<Motion, DynamicsError> {
-        let mut may_change = self.may_change_coordinate();
         let mut motion = Motion::default();
+        let error = self.follow(&mut motion, options, end)?;
+        let statistics = motion.segments.iter().map(|(_, part)| part.statistics);
+        motion.statistics = statistics.fold(Statistics::default(), Statistics::plus);
+        if let Some((_, last)) = motion.segments.last_mut() {
+            if error.is_some() {
+                last.error = error;
+                last.sample_end();
+            }
+            motion.failure.clone_from(&last.error);
+        }
+        Ok(motion)
+    }
+
+    /// Adds the segments of a motion; why the next one cannot begin, if so.
+    fn follow(
+        &self,
+        motion: &mut Motion,
+        options: &Options,
+        end: f64,
+    ) -> Result<Option<DynamicsError>, DynamicsError> {
+        let mut may_change = self.may_change_coordinate();
         let (mut chart, mut at) = (0, self.initial_state());
         let (mut options, max_steps) = (*options, options.max_steps);
         loop {
-            let problem = motion.problem(self, chart);
-            let is_first = motion.parts.is_empty();
+            let problem = self.in_chart(motion, chart);
+            let is_first = motion.segments.is_empty();
             let part = problem.part((&at, end), &options, (is_first, may_change));
             let (mut solution, barrier) = match part {
                 // Nothing is left of the duration after a change.
-                Err(DynamicsError::DurationTooShort) if !is_first => return Ok(motion),
+                Err(DynamicsError::DurationTooShort) if !is_first => return Ok(None),
                 Err(error) if is_first => return Err(error),
-                Err(error) => {
-                    motion.end_with(error);
-                    return Ok(motion);
-                }
+                Err(error) => return Ok(Some(error)),
                 Ok(found) => found,
             };
             options.max_steps = options.max_steps.saturating_sub(solution.statistics.steps);
@@ -145,12 +162,16 @@ impl SpaceMotionProblem<'_> {
             if !goes_on {
                 solution.sample_end();
             }
-            motion.parts.push((chart, solution));
+            motion.segments.push((chart, solution));
             match (next, last) {
-                (Some(next), _) => (chart, at) = motion.enter(next),
+                (Some(NextChart::Known(number, state)), _) => (chart, at) = (number, state),
+                (Some(NextChart::New(new, state)), _) => {
+                    motion.charts.push(*new);
+                    (chart, at) = (motion.charts.len(), state);
+                }
                 // No other coordinate takes over: it goes on as near to the limit position as it can.
                 (None, Some(last)) => (at, may_change) = (last, false),
-                (None, None) => return Ok(motion),
+                (None, None) => return Ok(None),
             }
         }
     }
@@ -214,8 +235,8 @@ impl SpaceMotionProblem<'_> {
         }
         let points = orbit.points;
         Some(Run {
-            motion: Motion::of(solution),
-            second: Some(Motion::of(second)),
+            motion: Motion::single_segment(solution),
+            second: Some(Motion::single_segment(second)),
             orbit: Some((orbit, late)),
             method_text: format!(
                 "quadrature (conservative, periodic motion), {points} quadrature points"
@@ -304,16 +325,16 @@ impl TriedMotion for SpaceMotionProblem<'_> {
         let explain = |error: DynamicsError| self.explain(&error);
         let [one, two] = motions.map(|motion| self.samples(motion));
         let (one, two) = (one.map_err(explain)?, two.map_err(explain)?);
-        let requested = &self.reactions.requested;
+        let requested = &self.rows.requested;
         let compared = Compared {
             samples: [&one, &two],
-            ends: motions.map(Motion::end),
-            size: self.output_model.plan().size(),
+            ends: motions.map(Motion::end_time),
+            size: self.rows.model.plan().size(),
             units: requested.iter().map(reaction_unit).collect(),
         };
         let difference = compared.difference(self, &|which, sample| {
-            let problem = motions[which].problem(self, sample.chart);
-            let mut all = reactions_at(&problem.output_model, sample)?;
+            let problem = self.in_chart(motions[which], sample.chart);
+            let mut all = reactions_at(&problem.rows.model, sample)?;
             all.truncate(requested.len());
             Ok(all)
         });
@@ -321,10 +342,10 @@ impl TriedMotion for SpaceMotionProblem<'_> {
     }
 
     fn statistics(motion: &Motion) -> Statistics {
-        motion.statistics()
+        motion.statistics
     }
 
     fn reached_end(motion: &Motion) -> bool {
-        motion.error().is_none()
+        motion.failure.is_none()
     }
 }

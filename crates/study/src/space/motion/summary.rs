@@ -4,9 +4,9 @@ use super::problem::SpaceMotionProblem;
 use super::run::Run;
 use crate::explain::StudyError;
 use crate::free_motion::compute::{
-    Energies, LARGE_ERROR, MotionProblem as _, MotionSolver, NamedContacts, balance_line,
-    class_line, cost_line, event_line, is_at_rest, large_energy_error, large_error, not_accurate,
-    not_resolved, times_of, too_many_steps,
+    ChartedProblem as _, Energies, LARGE_ERROR, MotionProblem as _, MotionSolver, NamedContacts,
+    balance_line, class_line, cost_line, event_line, is_at_rest, large_energy_error, large_error,
+    not_accurate, not_resolved, times_of, too_many_steps,
 };
 use crate::number_format::digits;
 use crate::ranges::extent;
@@ -17,7 +17,7 @@ impl SpaceMotionProblem<'_> {
     /// What is said of a motion, and the numbers in it.
     pub(in crate::space) fn summary(&self, run: &Run, duration: f64) -> (String, Record) {
         let mut record = Record::default();
-        let end = run.motion.end();
+        let end = run.motion.end_time();
         let of_all = match end < duration {
             true => format!(" of {}", digits(duration, 7)),
             false => String::new(),
@@ -25,8 +25,8 @@ impl SpaceMotionProblem<'_> {
         record.add("end", "s", end);
         record.add("duration", "s", duration);
         let mut text = format!("  {}{of_all} s by {}\n", digits(end, 7), run.method_text);
-        let parts = &run.motion.parts;
-        let second = run.second.as_ref().map(|motion| &motion.parts[..]);
+        let parts = &run.motion.segments;
+        let second = run.second.as_ref().map(|motion| &motion.segments[..]);
         let late = run.orbit.as_ref().map_or(0.0, |(_, late)| *late);
         for (i, event) in self.spec.events.iter().enumerate() {
             let own = times_of(parts, i);
@@ -36,7 +36,7 @@ impl SpaceMotionProblem<'_> {
         }
         text += &NamedContacts::new(self).describe(parts, second, &mut record);
         text += &self.describe_changes(run);
-        text += &cost_line(&run.motion.statistics(), &mut record);
+        text += &cost_line(&run.motion.statistics, &mut record);
         text += &class_line(self, (parts, second), |_| None, &mut record);
         text += &self.describe_energy(run, &mut record);
         text += &self.describe_errors(run, &mut record);
@@ -45,7 +45,7 @@ impl SpaceMotionProblem<'_> {
 
     /// The error of the energy balance.
     fn describe_energy(&self, run: &Run, record: &mut Record) -> String {
-        let steps = self.steps_as_samples(run).unwrap_or_default();
+        let steps = self.steps_as_samples(&run.motion, 0).unwrap_or_default();
         let at_steps = self.energies(steps.iter().map(|(_, sample)| sample));
         let Ok(samples) = self.samples(&run.motion) else {
             return String::new();
@@ -106,9 +106,9 @@ impl SpaceMotionProblem<'_> {
 
     /// Why a motion is not what was required: it ended early, or is less accurate.
     pub(super) fn shortfall(&self, run: &Run, solver: &MotionSolver) -> Option<StudyError> {
-        let error = too_many_steps(self.scene(), run.motion.error(), solver);
+        let error = too_many_steps(self.scene(), run.motion.failure.as_ref(), solver);
         error
-            .or_else(|| run.motion.explained_error(self))
+            .or_else(|| self.explained_end(&run.motion))
             .or_else(|| self.inaccuracy(run))
             .or_else(|| not_accurate(self.scene(), [run.accuracy?, self.largest_error(run)?]))
     }

@@ -4,61 +4,28 @@ use super::between_rows::MotionSampler;
 use super::charts::Motion;
 use super::problem::SpaceMotionProblem;
 use super::run::Run;
-#[cfg(feature = "output")]
-use crate::free_motion::compute::event_table;
-use crate::free_motion::compute::{MotionProblem as _, sample_of, since_start};
+use crate::free_motion::compute::{
+    ChartedProblem as _, MotionProblem as _, event_table, sample_of, since_start,
+};
 use crate::trajectory::compute::{SamplePrecision, TrajectorySample};
 use dwell_dynamics::{
     DenseOutput, DynamicsError, EventSide, MachineOde, MachineWorkspace, MotionModes, OdeState,
-    Options, Solution, StepControl, integrate,
+    Options, StepControl, integrate,
 };
-#[cfg(feature = "output")]
 use dwell_findings::Table;
 use dwell_kinetostatics::space::Model;
 
 impl SpaceMotionProblem<'_> {
-    /// Every sample with its accelerations, drive magnitudes and energies.
-    pub(super) fn samples(&self, motion: &Motion) -> Result<Vec<TrajectorySample>, DynamicsError> {
-        let after = |solution: &Solution, k: usize| vec![(solution.samples[k].t, EventSide::After)];
-        let all = self.evaluated(motion, |solution| &solution.samples, after)?;
-        let all: Vec<_> = all.into_iter().map(|(_, sample)| sample).collect();
-        let index = self.balance_index();
-        let initial = all.first().map_or(0.0, |s| s.extra_values[index]);
-        Ok(since_start(all, index, initial))
-    }
-
-    /// Some states of each part of a motion on the sides of events that are wanted, each under a time (s), as samples.
-    pub(super) fn evaluated(
-        &self,
-        motion: &Motion,
-        picked: fn(&Solution) -> &[OdeState],
-        wanted: fn(&Solution, usize) -> Vec<(f64, EventSide)>,
-    ) -> Result<Vec<(f64, TrajectorySample)>, DynamicsError> {
-        let mut all = Vec::new();
-        for (problem, solution) in motion.parts(self) {
-            let mut workspace = problem.machine.workspace();
-            // Within the window of a change point no reaction has a value.
-            let states = picked(solution).iter().enumerate();
-            for (k, state) in states.filter(|(_, s)| !problem.machine.is_in_fit_window(&s.y)) {
-                for (t, side) in wanted(solution, k) {
-                    let along = (&solution.modes, side);
-                    all.push((t, problem.sample(state, along, &mut workspace)?));
-                }
-            }
-        }
-        Ok(all)
-    }
-
     /// The samples of a motion at wanted times (s, ascending) up to its end, and at its end.
     pub(super) fn samples_at(
         &self,
         run: &Run,
         times: &[f64],
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
-        let end = run.motion.end();
+        let end = run.motion.end_time();
         let wanted = times.iter().copied().filter(|&t| t < end).chain([end]);
         let mut workspace = self.machine.workspace();
-        let samples = match &run.motion.parts[..] {
+        let samples = match &run.motion.segments[..] {
             [(_, solution)] if solution.modes.is_empty() => {
                 self.samples_from_start(run, wanted, &mut workspace)?
             }
@@ -77,7 +44,7 @@ impl SpaceMotionProblem<'_> {
         wanted: impl Iterator<Item = f64>,
         workspace: &mut MachineWorkspace<f64, Model>,
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
-        let end = run.motion.end();
+        let end = run.motion.end_time();
         let mut states = Vec::new();
         let mut state = self.initial_state();
         let options = Options {
@@ -116,7 +83,7 @@ impl SpaceMotionProblem<'_> {
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let mut sampler = MotionSampler::new(self, run);
         let sample = |t: f64| match sampler.sample_at(t, SamplePrecision::Exact) {
-            None if self.crosses_at(run, t) => None,
+            None if self.is_in_fit_window(&run.motion, t) => None,
             found => Some(found.ok_or(DynamicsError::StepTooSmall { t })),
         };
         wanted.filter_map(sample).collect()
@@ -135,17 +102,15 @@ impl SpaceMotionProblem<'_> {
         let mut sample = sample_of(machine, point, along, workspace)?;
         if let Some(chart) = self.chart {
             sample.chart = chart.number;
-            let at = [&sample.q[..], &sample.q_dot, &sample.q_ddot];
-            sample.actuator_coordinate = self.own_coordinate(chart, at);
+            sample.actuator_coordinate = self.scene_coordinate(&sample);
         }
         Ok(sample)
     }
 
     /// The events of a motion as a table.
-    #[cfg(feature = "output")]
     pub(in crate::space) fn event_table(&self, motion: &Motion) -> Table {
-        event_table(self, &motion.parts, |event| {
-            let problem = motion.problem(self, event.chart);
+        event_table(self, &motion.segments, |event| {
+            let problem = self.in_chart(motion, event.chart);
             let mut workspace = problem.machine.workspace();
             let along = (&MotionModes::default(), EventSide::After);
             let sample = problem.sample(&event.state, along, &mut workspace).ok()?;

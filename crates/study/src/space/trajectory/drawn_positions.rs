@@ -1,10 +1,10 @@
 //! The mechanism along a trajectory in space, for its pictures.
 
-use super::evaluator::SpaceEvaluator;
+use super::page::evaluators_of;
 use crate::number_format::coordinate_unit;
 use crate::output::symbol;
 use crate::space::views::SpacePositions;
-use crate::trajectory::compute::{ComputedTrajectory, RowEvaluator as _};
+use crate::trajectory::compute::{ComputedTrajectory, RowEvaluator as _, RowSource};
 use crate::trajectory::figures::describe_abscissa;
 use dwell_scene::SpaceScene;
 
@@ -13,12 +13,12 @@ const DRAWN_POSITIONS: usize = 241;
 
 /// The mechanism along the part of a trajectory that was reached.
 pub(crate) fn drawn_positions<'a>(
-    scene: &'a SpaceScene,
+    source: &RowSource<'a, '_, SpaceScene>,
     computed: &ComputedTrajectory<'_>,
-    mut evaluators: Vec<SpaceEvaluator<'_>>,
     swept: Option<(&str, bool)>,
 ) -> SpacePositions<'a> {
-    let trajectory = &computed.trajectory;
+    let (scene, trajectory) = (source.scene, &computed.trajectory);
+    let mut evaluators = evaluators_of(source, computed);
     let last = trajectory.fraction_at(computed.results.len().saturating_sub(1));
     let mut place = |fraction: f64| {
         let sample = trajectory.sample_at(fraction);
@@ -33,7 +33,7 @@ pub(crate) fn drawn_positions<'a>(
             }
             None => describe_abscissa(scene, "time", "s", sample.t),
         };
-        Some((evaluator.placements.clone(), at))
+        Some((evaluator.placements(), at))
     };
     let intervals = DRAWN_POSITIONS - 1;
     let all: Vec<_> = (0..=intervals)

@@ -1,87 +1,65 @@
 //! Evaluates one position of a trajectory in space after another.
 
 use super::load_forces::LoadForce;
-use super::reactions::JointReactions;
+use super::reactions::SpaceRows;
 use super::totals::Totals;
-use crate::explain::describe_coordinate;
 use crate::machines::first_uncovered;
-use crate::number_format::digits;
+use crate::space::assembled::SpaceStates;
 use crate::trajectory::compute::{
-    Analysis, Quantity, RowEvaluator, StopCause, Trajectory, TrajectorySample,
+    Analysis, BodyNumbers, LargestErrors, Quantity, RowEvaluator, RowScene as _, StopCause,
+    TrajectorySample,
 };
-use dwell_geometry::JointId;
-use dwell_geometry::space::{
-    BodyMotion, Coordinate, CoordinateFunction, Placement, Plan, Pose, Vec3,
-};
+use dwell_geometry::BodyId;
+use dwell_geometry::space::{CoordinateFunction, Placement, Plan, Pose, Vec3};
 use dwell_kinetostatics::space::{Model, Workspace};
 use dwell_kinetostatics::{InverseDynamics, MachineModel as _};
+use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_scene::SpaceScene;
 use std::f64::consts::TAU;
 
 /// Evaluates all quantities at one position after another.
 #[derive(Clone)]
-pub(crate) struct SpaceEvaluator<'a> {
+pub struct SpaceEvaluator<'a> {
     scene: &'a SpaceScene,
-    model: &'a Model,
-    reactions: &'a JointReactions,
+    rows: &'a SpaceRows,
     analysis: Analysis,
-    pub(super) pose: Pose,
-    pub(super) placements: Vec<Placement>,
-    motions: Vec<BodyMotion>,
+    pose: Pose,
+    bodies: SpaceStates,
     /// By body: its rotation as a vector, followed from one position to the next, rad.
-    pub(super) rotations: Vec<Vec3>,
+    rotations: Vec<Vec3>,
     workspace: Workspace<f64>,
-    pub(super) results: InverseDynamics<f64>,
+    results: InverseDynamics<f64>,
     load_forces: Vec<Option<LoadForce>>,
-    /// The coordinates that have columns.
-    measured: Vec<(Coordinate, CoordinateFunction)>,
+    measured: Vec<Option<CoordinateFunction>>,
     totals: Totals,
 }
 
 impl<'a> SpaceEvaluator<'a> {
-    pub(crate) fn new(
-        scene: &'a SpaceScene,
-        (model, reactions): (&'a Model, &'a JointReactions),
-        analysis: Analysis,
-    ) -> Self {
-        let bodies = scene.mechanism.bodies.len();
+    pub(crate) fn new(scene: &'a SpaceScene, rows: &'a SpaceRows, analysis: Analysis) -> Self {
+        let (model, bodies) = (&rows.model, scene.mechanism.bodies.len());
+        let measured = scene.measured(model).into_iter();
         Self {
             scene,
-            model,
-            reactions,
+            rows,
             analysis,
             pose: model.plan().pose(),
-            placements: vec![Placement::default(); bodies],
-            motions: vec![BodyMotion::default(); bodies],
+            bodies: SpaceStates(vec![Default::default(); bodies]),
             rotations: vec![Vec3::ZERO; bodies],
             workspace: model.workspace(),
             results: model.result_buffer(),
             load_forces: LoadForce::of_all(scene, model.plan()),
-            measured: measured(scene, model.plan()),
+            measured: measured.map(|of| of.function).collect(),
             totals: Totals::new(scene),
         }
     }
 
-    /// The residual of the power balance, and the sum of its absolute terms, W.
-    pub(super) fn power_terms(&self) -> [f64; 2] {
-        [self.totals.power[3].abs(), self.totals.power_scale]
-    }
-
-    /// Where a sample is, in the names of the scene.
-    pub(super) fn position_of(
-        &self,
-        trajectory: &Trajectory<'_>,
-        sample: &TrajectorySample,
-    ) -> String {
-        let timed = trajectory.is_timed();
-        let time = timed.then(|| format!("t = {} s", digits(sample.t, 6)));
-        let actuators = self.scene.mechanism.actuators.iter().enumerate();
-        let coordinates = actuators.map(|(i, actuator)| {
-            let is_angle = self.model.is_angle(i);
-            describe_coordinate(self.scene, &actuator.name, sample.q[i], is_angle)
-        });
-        let all: Vec<String> = time.into_iter().chain(coordinates).collect();
-        all.join(", ")
+    /// Where the bodies are.
+    pub(super) fn placements(&self) -> Vec<Placement> {
+        self.bodies
+            .0
+            .iter()
+            .map(|(placement, _)| *placement)
+            .collect()
     }
 
     /// Actuator forces, reactions and what they come to.
@@ -91,35 +69,41 @@ impl<'a> SpaceEvaluator<'a> {
         given: &[(usize, f64)],
     ) -> Result<(), StopCause> {
         let at = (t, [q, q_dot, q_ddot]);
-        let (workspace, results) = (&mut self.workspace, &mut self.results);
+        let (model, workspace, results) =
+            (&self.rows.model, &mut self.workspace, &mut self.results);
         self.totals
-            .evaluate_loads(self.model, at, given, workspace, results)?;
-        let motion_of = |of| self.model.coordinate_motion(of, &self.workspace);
-        if let Some((load, value)) = first_uncovered(self.model, t, motion_of) {
+            .evaluate_loads(model, at, given, workspace, results)?;
+        let motion_of = |of| model.coordinate_motion(of, &self.workspace);
+        if let Some((load, value)) = first_uncovered(model, t, motion_of) {
             return Err(StopCause::OffTable { load, value });
         }
-        let bodies = (&self.placements[..], &self.motions[..]);
-        self.totals
-            .compute(self.scene, bodies, (&self.results.tau, q_dot));
+        let actions = (&self.results.tau[..], q_dot);
+        self.totals.compute(self.scene, &self.bodies.0, actions);
         Ok(())
     }
 }
 
 impl RowEvaluator for SpaceEvaluator<'_> {
-    // Little of it could be left out.
-    fn limit_to(&mut self, _: impl Iterator<Item = Quantity>) {}
+    type Model = Model;
+
+    fn model(&self) -> &Model {
+        &self.rows.model
+    }
+
+    fn continue_from(&mut self, other: &Self) {
+        self.rotations.clone_from(&other.rotations);
+    }
 
     fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
         let rest = vec![0.0; sample.q.len()];
         let [q, q_dot, q_ddot] = sample.state(self.analysis, &rest);
-        let plan = self.model.plan();
+        let plan = self.rows.model.plan();
         plan.positions(q, &mut self.pose)?;
         plan.velocities(q_dot, &mut self.pose);
         plan.accelerations(q_ddot, &mut self.pose);
-        for b in 0..self.placements.len() {
+        for (b, body) in self.bodies.0.iter_mut().enumerate() {
             let placement = plan.placement(&self.pose, b);
-            self.placements[b] = placement;
-            self.motions[b] = plan.body_motion(&self.pose, b);
+            *body = (placement, plan.body_motion(&self.pose, b));
             self.rotations[b] = followed(placement.rotation.vector(), self.rotations[b]);
         }
         match self.analysis {
@@ -130,87 +114,111 @@ impl RowEvaluator for SpaceEvaluator<'_> {
         }
     }
 
-    // One arm for each quantity.
-    fn value(&self, quantity: Quantity, sample: &TrajectorySample) -> f64 {
-        let component = |v: Vec3, axis: usize| [v.x, v.y, v.z][axis];
+    fn forces(&self) -> &InverseDynamics<f64> {
+        &self.results
+    }
+
+    fn bodies(&self) -> &impl crate::assembled::BodyStates {
+        &self.bodies
+    }
+
+    fn rotation(&self, body: BodyId) -> [f64; 3] {
+        let Vec3 { x, y, z } = self.rotations[body.0];
+        [x, y, z]
+    }
+
+    fn measured(&self, k: usize) -> [f64; 3] {
+        let plan = self.rows.model.plan();
+        let found = self.measured[k].map(|of| plan.coordinate(&self.pose, of));
+        found.unwrap_or([f64::NAN; 3])
+    }
+
+    fn power(&self) -> [f64; 5] {
+        self.totals.power
+    }
+
+    fn power_scale(&self) -> f64 {
+        self.totals.power_scale
+    }
+
+    fn load_power(&self, load: usize) -> f64 {
+        self.totals.load_powers[load]
+    }
+
+    fn other(&self, quantity: Quantity) -> f64 {
+        let wrench = |joint| self.rows.wrench(joint, &self.results.reactions);
         match quantity {
-            Quantity::Time => sample.t,
-            // Of a chart of a free motion in another coordinate, the actuator's own.
-            Quantity::ActuatorCoordinate(i, order) => match sample.actuator_coordinate {
-                Some(own) => own[order],
-                None => [&sample.q, &sample.q_dot, &sample.q_ddot][order][i],
-            },
-            Quantity::MeasuredInSpace(of, order) => {
-                let mut all = self.measured.iter();
-                let found = all.find(|(coordinate, _)| *coordinate == of);
-                let plan = self.model.plan();
-                found.map_or(f64::NAN, |(_, f)| plan.coordinate(&self.pose, *f)[order])
-            }
-            Quantity::ActuatorForce(i) => self.results.tau[i],
-            Quantity::PointInSpace(body, at, k) => {
-                let (placement, motion) = (&self.placements[body.0], &self.motions[body.0]);
-                let arm = placement.rotation.apply(at);
-                let vectors = [
-                    placement.position + arm,
-                    motion.point_velocity(arm),
-                    motion.point_acceleration(arm),
-                ];
-                component(vectors[k / 3], k % 3)
-            }
-            Quantity::RotationInSpace(body, k) => {
-                let motion = &self.motions[body.0];
-                let vectors = [
-                    self.rotations[body.0],
-                    motion.angular_velocity,
-                    motion.angular_acceleration,
-                ];
-                component(vectors[k / 3], k % 3)
-            }
-            Quantity::Reaction(k) => self.results.reactions[k],
-            Quantity::ForceMagnitude(joint) => {
-                self.reactions.wrench(joint, &self.results.reactions)[0].norm()
-            }
-            Quantity::MomentMagnitude(joint) => {
-                self.reactions.wrench(joint, &self.results.reactions)[1].norm()
-            }
+            Quantity::ForceMagnitude(joint) => wrench(joint)[0].norm(),
+            Quantity::MomentMagnitude(joint) => wrench(joint)[1].norm(),
             Quantity::ShakingForce(k) => self.totals.shaking[k],
-            Quantity::Power(k) => self.totals.power[k],
             Quantity::LoadForce(k) => {
-                let magnitude = self.totals.magnitudes[k];
-                let force = self.load_forces[k];
-                force.map_or(f64::NAN, |f| f.at(self.model.plan(), &self.pose, magnitude))
+                let (plan, magnitude) = (self.rows.model.plan(), self.totals.magnitudes[k]);
+                let force = self.load_forces[k].map(|f| f.at(plan, &self.pose, magnitude));
+                force.unwrap_or(f64::NAN)
             }
-            Quantity::LoadPower(k) => self.totals.load_powers[k],
-            Quantity::Extra(k) => sample.extra_values[k],
-            // The columns of a mechanism in space are none of these.
-            Quantity::Measured(..)
-            | Quantity::BodyAngle(..)
-            | Quantity::VelocityRatio(_)
-            | Quantity::MechanicalAdvantage(..)
-            | Quantity::Pole(..)
-            | Quantity::PointCoordinate(..)
-            | Quantity::TransmissionAngle(_)
-            | Quantity::KnownReaction(..)
-            | Quantity::BodyFrameForce(..)
-            | Quantity::ForceDirection(_) => f64::NAN,
+            _ => f64::NAN,
         }
     }
 
-    fn angular_velocity(&self, _: Quantity) -> f64 {
-        0.0
+    /// Those that are requested.
+    fn result_reactions(&self) -> usize {
+        self.rows.requested.len()
+    }
+
+    fn add_rounding(
+        &self,
+        t: f64,
+        at: [&[f64]; 3],
+        workspace: &mut Workspace<DoubleDouble>,
+        largest: &mut LargestErrors,
+    ) {
+        let lift = |values: &[f64]| values.iter().map(|&v| DoubleDouble::from_f64(v)).collect();
+        let [q, q_dot, q_ddot]: [Vec<DoubleDouble>; 3] = at.map(lift);
+        let (model, plan) = (&self.rows.model, self.rows.model.plan());
+        if largest.analysis != Analysis::Kinematics {
+            let mut precise = model.result_buffer::<DoubleDouble>();
+            let at = [&q[..], &q_dot, &q_ddot];
+            if model.kinetostatics(t, at, workspace, &mut precise).is_ok() {
+                let found = &self.results;
+                let tau = errors(&found.tau, &precise.tau);
+                let reactions = errors(&found.reactions, &precise.reactions);
+                largest.add_forces(found, [&tau, &reactions]);
+            }
+            return;
+        }
+        let mut precise = plan.pose::<DoubleDouble>();
+        // Next to a limit position there may be a pose in double precision and none in 32 digits.
+        if plan.positions(&q, &mut precise).is_err() {
+            return;
+        }
+        plan.velocities(&q_dot, &mut precise);
+        plan.accelerations(&q_ddot, &mut precise);
+        for body in 0..self.bodies.0.len() {
+            let precise = numbers(plan, &precise, body);
+            largest.add_body(numbers(plan, &self.pose, body), precise);
+        }
     }
 }
 
-/// The named coordinates and the travels of joints, as a plan evaluates them.
-fn measured(scene: &SpaceScene, plan: &Plan) -> Vec<(Coordinate, CoordinateFunction)> {
-    let joints = (0..scene.mechanism.joints.len()).map(JointId);
-    let named = scene.coordinates.iter().map(|named| named.coordinate);
-    let all = named.chain(joints.map(Coordinate::Travel));
-    let of = |coordinate| {
-        let function = plan.coordinate_function(&scene.mechanism, coordinate);
-        Some((coordinate, function.ok()?))
-    };
-    all.filter_map(of).collect()
+/// The differences of values from more precise ones.
+fn errors(values: &[f64], precise: &[DoubleDouble]) -> Vec<f64> {
+    let pairs = values.iter().zip(precise);
+    let error = |(v, p): (&f64, &DoubleDouble)| (*p - DoubleDouble::from_f64(*v)).value().abs();
+    pairs.map(error).collect()
+}
+
+/// The numbers of a body, by kind.
+fn numbers<T: Scalar>(plan: &Plan, pose: &Pose<T>, body: usize) -> BodyNumbers<T> {
+    let (frame, motion) = (plan.frame(pose, body), plan.body_motion(pose, body));
+    let parts = |v: Vec3<T>| vec![v.x, v.y, v.z];
+    [
+        parts(frame.position),
+        frame.rotation.columns.into_iter().flat_map(parts).collect(),
+        parts(motion.velocity),
+        parts(motion.angular_velocity),
+        parts(motion.acceleration),
+        parts(motion.angular_acceleration),
+    ]
 }
 
 /// A rotation as a vector with the revolutions that bring it nearest to another.

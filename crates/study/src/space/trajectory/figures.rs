@@ -45,11 +45,10 @@ struct SpaceFigures<'a> {
 }
 
 impl SpaceFigures<'_> {
-    /// A vector, its velocity and its acceleration, each with three curves, by the place of a column among these nine; none where it does
-    /// not move.
-    fn charts(&self, labels: [&str; 3], place: impl Fn(&Column) -> Option<usize>) -> Vec<Chart> {
+    /// A vector, its velocity and its acceleration, each with three curves, by the order of a column; none where it does not move.
+    fn charts(&self, labels: [&str; 3], order_of: impl Fn(&Column) -> Option<usize>) -> Vec<Chart> {
         let chart = |order: usize| {
-            let is_of_order = |c: &Column| place(c).is_some_and(|k| k / 3 == order);
+            let is_of_order = |c: &Column| order_of(c) == Some(order);
             let names = ["x", "y", "z"].map(str::to_owned).into_iter();
             let columns = self.charts.columns_where(is_of_order);
             let curves: Vec<(String, usize)> = names.zip(columns).collect();
@@ -66,7 +65,7 @@ impl SpaceFigures<'_> {
         let one = |b: usize| {
             let labels = ["rotation", "angular velocity", "angular acceleration"];
             let charts = self.charts(labels, |column| match column.quantity {
-                Quantity::RotationInSpace(body, k) if body == BodyId(b) => Some(k),
+                Quantity::Rotation(body, order, _) if body == BodyId(b) => Some(order),
                 _ => None,
             });
             let name = &self.scene.mechanism.bodies[b].name;
@@ -86,13 +85,17 @@ impl SpaceFigures<'_> {
         let mut figures = Vec::new();
         for (b, points) in self.scene.points.iter().enumerate() {
             for (point, at) in points {
-                let place = |column: &Column| match column.quantity {
-                    Quantity::PointInSpace(body, p, k) if body == BodyId(b) && p == *at => Some(k),
+                let order_of = |column: &Column| match column.quantity {
+                    Quantity::Point(body, p, order, _)
+                        if body == BodyId(b) && p == [at.x, at.y, at.z] =>
+                    {
+                        Some(order)
+                    }
                     _ => None,
                 };
-                let columns = self.charts.columns_where(|c| place(c).is_some());
+                let columns = self.charts.columns_where(|c| order_of(c).is_some());
                 let is_known = drawn.iter().any(|other| self.are_one(other, &columns));
-                let charts = self.charts(["position", "velocity", "acceleration"], place);
+                let charts = self.charts(["position", "velocity", "acceleration"], order_of);
                 if is_known || charts.is_empty() {
                     continue;
                 }

@@ -1,4 +1,4 @@
-//! `dwell kinematics`, `dwell statics` and `dwell kinetostatics` of scenes in space: the same tables, extrema and pages as in the plane.
+//! `dwell kinematics`, `dwell statics` and `dwell kinetostatics` of scenes in space: what differs from the plane.
 
 mod columns;
 #[cfg(feature = "output")]
@@ -9,18 +9,12 @@ mod figures;
 mod load_forces;
 mod page;
 mod reactions;
-mod requested;
-mod rounding;
-mod rows;
+mod row_scene;
 mod totals;
 
-pub(super) use self::columns::all_columns;
 #[cfg(feature = "output")]
 pub(super) use self::drawn_positions::drawn_positions;
-pub(super) use self::evaluator::SpaceEvaluator;
 #[cfg(feature = "output")]
 pub(super) use self::figures::figures;
 pub(super) use self::page::space_page;
-pub(super) use self::reactions::JointReactions;
-pub(super) use self::requested::reject_unknown_variables;
-pub(super) use self::rows::{computed_columns, computed_rows, rows_along};
+pub(super) use self::reactions::SpaceRows;

@@ -1,39 +1,50 @@
 //! The page of a trajectory in space: rows, peaks, and the mechanism in each row with its reactions.
 
 use super::evaluator::SpaceEvaluator;
-use super::reactions::JointReactions;
+use super::reactions::SpaceRows;
 use crate::page::{RowChoice, force_arrow, run_page};
 use crate::space::views::{anchor, page_drawing};
-use crate::trajectory::compute::{ComputedTrajectory, Quantity, RowEvaluator as _};
+use crate::trajectory::compute::{ComputedTrajectory, Quantity, RowEvaluator as _, RowSource};
 use dwell_geometry::JointId;
 use dwell_kinetostatics::space::{Axes, Component};
 use dwell_page::{Direction, ForceArrow, Page};
 use dwell_scene::SpaceScene;
 
-/// The page of a mechanism of this size, m.
-pub(crate) fn space_page(
-    scene: &SpaceScene,
-    size: f64,
+/// What evaluates the rows of a trajectory, by chart.
+pub(super) fn evaluators_of<'e>(
+    source: &'e RowSource<'_, '_, SpaceScene>,
     computed: &ComputedTrajectory<'_>,
-    (reactions, mut evaluators): (&JointReactions, Vec<SpaceEvaluator<'_>>),
+) -> Vec<SpaceEvaluator<'e>> {
+    let analysis = computed.trajectory.analysis;
+    let charts = source.charts_or(source.rows).into_iter();
+    let all = charts.map(|(scene, rows)| SpaceEvaluator::new(scene, rows, analysis));
+    all.collect()
+}
+
+/// The page of rows.
+pub(crate) fn space_page(
+    source: &RowSource<'_, '_, SpaceScene>,
+    computed: &ComputedTrajectory<'_>,
 ) -> Page {
+    let (scene, rows) = (source.scene, source.rows);
+    let mut evaluators = evaluators_of(source, computed);
     let (trajectory, results) = (&computed.trajectory, &computed.results);
-    let mut page = run_page(&scene.file, size, computed);
+    let mut page = run_page(&scene.file, rows.model.plan().size(), computed);
     let choice = RowChoice::new(results);
     let mut place = |row: usize| {
         let sample = trajectory.sample_at(trajectory.fraction_at(row));
         let time = trajectory.load_time(&sample);
         let evaluator = evaluators.get_mut(sample.chart)?;
         evaluator.evaluate(&sample, time).ok()?;
-        Some(evaluator.placements.clone())
+        Some(evaluator.placements())
     };
     let long = results.long_rows.as_ref();
-    let rows = choice.rows();
-    let rows = rows.map(|k| place(long.map_or(k, |long| long.row_number(k))));
+    let placements = choice.rows();
+    let placements = placements.map(|k| place(long.map_or(k, |long| long.row_number(k))));
     // A row that was evaluated can be evaluated again.
-    if let Some(rows) = rows.collect::<Option<Vec<_>>>() {
-        let arrows = arrows(scene, computed, reactions);
-        page.drawing = Some(page_drawing(scene, rows, arrows));
+    if let Some(placements) = placements.collect::<Option<Vec<_>>>() {
+        let arrows = arrows(scene, computed, rows);
+        page.drawing = Some(page_drawing(scene, placements, arrows));
     }
     page
 }
@@ -42,11 +53,11 @@ pub(crate) fn space_page(
 fn arrows(
     scene: &SpaceScene,
     computed: &ComputedTrajectory<'_>,
-    reactions: &JointReactions,
+    rows: &SpaceRows,
 ) -> Vec<ForceArrow> {
     let column = |joint: usize, axis: usize| {
         let wanted = Component::Force(Axes::Ground, axis);
-        let mut all = reactions.requested.iter();
+        let mut all = rows.requested.iter();
         let k = all.position(|r| r.joint == JointId(joint) && r.component == wanted)?;
         computed.results.written_index(Quantity::Reaction(k))
     };

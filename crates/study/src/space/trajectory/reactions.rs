@@ -30,9 +30,10 @@ fn components_of_all(joints: usize) -> Vec<Reaction> {
     whole.collect()
 }
 
-/// The reactions of the model of a trajectory, the requested ones first.
+/// The model of a trajectory under all loads, with its reactions, the requested ones first.
 #[derive(Debug, Clone)]
-pub struct JointReactions {
+pub struct SpaceRows {
+    pub(crate) model: Model,
     /// The requested ones that the loads determine.
     pub(crate) requested: Vec<Reaction>,
     /// The requested ones that redundant constraints leave open.
@@ -41,12 +42,12 @@ pub struct JointReactions {
     has_magnitude: Vec<[bool; 2]>,
 }
 
-impl JointReactions {
-    /// With the model that computes them.
+impl SpaceRows {
+    /// Those of a scene.
     ///
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be assembled.
-    pub(crate) fn new(scene: &SpaceScene) -> Result<(Self, Model), StudyError> {
+    pub(crate) fn new(scene: &SpaceScene) -> Result<Self, StudyError> {
         let joints = &scene.mechanism.joints;
         let whole = components_of_all(joints.len());
         let model = compile(scene, &[&scene.reactions[..], &whole].concat())?;
@@ -63,23 +64,23 @@ impl JointReactions {
             let (force, moment) = of_joint.split_at(3);
             [is_determined(force), has_moment && is_determined(moment)]
         });
-        let reactions = Self {
+        Ok(Self {
+            model: model_of(scene, &requested)?,
             requested,
             indeterminate,
             has_magnitude: has_magnitude.collect(),
-        };
-        let model = reactions.model(scene)?;
-        Ok((reactions, model))
+        })
     }
 
-    /// The model that computes them, with all loads.
+    /// The same reactions of a scene that is driven at another joint.
     ///
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be assembled.
-    pub(crate) fn model(&self, scene: &SpaceScene) -> Result<Model, StudyError> {
-        let whole = components_of_all(scene.mechanism.joints.len());
-        let model = compile(scene, &[&self.requested[..], &whole].concat())?;
-        with_loads(scene, model)
+    pub(crate) fn of_chart(&self, scene: &SpaceScene) -> Result<Self, StudyError> {
+        Ok(Self {
+            model: model_of(scene, &self.requested)?,
+            ..self.clone()
+        })
     }
 
     /// Whether the force and the moment of a joint have a magnitude that the loads determine.
@@ -101,4 +102,10 @@ impl JointReactions {
         let first = self.requested.len() + 6 * joint.0;
         [first, first + 3].map(|k| vec3(reactions[k], reactions[k + 1], reactions[k + 2]))
     }
+}
+
+/// The model of the requested reactions and of all components, with all loads.
+fn model_of(scene: &SpaceScene, requested: &[Reaction]) -> Result<Model, StudyError> {
+    let whole = components_of_all(scene.mechanism.joints.len());
+    with_loads(scene, compile(scene, &[requested, &whole].concat())?)
 }

@@ -43,17 +43,17 @@ impl Totals {
     pub(super) fn compute(
         &mut self,
         scene: &SpaceScene,
-        (placements, motions): (&[Placement], &[BodyMotion]),
+        bodies: &[(Placement, BodyMotion)],
         (tau, q_dot): (&[f64], &[f64]),
     ) {
         let (mut force, mut moment) = (Vec3::ZERO, Vec3::ZERO);
         let [mut rate, mut energy, mut scale] = [0.0; 3];
         let weight = self.weight(scene);
-        let moving = (0..placements.len()).filter(|&b| b != scene.mechanism.ground);
-        for b in moving {
-            let (mass, rotation, motion) = (&scene.masses[b], &placements[b].rotation, &motions[b]);
+        let moving = bodies.iter().zip(&scene.masses).enumerate();
+        let moving = moving.filter(|(b, _)| *b != scene.mechanism.ground);
+        for (_, ((Placement { position, rotation }, motion), mass)) in moving {
             let arm = rotation.apply(mass.center);
-            let center = placements[b].position + arm;
+            let center = *position + arm;
             let tensor = |v: Vec3| rotation.apply(mass.angular_momentum(rotation.apply_inverse(v)));
             let (w, v) = (motion.angular_velocity, motion.point_velocity(arm));
             let momentum_rate = motion.point_acceleration(arm).scaled(mass.mass);
@@ -67,7 +67,7 @@ impl Totals {
             energy += 0.5 * (mass.mass * v.dot(v) + w.dot(tensor(w)));
         }
         for (load, &magnitude) in scene.loads.iter().zip(&self.magnitudes) {
-            if let Some([at, unit]) = outer_force(&load.kind, placements) {
+            if let Some([at, unit]) = outer_force(&load.kind, bodies) {
                 let acting = unit.scaled(magnitude);
                 force += acting;
                 moment += at.cross(acting);
@@ -134,14 +134,14 @@ fn turned(direction: Direction, placement: &Placement) -> Vec3 {
 }
 
 /// Where a load from outside acts on one point, and its force at magnitude 1; weights are not among these.
-fn outer_force(kind: &LoadKind, placements: &[Placement]) -> Option<[Vec3; 2]> {
+fn outer_force(kind: &LoadKind, bodies: &[(Placement, BodyMotion)]) -> Option<[Vec3; 2]> {
     match *kind {
         LoadKind::Force {
             body,
             point,
             direction,
         } => {
-            let placement = &placements[body.0];
+            let (placement, _) = &bodies[body.0];
             let at = placement.position + placement.rotation.apply(point);
             Some([at, turned(direction, placement)])
         }

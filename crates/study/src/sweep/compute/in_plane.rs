@@ -2,34 +2,20 @@
 
 use crate::branch_note::branch_note;
 use crate::explain::{StudyError, explain_machine, explain_model, explain_position};
-use crate::free_motion::compute::{MotionSolver, compute_free_motion_at};
-use crate::models::{SolverSettings, compile_model, end_stops, exact_model, with_loads};
+use crate::models::{end_stops, exact_model, with_loads};
 use crate::number_format::force_unit;
-use crate::progress::no_progress;
 use crate::sweep::compute::available::IndexedReaction;
 use crate::sweep::compute::extremes::{ExtremeValues, RangeCurves};
 use crate::sweep::compute::point::{ResultKind, Results};
 use crate::sweep::compute::{Design, NamedUnit, RequestedQuantities, SweptScene, VariantFamily};
 use crate::trajectory::compute::{
-    Analysis, ComputedTrajectory, WantedForces, check_variables, default_limits, peak_analysis,
-    peak_forces,
+    Analysis, WantedForces, check_variables, default_limits, peak_forces,
 };
 use dwell_dynamics::{CoordinateMode, Machine};
 use dwell_kinetostatics::Model;
 use dwell_scene::{PlaneScene, SceneError};
 
 impl SweptScene for PlaneScene {
-    /// With all reactions.
-    type Compiled = Model;
-
-    fn compiled(&self) -> Result<Model, StudyError> {
-        compile_model(self, &self.mechanism.reactions())
-    }
-
-    fn model_of(model: &Model) -> &Model {
-        model
-    }
-
     fn notes(&self, model: &Model) -> Result<String, StudyError> {
         check_variables(self, model)?;
         Ok(branch_note(self, model.plan()))
@@ -48,10 +34,6 @@ impl SweptScene for PlaneScene {
         named.collect()
     }
 
-    fn analysis_of_peaks(&self) -> Option<Analysis> {
-        peak_analysis(self)
-    }
-
     /// Forces and powers of drives.
     fn further_motion_columns(&self) -> Vec<NamedUnit> {
         let drives = self.drives.iter().flat_map(|drive| {
@@ -62,12 +44,6 @@ impl SweptScene for PlaneScene {
             [(force, force_unit(is_angle)), (power, "W")]
         });
         drives.map(|(name, unit)| (name, unit.to_owned())).collect()
-    }
-
-    fn free_motion(&self) -> Result<ComputedTrajectory<'static>, StudyError> {
-        let solver = MotionSolver::Settings(SolverSettings::default());
-        let described = compute_free_motion_at(self, &solver, None, &no_progress)?;
-        Ok(described.motion.computed)
     }
 
     fn free_machine(&self, model: &Model) -> Result<Machine, StudyError> {

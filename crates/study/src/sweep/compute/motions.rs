@@ -2,9 +2,11 @@
 
 use crate::cycle::compute::{CycleResults, CycleSearch, compute_cycle};
 use crate::explain::StudyError;
+use crate::free_motion::compute::MotionSolver;
 use crate::machines::MachineScene;
 use crate::models::SolverSettings;
 use crate::number_format::{coordinate_unit, force_unit};
+use crate::progress::no_progress;
 use crate::sweep::compute::SweptScene;
 use crate::trajectory::compute::ComputedTrajectory;
 use dwell_scene::SceneError;
@@ -16,7 +18,7 @@ pub(crate) type NamedUnit = (String, String);
 const STATISTICS: [&str; 4] = ["end", "max_abs", "mean", "rms"];
 
 /// The columns of a free motion whose results can be swept.
-fn motion_columns<S: SweptScene>(scene: &S, compiled: &S::Compiled) -> Vec<NamedUnit> {
+fn motion_columns<S: SweptScene>(scene: &S, compiled: &S::Rows) -> Vec<NamedUnit> {
     let mut all: Vec<NamedUnit> = Vec::new();
     for (name, is_angle) in (0..).map_while(|k| scene.actuator(k)) {
         let unit = coordinate_unit(is_angle);
@@ -30,10 +32,7 @@ fn motion_columns<S: SweptScene>(scene: &S, compiled: &S::Compiled) -> Vec<Named
 }
 
 /// The results of a free motion, in their order.
-pub(crate) fn motion_quantities<S: SweptScene>(
-    scene: &S,
-    compiled: &S::Compiled,
-) -> Vec<NamedUnit> {
+pub(crate) fn motion_quantities<S: SweptScene>(scene: &S, compiled: &S::Rows) -> Vec<NamedUnit> {
     if !scene.has_motion() {
         return Vec::new();
     }
@@ -51,9 +50,11 @@ pub(crate) fn motion_quantities<S: SweptScene>(
 /// [`StudyError`] where there is no motion, or it ends early.
 pub(crate) fn motion_values<S: SweptScene>(
     scene: &S,
-    compiled: &S::Compiled,
+    compiled: &S::Rows,
 ) -> Result<Vec<(String, f64)>, StudyError> {
-    let mut motion = scene.free_motion()?;
+    let solver = MotionSolver::Settings(SolverSettings::default());
+    let motion = scene.simulate_then(&solver, None, &no_progress, |_, of| of.motion.computed);
+    let mut motion = motion?;
     if let Some(error) = motion.early_stop.take() {
         return Err(error);
     }

@@ -15,7 +15,7 @@ use dwell_kinetostatics::ReducibleModel as _;
 /// # Errors
 /// [`StudyError`] where it cannot be assembled.
 pub(super) fn available_quantities(scene: &impl SweptScene) -> Result<Available, StudyError> {
-    let compiled = scene.compiled()?;
+    let compiled = scene.unloaded_rows()?;
     let mut all = Available {
         notes: scene.notes(&compiled)?,
         ..Available::default()
@@ -51,7 +51,7 @@ pub(super) fn compute_results<S: SweptScene>(
         ActuatorForce, Cycle, FreeReaction, FreeReactionPlace, Inertia, InertiaPlace, Motion,
         Orbit as OrbitKind, Range, Reaction,
     };
-    let compiled = scene.compiled()?;
+    let compiled = scene.unloaded_rows()?;
     let includes = |kinds: &[ResultKind]| requested.includes(kinds);
     if let Some((from, to)) = S::model_of(&compiled).range().limits() {
         results.set(Range, Ok(vec![from, to]));
@@ -101,10 +101,7 @@ fn start_of_free_motion(scene: &impl SweptScene) -> Option<ReducedState> {
 }
 
 /// The orbit of the free motion of one coordinate.
-fn free_orbit<S: SweptScene>(
-    scene: &S,
-    compiled: &S::Compiled,
-) -> Option<Result<Orbit, StudyError>> {
+fn free_orbit<S: SweptScene>(scene: &S, compiled: &S::Rows) -> Option<Result<Orbit, StudyError>> {
     let start = start_of_free_motion(scene)?;
     Some(scene.free_machine(compiled).and_then(|machine| {
         let orbit = Orbit::loaded(&machine, start);
@@ -113,7 +110,7 @@ fn free_orbit<S: SweptScene>(
 }
 
 /// Whether the scene has a conservative free motion of one coordinate.
-fn is_conservative<S: SweptScene>(scene: &S, compiled: &S::Compiled) -> bool {
+fn is_conservative<S: SweptScene>(scene: &S, compiled: &S::Rows) -> bool {
     let Some(start) = start_of_free_motion(scene) else {
         return false;
     };

@@ -1,59 +1,43 @@
 //! A scene whose numbers are varied, for sweeps that know it by what it computes.
 
 use crate::explain::StudyError;
-use crate::machines::MachineScene;
+use crate::free_motion::compute::SimulatedScene;
 use crate::sweep::compute::available::IndexedReaction;
 use crate::sweep::compute::extremes::ExtremeValues;
 use crate::sweep::compute::point::Results;
 use crate::sweep::compute::{Design, NamedUnit, RequestedQuantities, VariantFamily};
-use crate::trajectory::compute::{Analysis, ComputedTrajectory};
+use crate::trajectory::compute::{Analysis, peak_analysis};
 use dwell_dynamics::Machine;
 use dwell_scene::SceneError;
 
 /// A scene in the plane or in space whose numbers are varied.
-pub trait SweptScene: MachineScene + Sync + Sized {
-    /// What all results are computed with.
-    type Compiled;
-
-    /// Compiles it, with the reactions that may be requested.
-    ///
-    /// # Errors
-    /// [`StudyError`] where it cannot be assembled.
-    fn compiled(&self) -> Result<Self::Compiled, StudyError>;
-
-    /// The model among that.
-    fn model_of(compiled: &Self::Compiled) -> &Self::Model;
-
+pub trait SweptScene: SimulatedScene {
     /// What is said of its assembly.
     ///
     /// # Errors
     /// [`StudyError`] where it requests what there is not.
-    fn notes(&self, _: &Self::Compiled) -> Result<String, StudyError> {
+    fn notes(&self, _: &Self::Rows) -> Result<String, StudyError> {
         Ok(String::new())
     }
 
     /// The requested reactions that are results.
-    fn swept_reactions(&self, compiled: &Self::Compiled) -> Vec<IndexedReaction>;
+    fn swept_reactions(&self, compiled: &Self::Rows) -> Vec<IndexedReaction>;
 
     /// The analysis for peak forces: along its motion or sweep, or statics over its range.
-    fn analysis_of_peaks(&self) -> Option<Analysis>;
+    fn analysis_of_peaks(&self) -> Option<Analysis> {
+        peak_analysis(self)
+    }
 
     /// Columns of a free motion whose results can be swept, beside coordinates, their speeds, and reactions.
     fn further_motion_columns(&self) -> Vec<NamedUnit> {
         Vec::new()
     }
 
-    /// Its free motion.
-    ///
-    /// # Errors
-    /// [`StudyError`] where there is none.
-    fn free_motion(&self) -> Result<ComputedTrajectory<'static>, StudyError>;
-
     /// Its machine, where all coordinates are free.
     ///
     /// # Errors
     /// [`StudyError`] where a load or a drive does not fit it.
-    fn free_machine(&self, _: &Self::Compiled) -> Result<Machine<Self::Model>, StudyError> {
+    fn free_machine(&self, _: &Self::Rows) -> Result<Machine<Self::Model>, StudyError> {
         self.machine(&[])
     }
 
@@ -61,20 +45,20 @@ pub trait SweptScene: MachineScene + Sync + Sized {
     ///
     /// # Errors
     /// [`StudyError`] where a position cannot be reached, or there are several actuators.
-    fn inertia_extremes(&self, compiled: &Self::Compiled) -> Result<ExtremeValues, StudyError>;
+    fn inertia_extremes(&self, compiled: &Self::Rows) -> Result<ExtremeValues, StudyError>;
 
     /// Refuses a variant that leaves open a requested reaction.
     ///
     /// # Errors
     /// [`StudyError`] that names the reaction.
-    fn reject_open(&self, _: &Self::Compiled, _: &RequestedQuantities) -> Result<(), StudyError> {
+    fn reject_open(&self, _: &Self::Rows, _: &RequestedQuantities) -> Result<(), StudyError> {
         Ok(())
     }
 
     /// Computes the requested reactions in the free rotation of an energy, J.
     fn compute_free_reactions(
         &self,
-        compiled: &Self::Compiled,
+        compiled: &Self::Rows,
         energy: f64,
         requested: &RequestedQuantities,
         results: &mut Results<'_>,
@@ -86,7 +70,7 @@ pub trait SweptScene: MachineScene + Sync + Sized {
     /// [`StudyError`] where loads do not fit it; what fails later is recorded in the results.
     fn compute_peaks(
         &self,
-        compiled: Self::Compiled,
+        compiled: Self::Rows,
         analysis: Analysis,
         requested: &RequestedQuantities,
         results: &mut Results<'_>,

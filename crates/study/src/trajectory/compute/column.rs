@@ -2,10 +2,7 @@
 
 use crate::number_format::force_unit;
 use crate::trajectory::compute::{Analysis, Dyad};
-use dwell_geometry::body_states::CoordinateFunction;
-use dwell_geometry::space::{self, Vec3};
-use dwell_geometry::{BodyId, Guide, JointId, Reaction, Vec2};
-use dwell_scene::PlaneScene;
+use dwell_geometry::{BodyId, JointId, Vec2};
 
 /// Whether a name selects a column: its full name, or a prefix up to a dot.
 pub(crate) fn is_prefix_of(name: &str, column: &str) -> bool {
@@ -15,25 +12,23 @@ pub(crate) fn is_prefix_of(name: &str, column: &str) -> bool {
 
 /// The quantity of a column. An order is 0 for a position, 1 for its velocity, 2 for its acceleration.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Quantity {
+pub enum Quantity {
     Time,
     ActuatorCoordinate(usize, usize),
     ActuatorForce(usize),
-    Measured(CoordinateFunction, usize),
-    MeasuredInSpace(space::Coordinate, usize),
-    BodyAngle(BodyId, usize),
+    /// By its number among the [measured](super::RowScene::measured) coordinates.
+    Measured(usize, usize),
+    /// Of a body, by order and axis: its angle about the third axis, or in space the components of its rotation as a vector; then those of
+    /// its angular velocity and acceleration.
+    Rotation(BodyId, usize, usize),
     /// dθ/dq of a body.
     VelocityRatio(BodyId),
     /// dq/dθ of a body, dq/ds of a point along its path.
     MechanicalAdvantage(BodyId, Option<Vec2>),
     /// x and y of where a body has no velocity (order 1) or no acceleration (order 2).
     Pole(BodyId, usize, usize),
-    /// x, y, then their speeds, then their accelerations.
-    PointCoordinate(BodyId, Vec2, usize),
-    /// Of a point in space: x, y, z, then the components of its velocity, then those of its acceleration.
-    PointInSpace(BodyId, Vec3, usize),
-    /// Of a body in space: the components of its rotation as a vector, of its angular velocity, of its angular acceleration.
-    RotationInSpace(BodyId, usize),
+    /// Of a point of a body, by order and axis.
+    Point(BodyId, [f64; 3], usize, usize),
     TransmissionAngle(Dyad),
     Reaction(usize),
     /// The k-th reaction of the i-th varying inertia of the scene.
@@ -56,51 +51,14 @@ pub(crate) enum Quantity {
 
 /// A column.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Column {
+pub struct Column {
     pub(crate) name: String,
     pub(crate) unit: &'static str,
     pub(crate) quantity: Quantity,
     /// Its meaning, where the name alone does not say.
     pub(crate) meaning: String,
-}
-
-impl Quantity {
-    /// The bodies that it depends on: if they are not modelled, it has no value.
-    pub(crate) fn bodies(self, scene: &PlaneScene, reactions: &[Reaction]) -> Vec<BodyId> {
-        let joint = |j: JointId| scene.mechanism.joints[j.0].bodies.to_vec();
-        match self {
-            Self::Measured(
-                CoordinateFunction::Angle(bodies)
-                | CoordinateFunction::Travel(Guide { bodies, .. })
-                | CoordinateFunction::Length { bodies, .. },
-                _,
-            ) => bodies.to_vec(),
-            Self::BodyAngle(body, _)
-            | Self::VelocityRatio(body)
-            | Self::MechanicalAdvantage(body, _)
-            | Self::Pole(body, ..)
-            | Self::PointCoordinate(body, ..)
-            | Self::PointInSpace(body, ..)
-            | Self::RotationInSpace(body, _) => vec![body],
-            Self::KnownReaction(i, _) => vec![scene.varying_inertias[i].body],
-            Self::TransmissionAngle(dyad) => dyad.bodies().to_vec(),
-            Self::Reaction(k) => joint(reactions[k].joint),
-            Self::BodyFrameForce(j, ..)
-            | Self::ForceMagnitude(j)
-            | Self::ForceDirection(j)
-            | Self::MomentMagnitude(j) => joint(j),
-            // What the actuators and the loads act on is placed anyway, or does not move them.
-            Self::Time
-            | Self::ActuatorCoordinate(..)
-            | Self::ActuatorForce(_)
-            | Self::ShakingForce(_)
-            | Self::Power(_)
-            | Self::LoadForce(_)
-            | Self::LoadPower(_)
-            | Self::MeasuredInSpace(..)
-            | Self::Extra(_) => Vec::new(),
-        }
-    }
+    /// Whether it is an angle that is unwrapped along the trajectory.
+    pub(crate) unwraps: bool,
 }
 
 impl Column {
@@ -122,16 +80,6 @@ impl Column {
         matches!(self.quantity, MechanicalAdvantage(..) | Pole(..))
     }
 
-    /// Whether it is an angle that is unwrapped along the trajectory.
-    pub(crate) fn unwraps(&self) -> bool {
-        use Quantity::{BodyAngle, Measured};
-        let quantity = self.quantity;
-        matches!(
-            quantity,
-            BodyAngle(_, 0) | Measured(CoordinateFunction::Angle(_), 0)
-        )
-    }
-
     /// Whether an analysis computes it.
     pub(crate) fn is_computed_by(&self, analysis: Analysis) -> bool {
         let forces = analysis != Analysis::Kinematics;
@@ -140,10 +88,8 @@ impl Column {
             Quantity::Time => true,
             Quantity::ActuatorCoordinate(_, order)
             | Quantity::Measured(_, order)
-            | Quantity::MeasuredInSpace(_, order)
-            | Quantity::BodyAngle(_, order) => order == 0 || moves,
-            Quantity::PointCoordinate(_, _, k) => k < 2 || moves,
-            Quantity::PointInSpace(_, _, k) | Quantity::RotationInSpace(_, k) => k < 3 || moves,
+            | Quantity::Rotation(_, order, _)
+            | Quantity::Point(_, _, order, _) => order == 0 || moves,
             Quantity::VelocityRatio(_)
             | Quantity::MechanicalAdvantage(..)
             | Quantity::TransmissionAngle(_) => analysis != Analysis::FreeMotion,
@@ -174,7 +120,7 @@ pub(crate) fn units(is_angle: bool) -> [&'static str; 3] {
 
 /// Collects columns.
 #[derive(Default)]
-pub(crate) struct ColumnList(pub(crate) Vec<Column>);
+pub struct ColumnList(pub(crate) Vec<Column>);
 
 impl ColumnList {
     /// With the time if `timed`.
@@ -198,6 +144,7 @@ impl ColumnList {
             unit,
             quantity,
             meaning: meaning.into(),
+            unwraps: false,
         });
     }
 

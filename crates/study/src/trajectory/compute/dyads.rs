@@ -6,7 +6,7 @@ use dwell_geometry::{BodyId, Joint, JointId, JointKind, Mechanism, Plan, Vec2};
 
 /// A dyad: its pin, and the line that each of its bodies makes there.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Dyad {
+pub struct Dyad {
     lines: [Line; 2],
 }
 

@@ -31,7 +31,7 @@ pub(crate) fn unreachable_error(plan: &Plan, previous: f64, q: f64) -> Option<Po
 
 /// Why a trajectory ends.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum StopCause {
+pub enum StopCause {
     /// There is no pose, or a load is undefined.
     NoSolution(KinetostaticsError),
     /// The table of a load does not cover this value of its argument.
@@ -47,7 +47,26 @@ impl<E: Into<KinetostaticsError>> From<E> for StopCause {
 }
 
 /// Where a trajectory ends.
-pub(crate) struct EarlyStop<'a> {
+pub struct EarlyStop<'a> {
+    pub(crate) trajectory: &'a Trajectory<'a>,
+    /// The completed fractions of the last position that was reached and of the first that was not.
+    pub(crate) fractions: [f64; 2],
+    /// Why.
+    pub(crate) cause: StopCause,
+    /// The last position that was reached; none where not even the first was.
+    pub(crate) last: Option<TrajectorySample>,
+    pub(crate) failed: TrajectorySample,
+}
+
+impl EarlyStop<'_> {
+    /// The error message in the plane, with its locations in the scene.
+    pub(super) fn in_plane(&self, scene: &PlaneScene, plan: &Plan) -> StudyError {
+        PlaneStop::find(plan, self).explain(scene)
+    }
+}
+
+/// Where a trajectory ends in the plane.
+struct PlaneStop<'a> {
     plan: &'a Plan,
     trajectory: &'a Trajectory<'a>,
     /// Why.
@@ -60,16 +79,12 @@ pub(crate) struct EarlyStop<'a> {
     has_begun: bool,
 }
 
-impl<'a> EarlyStop<'a> {
-    /// Finds the end between two completed fractions, the first of which is reached.
-    pub(crate) fn find(
-        plan: &'a Plan,
-        trajectory: &'a Trajectory<'_>,
-        [reached, beyond]: [f64; 2],
-        cause: StopCause,
-    ) -> Self {
+impl<'a> PlaneStop<'a> {
+    /// Finds the end between the last position that was reached and the next.
+    fn find(plan: &'a Plan, stop: &EarlyStop<'a>) -> Self {
+        let (trajectory, [reached, beyond]) = (stop.trajectory, stop.fractions);
         let (mut low, mut high) = (reached, beyond);
-        if let StopCause::NoSolution(KinetostaticsError::Position(_)) = cause {
+        if let StopCause::NoSolution(KinetostaticsError::Position(_)) = stop.cause {
             let start = trajectory.sample_at(reached).q;
             let mut pose = plan.pose();
             for _ in 0..BISECTIONS {
@@ -88,7 +103,7 @@ impl<'a> EarlyStop<'a> {
         Self {
             plan,
             trajectory,
-            cause,
+            cause: stop.cause,
             last_reached: trajectory.sample_at(low),
             first_failed: trajectory.sample_at(failed),
             has_begun: beyond > reached,
@@ -96,7 +111,7 @@ impl<'a> EarlyStop<'a> {
     }
 
     /// The error message, with its locations in the scene.
-    pub(crate) fn explain(&self, scene: &PlaneScene) -> StudyError {
+    fn explain(&self, scene: &PlaneScene) -> StudyError {
         let position = self.describe_position(scene);
         let when = match self.has_begun {
             true => format!("soon after {position}"),

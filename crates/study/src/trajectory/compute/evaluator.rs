@@ -1,123 +1,19 @@
 //! Evaluates one position of a trajectory after another.
 
 use crate::bodies::{BodyPose, body_poses};
-use crate::explain::{StudyError, explain_model, table_of};
-use crate::machines::first_uncovered;
+use crate::explain::{StudyError, explain_model};
 use crate::trajectory::compute::{
-    Analysis, Column, CouplingMonitor, Quantity, RowEvaluator, SpeedScale, StopCause,
-    TrajectorySample,
+    Analysis, BodyNumbers, Column, ForceEvaluator, LargestErrors, Quantity, RowEvaluator,
+    RowScene as _, SpeedScale, StopCause, TrajectorySample,
 };
-use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
-use dwell_geometry::{BodyId, Motion, Plan, Pose, Vec2};
+use dwell_geometry::body_states::{BodyState, BodyStates, CoordinateFunction};
+use dwell_geometry::{BodyId, Plan, Pose, Vec2};
 use dwell_kinetostatics::{
     AppliedWrench, EvaluatedState, ForceSource, FreeBodyForces, InverseDynamics, LinkForces,
     LoadKind, Model, PowerBalance, Workspace, Wrench,
 };
+use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_scene::PlaneScene;
-
-/// Evaluates the forces at one position after another.
-#[derive(Clone)]
-pub(crate) struct ForceEvaluator<'a> {
-    pub(crate) model: &'a Model,
-    analysis: Analysis,
-    workspace: Workspace<f64>,
-    pub(crate) results: InverseDynamics<f64>,
-    pose: Pose<f64>,
-    /// Whether something is computed from the pose that the forces do not need.
-    keeps_poses: bool,
-    /// Whether forces are computed, or the motion of the bodies alone.
-    has_forces: bool,
-    motion_buffer: Motion<f64>,
-    /// The bodies at the velocities of the trajectory, whatever the analysis.
-    body_states: BodyStates,
-    couplings: CouplingMonitor<'a>,
-    /// Whether the table of a load may be exceeded.
-    has_tables: bool,
-}
-
-impl<'a> ForceEvaluator<'a> {
-    pub(crate) fn new(scene: &'a PlaneScene, model: &'a Model, analysis: Analysis) -> Self {
-        Self {
-            model,
-            analysis,
-            workspace: model.workspace(),
-            results: model.result_buffer(),
-            pose: model.plan().pose(),
-            keeps_poses: false,
-            has_forces: true,
-            motion_buffer: model.plan().motion(),
-            body_states: BodyStates::new(model.plan()),
-            couplings: CouplingMonitor::new(scene),
-            has_tables: (model.loads().iter()).any(|load| table_of(&load.magnitude).is_some()),
-        }
-    }
-
-    /// Evaluates the position of a sample, with the loads at time `t`; its state, where forces are computed.
-    pub(crate) fn evaluate(
-        &mut self,
-        sample: &TrajectorySample,
-        t: f64,
-    ) -> Result<Option<EvaluatedState<'_>>, StopCause> {
-        let (model, workspace, results) = (self.model, &mut self.workspace, &mut self.results);
-        let (q, q_dot, q_ddot) = (&sample.q, &sample.q_dot, &sample.q_ddot);
-        let state = match self.analysis {
-            Analysis::Kinematics => {
-                model.plan().positions(q, &mut self.pose)?;
-                return Ok(None);
-            }
-            Analysis::Statics => model.statics(t, q, workspace, results)?,
-            Analysis::Kinetostatics | Analysis::FreeMotion if !self.has_forces => {
-                let mut state = model.kinematic_state(q, q_dot, workspace)?;
-                if self.keeps_poses {
-                    self.pose.clone_from(state.pose());
-                }
-                self.body_states.copy_from(state.bodies_at(q_ddot));
-                check_tables((model, self.has_tables), t, &self.body_states)?;
-                return Ok(None);
-            }
-            Analysis::Kinetostatics | Analysis::FreeMotion => {
-                let mut state = model.kinematic_state(q, q_dot, workspace)?.apply_loads(t)?;
-                for &(load, magnitude) in &sample.drive_magnitudes {
-                    state.set_magnitude(load, magnitude);
-                }
-                state.evaluate(q_ddot, results)?
-            }
-        };
-        if self.analysis == Analysis::Statics || self.keeps_poses {
-            self.pose.clone_from(state.pose());
-        }
-        if self.analysis != Analysis::Statics {
-            self.body_states.copy_from(state.bodies());
-        }
-        check_tables((model, self.has_tables), t, state.bodies())?;
-        Ok(Some(state))
-    }
-
-    /// Computes the states of the bodies at the velocities of the sample, unless the forces were evaluated at them; fails where a
-    /// coupling jumps.
-    pub(crate) fn fill_states(&mut self, sample: &TrajectorySample) -> Result<(), StopCause> {
-        if matches!(self.analysis, Analysis::Statics | Analysis::Kinematics) {
-            let (plan, pose) = (self.model.plan(), &self.pose);
-            plan.velocities(pose, &sample.q_dot, &mut self.motion_buffer);
-            plan.accelerations(pose, &sample.q_ddot, &mut self.motion_buffer);
-            self.body_states.fill(plan, pose, &self.motion_buffer);
-        }
-        self.couplings.check(&self.body_states)
-    }
-}
-
-/// Fails at the first load of a model whose table, if any has one, does not cover the state of the bodies at time `t` (s).
-fn check_tables(
-    (model, has_tables): (&Model, bool),
-    t: f64,
-    states: &BodyStates,
-) -> Result<(), StopCause> {
-    let uncovered = has_tables.then(|| first_uncovered(model, t, |of| states.coordinate(of)));
-    match uncovered.flatten() {
-        Some((load, value)) => Err(StopCause::OffTable { load, value }),
-        None => Ok(()),
-    }
-}
 
 /// What the forces at one position are computed into.
 #[derive(Clone)]
@@ -228,8 +124,8 @@ fn is_kinematic(quantity: Quantity) -> bool {
         Q::Time
             | Q::ActuatorCoordinate(..)
             | Q::Measured(..)
-            | Q::BodyAngle(..)
-            | Q::PointCoordinate(..)
+            | Q::Rotation(..)
+            | Q::Point(..)
             | Q::TransmissionAngle(_)
             | Q::VelocityRatio(_)
     )
@@ -252,7 +148,7 @@ fn needs_forces_on_bodies(quantity: Quantity) -> bool {
 
 /// Evaluates all quantities at one position after another.
 #[derive(Clone)]
-pub(crate) struct PositionEvaluator<'a> {
+pub struct PositionEvaluator<'a> {
     scene: &'a PlaneScene,
     pub(crate) forces: ForceEvaluator<'a>,
     pub(crate) position: PositionForces<'a>,
@@ -268,6 +164,7 @@ pub(crate) struct PositionEvaluator<'a> {
     /// Size of the mechanism, m; and the scales at q̇ = 1 of a single actuator, and along the trajectory.
     size: f64,
     speed_scales: [SpeedScale; 2],
+    measured: Vec<Option<CoordinateFunction>>,
 }
 
 impl<'a> PositionEvaluator<'a> {
@@ -283,7 +180,9 @@ impl<'a> PositionEvaluator<'a> {
         let has_quotients = columns.iter().any(|c| is_quotient(c.quantity));
         let mut forces = ForceEvaluator::new(scene, model, analysis);
         forces.keeps_poses = has_quotients;
+        let measured = scene.measured(model).into_iter();
         Ok(Self {
+            measured: measured.map(|of| of.function).collect(),
             position: PositionForces::new(scene, model)?,
             scene,
             forces,
@@ -331,12 +230,27 @@ impl<'a> PositionEvaluator<'a> {
         }
     }
 
-    pub(crate) fn body_poses(&self) -> Vec<BodyPose> {
-        body_poses(&self.forces.body_states, &self.scene.mechanism)
+    /// Where a body has no velocity (order 1) or no acceleration (order 2).
+    fn pole(&self, body: BodyId, order: usize) -> Vec2 {
+        let ([at_unit_speed, scale], states) = (&self.speed_scales, &self.forces.body_states);
+        match order {
+            // At rest of a single actuator the body still has its pole.
+            1 if self.forces.model.plan().actuators() == 1 => {
+                at_unit_speed.pole(&self.unit_speed_states, body)
+            }
+            1 => scale.pole(states, body),
+            _ => scale.acceleration_pole(states, body),
+        }
     }
 }
 
 impl RowEvaluator for PositionEvaluator<'_> {
+    type Model = Model;
+
+    fn model(&self) -> &Model {
+        self.forces.model
+    }
+
     fn limit_to(&mut self, quantities: impl Iterator<Item = Quantity>) {
         (self.has_forces_on_bodies, self.forces.has_forces) = (false, false);
         (self.has_quotients, self.has_scales) = (false, false);
@@ -372,53 +286,56 @@ impl RowEvaluator for PositionEvaluator<'_> {
         Ok(())
     }
 
-    // One arm for each quantity.
-    fn value(&self, quantity: Quantity, sample: &TrajectorySample) -> f64 {
-        let (forces, states) = (&self.forces.results, &self.forces.body_states);
-        let (unit_speed, balance) = (&self.unit_speed_states, &self.position.power_balance);
+    fn forces(&self) -> &InverseDynamics<f64> {
+        &self.forces.results
+    }
+
+    fn bodies(&self) -> &impl crate::assembled::BodyStates {
+        &self.forces.body_states
+    }
+
+    // As couplings and loads count revolutions, so that columns of one angle agree.
+    fn rotation(&self, body: BodyId) -> [f64; 3] {
+        let ground = BodyId(self.scene.mechanism.ground);
+        let [angle, ..] = self.forces.body_states.angle([ground, body]);
+        [0.0, 0.0, angle]
+    }
+
+    fn measured(&self, k: usize) -> [f64; 3] {
+        let found = self.measured[k].map(|of| self.forces.body_states.coordinate(of));
+        found.unwrap_or([f64::NAN; 3])
+    }
+
+    fn power(&self) -> [f64; 5] {
+        let balance = &self.position.power_balance;
+        [
+            balance.actuators,
+            balance.loads,
+            balance.kinetic_energy_rate,
+            balance.residual(),
+            balance.kinetic_energy,
+        ]
+    }
+
+    fn power_scale(&self) -> f64 {
+        self.position.power_balance.scale
+    }
+
+    fn load_power(&self, load: usize) -> f64 {
+        self.position.load_powers[load]
+    }
+
+    fn other(&self, quantity: Quantity) -> f64 {
+        let (states, unit_speed) = (&self.forces.body_states, &self.unit_speed_states);
         let joint_forces = &self.position.joint_forces;
         let component = |v: Vec2, axis: usize| if axis == 0 { v.x } else { v.y };
         match quantity {
-            Quantity::Time => sample.t,
-            Quantity::ActuatorCoordinate(i, order) => match sample.actuator_coordinate {
-                Some(actuator_coordinate) => actuator_coordinate[order],
-                None => [&sample.q, &sample.q_dot, &sample.q_ddot][order][i],
-            },
-            Quantity::ActuatorForce(i) => forces.tau[i],
-            Quantity::Measured(measured, order) => states.coordinate(measured)[order],
-            // As couplings and loads count revolutions, so that columns of one angle agree.
-            Quantity::BodyAngle(body, 0) => {
-                states.angle([BodyId(self.scene.mechanism.ground), body])[0]
-            }
-            Quantity::BodyAngle(body, 1) => states.body(body).angular_velocity,
-            Quantity::BodyAngle(body, _) => states.body(body).angular_acceleration,
             Quantity::VelocityRatio(body) => unit_speed.body(body).angular_velocity,
             Quantity::MechanicalAdvantage(body, point) => {
                 self.speed_scales[0].mechanical_advantage(unit_speed, body, point)
             }
-            Quantity::Pole(body, order, axis) => {
-                let [at_unit_speed, scale] = &self.speed_scales;
-                let pole = match order {
-                    // At rest of a single actuator the body still has its pole.
-                    1 if self.forces.model.plan().actuators() == 1 => {
-                        at_unit_speed.pole(unit_speed, body)
-                    }
-                    1 => scale.pole(states, body),
-                    _ => scale.acceleration_pole(states, body),
-                };
-                component(pole, axis)
-            }
-            Quantity::PointCoordinate(body, at, k) => {
-                let point = states.point(body, at);
-                let vector = match k / 2 {
-                    0 => point.position,
-                    1 => point.velocity,
-                    _ => point.acceleration,
-                };
-                component(vector, k % 2)
-            }
+            Quantity::Pole(body, order, axis) => component(self.pole(body, order), axis),
             Quantity::TransmissionAngle(dyad) => dyad.angle(states),
-            Quantity::Reaction(k) => forces.reactions[k],
             Quantity::KnownReaction(i, k) => self.known_reaction(i, k),
             Quantity::BodyFrameForce(joint, body, axis) => {
                 let rotation = states.body(body).rotation;
@@ -428,29 +345,59 @@ impl RowEvaluator for PositionEvaluator<'_> {
             Quantity::ForceDirection(joint) => joint_forces[joint.0].angle(),
             Quantity::ShakingForce(2) => self.position.shaking_wrench.moment,
             Quantity::ShakingForce(axis) => component(self.position.shaking_wrench.force, axis),
-            Quantity::Power(0) => balance.actuators,
-            Quantity::Power(1) => balance.loads,
-            Quantity::Power(2) => balance.kinetic_energy_rate,
-            Quantity::Power(3) => balance.residual(),
-            Quantity::Power(_) => balance.kinetic_energy,
             Quantity::LoadForce(k) => self.load_force(k),
-            Quantity::LoadPower(k) => self.position.load_powers[k],
-            Quantity::Extra(k) => sample.extra_values[k],
-            // The columns of a mechanism in the plane are none of these.
-            Quantity::PointInSpace(..)
-            | Quantity::MeasuredInSpace(..)
-            | Quantity::RotationInSpace(..)
-            | Quantity::MomentMagnitude(_) => f64::NAN,
+            _ => f64::NAN,
         }
     }
 
-    fn angular_velocity(&self, angle: Quantity) -> f64 {
-        match angle {
-            Quantity::Measured(measured @ CoordinateFunction::Angle(_), _) => {
-                self.forces.body_states.coordinate(measured)[1]
+    fn body_poses(&self) -> Vec<BodyPose> {
+        body_poses(&self.forces.body_states, &self.scene.mechanism)
+    }
+
+    fn link_forces(&self) -> &[Option<LinkForces>] {
+        &self.position.link_forces
+    }
+
+    fn result_reactions(&self) -> usize {
+        self.forces.model.reactions().len()
+    }
+
+    // Next to a limit position there may be a pose in double precision and none in 32 digits.
+    fn add_rounding(
+        &self,
+        t: f64,
+        at: [&[f64]; 3],
+        precise: &mut Workspace<DoubleDouble>,
+        largest: &mut LargestErrors,
+    ) {
+        let (model, forces) = (self.forces.model, &self.forces.results);
+        if largest.analysis != Analysis::Kinematics {
+            let mut errors = model.result_buffer();
+            let known = model.kinetostatics_rounding_errors(t, at, forces, precise, &mut errors);
+            if known.is_ok() {
+                largest.add_forces(forces, [&errors.tau, &errors.reactions]);
             }
-            Quantity::BodyAngle(body, _) => self.forces.body_states.body(body).angular_velocity,
-            _ => 0.0,
+            return;
+        }
+        let lift = |values: &[f64]| values.iter().map(|&v| DoubleDouble::from_f64(v)).collect();
+        let [q, q_dot, q_ddot]: [Vec<DoubleDouble>; 3] = at.map(lift);
+        if let Ok(mut state) = model.kinematic_state(&q, &q_dot, precise) {
+            let (plain, precise) = (&self.forces.body_states, state.bodies_at(&q_ddot));
+            for body in (0..plain.len()).map(BodyId) {
+                largest.add_body(numbers(plain.body(body)), numbers(precise.body(body)));
+            }
         }
     }
+}
+
+/// The numbers of a body, by kind.
+fn numbers<T: Scalar>(body: &BodyState<T>) -> BodyNumbers<T> {
+    [
+        vec![body.joint_origin.x, body.joint_origin.y],
+        vec![body.rotation.x, body.rotation.y],
+        vec![body.velocity.x, body.velocity.y],
+        vec![body.angular_velocity],
+        vec![body.acceleration.x, body.acceleration.y],
+        vec![body.angular_acceleration],
+    ]
 }

@@ -51,6 +51,7 @@ fn columns_of_integration<'a>(
         unit,
         quantity: Quantity::Extra(k),
         meaning: meaning.to_owned(),
+        unwraps: false,
     };
     all.into_iter().enumerate().map(column).collect()
 }

@@ -178,7 +178,7 @@ impl<E: RowEvaluator> ExtremaSearch<'_, E> {
                 sample: (between.sampler)(),
             };
             let column = |&(i, k): &(usize, usize)| {
-                let points = points.of_column(i, (self.values)(k)?, self.columns[k].unwraps());
+                let points = points.of_column(i, (self.values)(k)?, self.columns[k].unwraps);
                 let parts: Vec<&[Point]> = between_events(&points).collect();
                 let mut found = |sign| search.largest(k, sign, (&points, &parts), refined);
                 io::Result::Ok((k, [found(-1.0), found(1.0)], turns(&points)))
@@ -335,7 +335,7 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         let largest = largest?;
         // Each with its abscissa, where that is known.
         let mut found: Vec<(Point, Option<f64>)> = vec![(largest, None)];
-        let unwraps = self.columns[k].unwraps();
+        let unwraps = self.columns[k].unwraps;
         let smooth = promising(parts, sign, largest[1], refined);
         let smooth = smooth
             .into_iter()
@@ -411,13 +411,12 @@ fn evaluated<'e, E: RowEvaluator>(
 /// Whether a column has its extrema between rows: not the error of the integration, and nothing that is infinite in
 /// some positions or counts revolutions from row to row.
 fn is_continuous(column: &Column) -> bool {
-    use Quantity::{MechanicalAdvantage, Pole, Power, RotationInSpace, Time};
-    let quantity = column.quantity;
-    column.name != BALANCE
-        && !matches!(
-            quantity,
-            Time | Power(3) | MechanicalAdvantage(..) | Pole(..) | RotationInSpace(_, 0..3)
-        )
+    use Quantity::{MechanicalAdvantage, Pole, Power, Rotation, Time};
+    match column.quantity {
+        Time | Power(3) | MechanicalAdvantage(..) | Pole(..) => false,
+        Rotation(_, 0, _) => column.unwraps,
+        _ => column.name != BALANCE,
+    }
 }
 
 /// Whether a column is of one load.

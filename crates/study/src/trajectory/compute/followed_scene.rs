@@ -1,13 +1,13 @@
 //! What gives the coordinates that an analysis follows, of a scene in the plane or in space.
 
-use crate::explain::{NamedScene as _, StudyError, labels, missing_section_label, scene_error};
+use crate::explain::{StudyError, labels, missing_section_label, scene_error};
 use crate::number_format::count;
-use crate::trajectory::compute::{Analysis, SweepLimits, default_limits};
-use dwell_geometry::{ActuatorId, Plan};
-use dwell_scene::{CoordinateSweep, PlaneScene, PrescribedMotion, SceneFile, SceneLocation};
+use crate::trajectory::compute::{Analysis, SweepLimits};
+use dwell_geometry::ActuatorId;
+use dwell_scene::{CoordinateSweep, PrescribedMotion, SceneFile, SceneLocation};
 
 /// What gives the coordinates that an analysis follows.
-pub(crate) struct FollowedScene<'a> {
+pub struct FollowedScene<'a> {
     pub(crate) file: &'a SceneFile,
     pub(crate) prescribed: Option<&'a PrescribedMotion>,
     pub(crate) sweep: Option<&'a CoordinateSweep>,
@@ -21,22 +21,7 @@ pub(crate) struct FollowedScene<'a> {
     pub(crate) default_limits: Option<SweepLimits>,
 }
 
-impl<'a> FollowedScene<'a> {
-    /// Of a scene in the plane.
-    pub(crate) fn in_plane(scene: &'a PlaneScene, plan: &Plan) -> Self {
-        let actuators = 0..plan.actuators();
-        let is_only = actuators.len() == 1;
-        Self {
-            file: &scene.file,
-            prescribed: scene.prescribed.as_ref(),
-            sweep: scene.sweep.as_ref(),
-            coordinates: actuators.filter_map(|i| scene.actuator(i)).collect(),
-            start: plan.assembly_coordinates().to_vec(),
-            period: plan.range().period(),
-            default_limits: is_only.then(|| default_limits(scene, plan)),
-        }
-    }
-
+impl FollowedScene<'_> {
     /// The error of a scene that prescribes no actuator coordinates.
     pub(super) fn no_trajectory(&self, analysis: Analysis) -> StudyError {
         if self.coordinates.is_empty() {

@@ -10,15 +10,20 @@ mod evaluator;
 mod extra_columns;
 mod extrema;
 mod followed_scene;
+mod force_evaluator;
+mod in_plane;
 mod long_rows;
 mod maximum;
 mod mechanical_advantage;
 mod monitor;
 mod peak_forces;
+mod plane_columns;
 mod requested_columns;
 mod results;
 mod rounding_error;
 mod row_evaluator;
+mod row_scene;
+mod row_source;
 mod second_rows;
 mod sectioned_link;
 mod selection;
@@ -33,27 +38,28 @@ pub(crate) use dyads::{Dyad, dyads};
 pub(crate) use early_stop::{
     CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
 };
-pub(crate) use evaluator::{ForceEvaluator, PositionEvaluator};
+pub(crate) use evaluator::PositionEvaluator;
 pub(crate) use extra_columns::extra_columns;
 pub(crate) use extrema::Extremum;
 pub(crate) use extrema::{BetweenRows, Extrema, ExtremaSearch, SamplePrecision, Sampler};
 pub(crate) use followed_scene::FollowedScene;
+pub(crate) use force_evaluator::ForceEvaluator;
+pub(crate) use in_plane::{lifted, requested_bodies};
 pub(crate) use long_rows::{LongRows, RowStorage, not_stored};
 pub(crate) use maximum::{Point, highest_between};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::CouplingMonitor;
 pub(crate) use peak_forces::{WantedForces, peak_analysis, peak_forces};
-pub(crate) use requested_columns::{RequestedColumns, is_requested};
-pub(crate) use results::compute_trajectory_in;
+pub(crate) use requested_columns::RequestedColumns;
+pub(crate) use results::MotionBetweenRows;
 pub use results::{ComputedTrajectory, TrajectoryResults};
-pub(crate) use results::{MotionBetweenRows, compute_along};
 pub(crate) use rounding_error::{BodyNumbers, LargestErrors, RoundingError};
 pub(crate) use row_evaluator::RowEvaluator;
+pub(crate) use row_scene::{ColumnRequests, Layout, RowScene};
+pub(crate) use row_source::{RowSource, compute_trajectory_in};
 pub(crate) use second_rows::SecondRows;
 pub use sectioned_link::SectionedLink;
-pub(crate) use selection::{
-    check_variables, prune_model, reject_unknown_variables, requested_bodies, suggestion,
-};
+pub(crate) use selection::{check_variables, reject_unknown_variables};
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::{
     BALANCE, FreeTrajectory, KINETIC, POTENTIAL, Spacing, SweepLimits, TrajectorySample,

@@ -3,7 +3,7 @@
 
 use crate::explain::StudyError;
 use crate::trajectory::compute::{
-    Analysis, FollowedScene, ForceEvaluator, Point, Trajectory, highest_between,
+    Analysis, ForceEvaluator, Point, RowScene, Trajectory, highest_between,
 };
 use dwell_kinetostatics::{InverseDynamics, Model};
 use dwell_scene::PlaneScene;
@@ -21,12 +21,12 @@ pub(crate) struct WantedForces {
 }
 
 /// The analysis for peak forces: along the scene's motion or sweep, or statics over its range.
-pub(crate) fn peak_analysis(scene: &PlaneScene) -> Option<Analysis> {
-    if scene.prescribed.is_some() || scene.sweep.is_some() {
+pub(crate) fn peak_analysis(scene: &impl RowScene) -> Option<Analysis> {
+    if let (Some(_), _) | (_, Some(_)) = scene.prescribed() {
         return Some(Analysis::Kinetostatics);
     }
-    let single = scene.mechanism.actuators.len() == 1;
-    (single && !scene.loads.is_empty()).then_some(Analysis::Statics)
+    let is_single = scene.assembly_coordinates().len() == 1;
+    (is_single && !scene.load_names().is_empty()).then_some(Analysis::Statics)
 }
 
 /// The largest absolute values of statics or kinetostatics along the scene's trajectory: of the wanted forces also between
@@ -40,8 +40,7 @@ pub(crate) fn peak_forces(
     analysis: Analysis,
     wanted: &WantedForces,
 ) -> Result<InverseDynamics<f64>, StudyError> {
-    let plan = model.plan();
-    let followed = FollowedScene::in_plane(scene, plan);
+    let followed = scene.followed(model);
     let trajectory = Trajectory::new(&followed, analysis, None)?;
     trajectory.check_laws(&followed)?;
     let mut evaluator = ForceEvaluator::new(scene, model, analysis);
@@ -52,7 +51,7 @@ pub(crate) fn peak_forces(
         vec![Vec::<Point>::new(); wanted.reactions.len()],
         vec![Vec::new(); wanted.actuators.len()],
     ];
-    let early_stop = trajectory.follow(plan, |k, sample| {
+    let early_stop = trajectory.follow::<PlaneScene>(model, |k, sample| {
         evaluator.evaluate(sample, trajectory.load_time(sample))?;
         if has_couplings {
             evaluator.fill_states(sample)?;
@@ -71,7 +70,7 @@ pub(crate) fn peak_forces(
         Ok(())
     });
     if let Some(stop) = early_stop {
-        return Err(stop.explain(scene));
+        return Err(scene.explain_stop(model, stop));
     }
     let [reactions, actuators] = &curves;
     let mut largest = |curve: &[Point], pick: &dyn Fn(&InverseDynamics<f64>) -> f64| {

@@ -1,21 +1,14 @@
 //! Evaluation along a trajectory: the table, and what sections and drawings need of each position.
 
 use crate::bodies::BodyPose;
-use crate::branch_note::branch_note;
 use crate::estimate::{error_scale, relative};
 use crate::explain::StudyError;
-use crate::models::loaded_model;
-use crate::progress::Progress;
 use crate::trajectory::compute::{
-    Analysis, BetweenRows, Column, Extrema, ExtremaSearch, FollowedScene, LongRows,
-    PositionEvaluator, Quantity, RequestedColumns, RoundingError, RowEvaluator, RowStorage,
-    Sampler, SectionedLink, Trajectory, TrajectorySample, UnitReferences, all_columns,
-    check_variables, is_requested, not_stored, prune_model,
+    Analysis, BetweenRows, Column, Extrema, ExtremaSearch, LongRows, Quantity, RequestedColumns,
+    RowEvaluator, RowScene, RowStorage, Sampler, SectionedLink, Trajectory, TrajectorySample,
+    UnitReferences, not_stored,
 };
 use dwell_findings::{self as findings, Table};
-use dwell_geometry::Plan;
-use dwell_kinetostatics::Model;
-use dwell_scene::PlaneScene;
 use std::f64::consts::TAU;
 use std::io;
 
@@ -62,46 +55,27 @@ pub struct TrajectoryResults {
 }
 
 impl TrajectoryResults {
-    pub(super) fn new(
-        scene: &PlaneScene,
-        model: &Model,
+    /// Without rows: of all columns of an analysis those that the scene requests.
+    pub(super) fn new<S: RowScene>(
+        scene: &S,
+        rows: &S::Rows,
         all: Vec<Column>,
         analysis: Analysis,
     ) -> Self {
-        let requested = RequestedColumns::new(scene, model.reactions(), analysis);
+        let requested = RequestedColumns::new(scene, rows, analysis);
         let is_kept = |c: &&Column| requested.are_with(c) || requested.draw(c);
         let columns: Vec<Column> = all.iter().filter(is_kept).cloned().collect();
         let written = 0..columns.len();
         let written = written.filter(|&k| requested.are_with(&columns[k]));
-        let sections = match analysis {
-            Analysis::Kinematics => &[],
-            _ => scene.requests.sections.as_slice(),
-        };
-        let links = sections.iter().map(|link| SectionedLink::new(scene, link));
-        let reactions = model.reactions().iter().enumerate();
-        let indeterminate = reactions.filter(|&(k, _)| !model.plan().is_determinate(k));
-        let names = indeterminate.map(|(_, r)| scene.mechanism.reaction_name(*r));
-        let written = written.collect();
+        let has_sections = analysis != Analysis::Kinematics;
+        let sections = has_sections.then(|| scene.sectioned_links());
         Self {
-            sectioned_links: links.collect(),
-            indeterminate: names.collect(),
-            modelled: model.plan().placed_bodies(),
-            ..Self::of_columns(all, columns, written, requested.is_limited())
-        }
-    }
-
-    /// Without rows: `columns` are those of `all` columns of an analysis that are kept, and `written` those of them in the
-    /// tables, which are less than everything if `is_limited`.
-    pub(crate) fn of_columns(
-        all: Vec<Column>,
-        columns: Vec<Column>,
-        written: Vec<usize>,
-        is_limited: bool,
-    ) -> Self {
-        Self {
+            sectioned_links: sections.unwrap_or_default(),
+            indeterminate: scene.open_reactions(rows),
+            modelled: S::modelled(rows),
             last_angles: vec![None; columns.len()],
-            written,
-            is_limited,
+            written: written.collect(),
+            is_limited: requested.is_limited,
             references: UnitReferences::new(all, &columns),
             columns,
             ..Self::default()
@@ -123,7 +97,7 @@ impl TrajectoryResults {
     }
 
     /// Prepares the memory for the rows of so many positions.
-    pub(crate) fn keep_rows_in(
+    pub(super) fn keep_rows_in(
         &mut self,
         storage: RowStorage,
         points: usize,
@@ -175,33 +149,20 @@ impl TrajectoryResults {
     }
 
     /// Adds what has been evaluated at the `k`th position.
-    fn add_position(
+    pub(super) fn add_position(
         &mut self,
         k: usize,
-        evaluator: &PositionEvaluator<'_>,
-        sample: &TrajectorySample,
-    ) {
-        let position = &evaluator.position;
-        let links = self.sectioned_links.iter_mut().zip(&position.link_forces);
-        for (link, forces) in links {
-            link.add_position(k, forces.as_ref());
-        }
-        let balance = &position.power_balance;
-        let power_terms = [balance.residual().abs(), balance.scale];
-        self.add_row(evaluator, sample, (evaluator.body_poses(), power_terms));
-    }
-
-    /// Adds the row of the position that was evaluated last, with the poses of the bodies, and the residual and the scale of
-    /// the power balance.
-    pub(crate) fn add_row(
-        &mut self,
         evaluator: &impl RowEvaluator,
         sample: &TrajectorySample,
-        (poses, power_terms): (Vec<BodyPose>, [f64; 2]),
     ) {
+        let links = self.sectioned_links.iter_mut();
+        for (link, forces) in links.zip(evaluator.link_forces()) {
+            link.add_position(k, forces.as_ref());
+        }
         let row = self.next_row(evaluator, sample);
         self.references
             .add_row(&row, &|quantity| evaluator.value(quantity, sample));
+        let poses = evaluator.body_poses();
         let kept = match &mut self.long_rows {
             Some(long) => long.add(row, poses),
             None => Some((row, poses)),
@@ -210,7 +171,9 @@ impl TrajectoryResults {
             self.rows.push(row);
             self.body_poses.push(poses);
         }
-        self.power_terms.push(power_terms);
+        let [.., residual, _] = evaluator.power();
+        self.power_terms
+            .push([residual.abs(), evaluator.power_scale()]);
     }
 
     /// The row of the position that was evaluated last.
@@ -222,7 +185,7 @@ impl TrajectoryResults {
         let mut row = Vec::with_capacity(self.columns.len());
         for (column, last) in self.columns.iter().zip(&mut self.last_angles) {
             let value = evaluator.value(column.quantity, sample);
-            row.push(match column.unwraps() {
+            row.push(match column.unwraps {
                 true => {
                     let speed = evaluator.angular_velocity(column.quantity);
                     unwrap_angle(last, value, speed, sample.t)
@@ -242,48 +205,6 @@ fn unwrap_angle(last: &mut Option<[f64; 3]>, value: f64, speed: f64, t: f64) -> 
     });
     *last = Some([unwrapped, speed, t]);
     unwrapped
-}
-
-/// All columns of an analysis along a trajectory, of the bodies that `model` places.
-pub(super) fn computed_columns(
-    scene: &PlaneScene,
-    model: &Model,
-    trajectory: &Trajectory<'_>,
-) -> Vec<Column> {
-    let modelled = model.plan().placed_bodies();
-    let is_modelled = |column: &Column| {
-        let bodies = column.quantity.bodies(scene, model.reactions());
-        bodies.iter().all(|b| modelled[b.0])
-    };
-    let free_motion = trajectory.free_motion();
-    // In a free motion only prescribed actuators exert a force.
-    let is_exerted = |column: &Column| match column.quantity {
-        Quantity::ActuatorForce(i) => free_motion.is_none_or(|motion| motion.prescribed[i]),
-        _ => true,
-    };
-    let extra = free_motion.map(|motion| motion.extra_columns.clone());
-    all_columns(scene, model, trajectory.is_timed())
-        .into_iter()
-        .chain(extra.unwrap_or_default())
-        .filter(|c| c.is_computed_by(trajectory.analysis) && is_modelled(c) && is_exerted(c))
-        .filter(|c| !c.is_optional() || is_requested(scene, c))
-        .collect()
-}
-
-/// What evaluates some columns along a trajectory, by chart; the trajectory ends where the whole mechanism, by its plan, does.
-pub(super) fn evaluators_of<'s>(
-    scene: &'s PlaneScene,
-    (whole, model): (&'s Plan, &'s Model),
-    trajectory: &'s Trajectory<'_>,
-    columns: &[Column],
-) -> Result<Vec<PositionEvaluator<'s>>, StudyError> {
-    let charts = match trajectory.charts() {
-        [] => std::slice::from_ref(model),
-        charts => charts,
-    };
-    let of_chart =
-        |chart| PositionEvaluator::new(scene, whole, chart, trajectory.analysis, columns);
-    charts.iter().map(of_chart).collect()
 }
 
 /// A free motion between its rows: positions at other times (s), and a sampler at any time for each thread.
@@ -310,7 +231,7 @@ impl TrajectoryResults {
     ///
     /// # Errors
     /// [`StudyError`] where there is no row, or they cannot be stored.
-    pub(crate) fn finish(
+    pub(super) fn finish(
         &mut self,
         trajectory: &Trajectory<'_>,
         early_stop: Option<StudyError>,
@@ -408,70 +329,4 @@ impl ComputedTrajectory<'_> {
         self.early_stop.as_ref()?;
         motion.samples.get(last).map(|sample| sample.t)
     }
-}
-
-/// Analyses a scene in the plane along its prescribed motion, its sweep, or the range of its only actuator, with the rows in memory, or
-/// where they are bounded.
-pub(crate) fn compute_trajectory_in<'a>(
-    storage: RowStorage,
-    scene: &'a PlaneScene,
-    analysis: Analysis,
-    points: Option<usize>,
-    progress: Progress<'_>,
-) -> Result<ComputedTrajectory<'a>, StudyError> {
-    let model = loaded_model(scene)?;
-    check_variables(scene, &model)?;
-    let notes = branch_note(scene, model.plan());
-    let followed = FollowedScene::in_plane(scene, model.plan());
-    let trajectory = Trajectory::new(&followed, analysis, points)?;
-    let along = (trajectory, None);
-    let computed = compute_along(storage, scene, &model, along, progress)?;
-    Ok(ComputedTrajectory { notes, ..computed })
-}
-
-/// Evaluates a scene along a trajectory, with the rows in memory or where they are bounded; of a free motion also with what is known
-/// between its rows.
-///
-/// # Errors
-/// [`StudyError`] where not even the first position can be reached.
-pub(crate) fn compute_along<'a>(
-    storage: RowStorage,
-    scene: &PlaneScene,
-    full_model: &Model,
-    (trajectory, between): (Trajectory<'a>, Option<MotionBetweenRows<'_>>),
-    progress: Progress<'_>,
-) -> Result<ComputedTrajectory<'a>, StudyError> {
-    // The trajectory ends where the whole mechanism does, however much of it is modelled.
-    let (plan, analysis): (&Plan, Analysis) = (full_model.plan(), trajectory.analysis);
-    let model = &prune_model(scene, full_model);
-    let columns = computed_columns(scene, model, &trajectory);
-    trajectory.check_laws(&FollowedScene::in_plane(scene, plan))?;
-    let mut results = TrajectoryResults::new(scene, model, columns, analysis);
-    results.keep_rows_in(storage, trajectory.points)?;
-    let mut evaluators = evaluators_of(scene, (plan, model), &trajectory, &results.columns)?;
-    let mut rounding_error = RoundingError::new(scene, model, (analysis, trajectory.points));
-    let early_stop = trajectory.follow(plan, |k, sample| {
-        let evaluator = &mut evaluators[sample.chart];
-        let t = trajectory.load_time(sample);
-        evaluator.evaluate(sample, t)?;
-        results.add_position(k, evaluator, sample);
-        if let Some(rounding_error) = &mut rounding_error {
-            let rest = vec![0.0; sample.q.len()];
-            let at = sample.state(analysis, &rest);
-            rounding_error.add_position((k, t), at, &evaluator.forces.results);
-        }
-        trajectory.report(k, progress);
-        Ok(())
-    });
-    let early_stop = early_stop.map(|stop| stop.explain(scene));
-    results.rounding_error = rounding_error.map(|error| error.max_relative());
-    let of = (scene.mechanism.size(), &evaluators[..]);
-    let early_stop = results.finish(&trajectory, early_stop, of, between)?;
-    Ok(ComputedTrajectory {
-        table: results.table(),
-        early_stop,
-        notes: String::new(),
-        trajectory,
-        results,
-    })
 }

@@ -1,12 +1,10 @@
 //! Rounding error of a trajectory analysis: some positions are evaluated again in 32-digit arithmetic.
 
 use crate::estimate::{error_scale, relative};
-use crate::trajectory::compute::{Analysis, force_scales};
-use dwell_geometry::BodyId;
-use dwell_geometry::body_states::{BodyState, BodyStates};
-use dwell_kinetostatics::{InverseDynamics, Model, Workspace};
-use dwell_numerics::{DoubleDouble, Scalar};
-use dwell_scene::PlaneScene;
+use crate::trajectory::compute::{Analysis, RowEvaluator, TrajectorySample, force_scales};
+use dwell_kinetostatics::table::TableModel;
+use dwell_kinetostatics::{InverseDynamics, MachineModel};
+use dwell_numerics::{DoubleDouble, Scalar as _};
 
 /// Number of positions that are evaluated again, along the whole trajectory.
 const POSITIONS: usize = 48;
@@ -16,7 +14,7 @@ pub(crate) type BodyNumbers<T> = [Vec<T>; 6];
 
 /// The largest errors along a trajectory in the plane or in space, by kind of number: of positions, velocities and accelerations where
 /// no forces are computed, else of actuator forces and reactions.
-pub(crate) struct LargestErrors {
+pub struct LargestErrors {
     pub(crate) analysis: Analysis,
     stride: usize,
     /// Size of the mechanism, m.
@@ -31,7 +29,7 @@ pub(crate) struct LargestErrors {
 
 impl LargestErrors {
     /// For a trajectory of so many positions; none of a free motion, whose error is that of its integration.
-    pub(crate) fn new(
+    fn new(
         (analysis, points): (Analysis, usize),
         size: f64,
         is_force: [Vec<bool>; 2],
@@ -49,7 +47,7 @@ impl LargestErrors {
     }
 
     /// Whether the `k`th position is one of those evaluated again.
-    pub(crate) fn include(&self, k: usize) -> bool {
+    fn include(&self, k: usize) -> bool {
         k.is_multiple_of(self.stride)
     }
 
@@ -75,7 +73,7 @@ impl LargestErrors {
     }
 
     /// The largest error, relative to the largest value of its unit. What does not move has the error of what does.
-    pub(crate) fn max_relative(&self) -> f64 {
+    fn max_relative(&self) -> f64 {
         let pair =
             |[error, value]: [f64; 2], [other_error, other]: [f64; 2], references: [f64; 2]| {
                 let one = relative(error, error_scale(value, references[0]));
@@ -105,88 +103,44 @@ fn add([max_error, max_value]: &mut [f64; 2], error: f64, value: f64) {
     *max_value = max_value.max(value.abs());
 }
 
-/// Estimated errors along a trajectory in the plane.
-pub(crate) struct RoundingError<'a> {
-    model: &'a Model,
+/// Estimated errors along a trajectory.
+pub(crate) struct RoundingError<M: MachineModel> {
     largest: LargestErrors,
-    plain: Workspace<f64>,
-    precise: Workspace<DoubleDouble>,
-    errors: InverseDynamics<f64>,
+    precise: M::Workspace<DoubleDouble>,
 }
 
-impl<'a> RoundingError<'a> {
+impl<M: TableModel> RoundingError<M> {
     /// For a trajectory of so many positions; none of a free motion.
-    pub(crate) fn new(scene: &PlaneScene, model: &'a Model, of: (Analysis, usize)) -> Option<Self> {
-        let actuators = scene.mechanism.actuators.iter();
-        let reactions = model.reactions().iter();
-        let is_force = [
-            actuators.map(|a| !a.coordinate().is_angle()).collect(),
-            reactions.map(|r| r.component.unit() == "N").collect(),
-        ];
+    pub(super) fn new(
+        evaluator: &impl RowEvaluator<Model = M>,
+        of: (Analysis, usize),
+    ) -> Option<Self> {
+        let model = evaluator.model();
+        let actuators = (0..model.actuators()).map(|i| !model.is_angle(i));
+        let reactions = (0..evaluator.result_reactions()).map(|k| model.reaction_unit(k) == "N");
+        let is_force = [actuators.collect(), reactions.collect()];
         Some(Self {
-            model,
-            largest: LargestErrors::new(of, scene.mechanism.size(), is_force)?,
-            plain: model.workspace(),
-            precise: model.workspace(),
-            errors: model.result_buffer(),
+            largest: LargestErrors::new(of, model.size(), is_force)?,
+            precise: model.pass_workspace(),
         })
     }
 
-    /// Adds position `k`, at (t, q, q̇, q̈), if it is one of those evaluated again.
-    pub(crate) fn add_position(
+    /// Adds position `k`, a sample that was evaluated last, with the loads at time `t`, if it is one of those evaluated again.
+    pub(super) fn add_position(
         &mut self,
         (k, t): (usize, f64),
-        at: [&[f64]; 3],
-        found: &InverseDynamics<f64>,
+        sample: &TrajectorySample,
+        evaluator: &impl RowEvaluator<Model = M>,
     ) {
-        if !self.largest.include(k) {
-            return;
-        }
-        let (model, precise, errors) = (self.model, &mut self.precise, &mut self.errors);
-        // Next to a limit position there may be a pose in double precision and none in 32 digits.
-        if self.largest.analysis != Analysis::Kinematics {
-            let known = model.kinetostatics_rounding_errors(t, at, found, precise, errors);
-            if known.is_ok() {
-                let errors = [&errors.tau[..], &errors.reactions];
-                self.largest.add_forces(found, errors);
-            }
-        } else if let (Some(plain), Some(precise)) = (
-            states_at(model, at, &mut self.plain),
-            states_at(model, at, precise),
-        ) {
-            for body in (0..plain.len()).map(BodyId) {
-                let precise = numbers(precise.body(body));
-                self.largest.add_body(numbers(plain.body(body)), precise);
-            }
+        if self.largest.include(k) {
+            let rest = vec![0.0; sample.q.len()];
+            let at = sample.state(self.largest.analysis, &rest);
+            evaluator.add_rounding(t, at, &mut self.precise, &mut self.largest);
         }
     }
 
     /// The largest error, relative to the largest value of its unit.
-    pub(crate) fn max_relative(&self) -> f64 {
+    pub(super) fn max_relative(&self) -> f64 {
         self.largest.max_relative()
     }
-}
-
-/// The states of all bodies at (q, q̇, q̈) in a kind of number; none where there is no pose.
-fn states_at<T: Scalar>(
-    model: &Model,
-    at: [&[f64]; 3],
-    workspace: &mut Workspace<T>,
-) -> Option<BodyStates<T>> {
-    let [q, q_dot, q_ddot] =
-        at.map(|values| -> Vec<T> { values.iter().map(|&v| T::from_f64(v)).collect() });
-    let mut state = model.kinematic_state(&q, &q_dot, workspace).ok()?;
-    Some(state.bodies_at(&q_ddot).clone())
-}
-
-/// The numbers of a body, by kind.
-fn numbers<T: Scalar>(body: &BodyState<T>) -> BodyNumbers<T> {
-    [
-        vec![body.joint_origin.x, body.joint_origin.y],
-        vec![body.rotation.x, body.rotation.y],
-        vec![body.velocity.x, body.velocity.y],
-        vec![body.angular_velocity],
-        vec![body.acceleration.x, body.acceleration.y],
-        vec![body.angular_acceleration],
-    ]
 }

@@ -1,12 +1,7 @@
 //! The rows of a second computation of a motion, from which the errors of its columns are estimated.
 
 use crate::estimate;
-use crate::trajectory::compute::results::{computed_columns, evaluators_of};
-use crate::trajectory::compute::{
-    ComputedTrajectory, RowEvaluator, Trajectory, TrajectoryResults, prune_model,
-};
-use dwell_kinetostatics::Model;
-use dwell_scene::PlaneScene;
+use crate::trajectory::compute::{ComputedTrajectory, RowScene, RowSource, Trajectory};
 
 /// The rows of a second computation, and the time of each, s.
 pub(crate) struct SecondRows {
@@ -15,40 +10,14 @@ pub(crate) struct SecondRows {
 }
 
 impl SecondRows {
-    /// Along a motion of a scene in the plane, up to where it can be evaluated; nothing else than its rows is computed. None where
-    /// a column cannot be evaluated.
-    pub(crate) fn in_plane(
-        scene: &PlaneScene,
-        full_model: &Model,
+    /// Along a motion, up to where it can be evaluated. None where a column cannot be evaluated.
+    pub(crate) fn new<S: RowScene>(
+        source: &RowSource<'_, '_, S>,
         trajectory: &Trajectory<'_>,
     ) -> Option<Self> {
-        let (plan, analysis) = (full_model.plan(), trajectory.analysis);
-        let model = &prune_model(scene, full_model);
-        let columns = computed_columns(scene, model, trajectory);
-        let mut results = TrajectoryResults::new(scene, model, columns, analysis);
-        let columns = &results.columns;
-        let mut evaluators = evaluators_of(scene, (plan, model), trajectory, columns).ok()?;
-        for evaluator in &mut evaluators {
-            evaluator.limit_to(columns.iter().map(|column| column.quantity));
-        }
-        let mut rows = Vec::new();
-        // Where it ends early the errors of the other rows are known.
-        let _ = trajectory.follow(plan, |_, sample| {
-            let evaluator = &mut evaluators[sample.chart];
-            evaluator.evaluate(sample, trajectory.load_time(sample))?;
-            rows.push(results.next_row(evaluator, sample));
-            Ok(())
-        });
+        let rows = source.only_rows(trajectory)?;
         let times = times_of(trajectory);
         Some(Self { times, rows })
-    }
-
-    /// Those of a motion that has been computed like the first.
-    pub(crate) fn of(computed: ComputedTrajectory<'_>) -> Self {
-        Self {
-            times: times_of(&computed.trajectory),
-            rows: computed.results.rows,
-        }
     }
 }
 

@@ -4,11 +4,9 @@ use crate::explain::{StudyError, scene_error};
 use crate::number_format::{count, digits};
 use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
-    Analysis, CONTINUITY_HELP, Column, EarlyStop, FollowedScene, StopCause, jump_location,
-    unreachable_error,
+    Analysis, CONTINUITY_HELP, Column, EarlyStop, FollowedScene, RowScene, StopCause, jump_location,
 };
 use dwell_geometry::{ActuatorId, Plan, Range};
-use dwell_kinetostatics::Model;
 use dwell_scene::{CoordinateSweep, MAX_ANGLE, PlaneScene, PrescribedMotion, SceneLocation};
 use std::f64::consts::TAU;
 
@@ -23,7 +21,7 @@ const DEFAULT_STROKE: f64 = 0.25;
 
 /// The actuator coordinates and their derivatives at one position.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct TrajectorySample {
+pub struct TrajectorySample {
     /// Time since the start, s.
     pub(crate) t: f64,
     /// By actuator: coordinate (rad or m), speed and acceleration (per s, per s²).
@@ -109,8 +107,8 @@ pub(crate) struct FreeTrajectory {
     pub(crate) extra_columns: Vec<Column>,
     /// By actuator: whether its coordinate is prescribed.
     pub(crate) prescribed: Vec<bool>,
-    /// By chart: the model in its coordinate.
-    pub(crate) charts: Vec<Model>,
+    /// Whether it may be in other coordinates than the scene's.
+    pub(crate) in_charts: bool,
 }
 
 /// The limits of a sweep: from where to where, whether these are next to a limit position, and what it sweeps.
@@ -258,11 +256,6 @@ impl<'a> Trajectory<'a> {
         }
     }
 
-    /// The models by chart; empty if the scene's own model applies throughout.
-    pub(crate) fn charts(&self) -> &[Model] {
-        self.free_motion().map_or(&[], |motion| &motion.charts)
-    }
-
     /// The swept actuator; `None` if the trajectory is a motion in time.
     pub(crate) fn swept_actuator(&self) -> Option<usize> {
         match &self.kind {
@@ -281,27 +274,32 @@ impl<'a> Trajectory<'a> {
         if self.is_timed() { sample.t } else { 0.0 }
     }
 
-    /// Visits one position after another until a visit fails. Returns where and why it ends early, if it does.
-    pub(crate) fn follow<'s>(
+    /// Visits one position after another of a model until a visit fails. Returns where and why it ends early, if it does.
+    pub(crate) fn follow<'s, S: RowScene>(
         &'s self,
-        plan: &'s Plan,
+        model: &S::Model,
         mut visit: impl FnMut(usize, &TrajectorySample) -> Result<(), StopCause>,
     ) -> Option<EarlyStop<'s>> {
-        let in_own_coordinate = plan.actuators() == 1 && self.charts().is_empty();
-        let mut previous: Option<f64> = None;
+        let in_own_coordinate = self.free_motion().is_none_or(|motion| !motion.in_charts);
+        let mut last: Option<TrajectorySample> = None;
         for k in 0..self.points {
             let fraction = self.fraction_at(k);
             let sample = self.sample_at(fraction);
-            let previous_q = previous.filter(|_| in_own_coordinate);
-            let visited = match previous_q.and_then(|q| unreachable_error(plan, q, sample.q[0])) {
+            let before = last.as_ref().filter(|_| in_own_coordinate);
+            let visited = match before.and_then(|at| S::unreachable(model, [at, &sample])) {
                 Some(error) => Err(error.into()),
                 None => visit(k, &sample),
             };
             if let Err(cause) = visited {
-                let reached = self.fraction_at(k.saturating_sub(1));
-                return Some(EarlyStop::find(plan, self, [reached, fraction], cause));
+                return Some(EarlyStop {
+                    trajectory: self,
+                    fractions: [self.fraction_at(k.saturating_sub(1)), fraction],
+                    cause,
+                    last,
+                    failed: sample,
+                });
             }
-            previous = sample.q.first().copied();
+            last = Some(sample);
         }
         None
     }

@@ -1,7 +1,7 @@
 //! Angles, paths and travels, with their speeds and accelerations.
 
 use crate::ranges::extent;
-use crate::trajectory::compute::{Analysis, Quantity, is_requested};
+use crate::trajectory::compute::{Analysis, Quantity, RowScene as _, lifted};
 use crate::trajectory::figures::{FigureContext, MAX_BODIES, MAX_CURVES};
 use dwell_geometry::BodyId;
 use dwell_report::{Chart, Figure, Mark, Paint};
@@ -13,7 +13,10 @@ const MAX_SHARED_TURNS: f64 = 1.25;
 impl FigureContext<'_> {
     pub(crate) fn angles(&self) -> Option<Figure> {
         let bodies = (0..self.scene.mechanism.bodies.len()).map(BodyId);
-        let angle = |body, order| self.results.column_index(Quantity::BodyAngle(body, order));
+        let angle = |body, order| {
+            self.results
+                .column_index(Quantity::Rotation(body, order, 2))
+        };
         let rotates = |body: &BodyId| {
             let Some(k) = angle(*body, 0) else {
                 // Only its velocity or acceleration is requested.
@@ -25,9 +28,10 @@ impl FigureContext<'_> {
             rows.any(|row| (row[k] - start).abs() > 1e-9)
         };
         let all: Vec<BodyId> = bodies.filter(rotates).collect();
+        let requests = self.scene.requests();
         let is_requested = |body: &BodyId| {
             let mut columns = (0..3).filter_map(|order| angle(*body, order));
-            columns.any(|k| is_requested(self.scene, &self.results.columns[k]))
+            columns.any(|k| requests.name(&self.results.columns[k]))
         };
         let all = self.distinct_bodies(&all, angle);
         let requested: Vec<BodyId> = all.iter().copied().filter(is_requested).collect();
@@ -118,8 +122,8 @@ impl FigureContext<'_> {
             let labels = ["position", "velocity", "acceleration"];
             let chart = |order: usize| {
                 let indices = self.columns_where(|c| {
-                    matches!(c.quantity, Quantity::PointCoordinate(b, at, k)
-                        if b == path.body && at == path.at && k / 2 == order)
+                    matches!(c.quantity, Quantity::Point(b, at, of, _)
+                        if b == path.body && at == lifted(path.at) && of == order)
                 });
                 let names = ["x", "y"].map(str::to_owned);
                 // Two names of one point are drawn once.
