@@ -4,6 +4,7 @@
 
 mod arrows;
 mod branch_hints;
+mod coupling_tables;
 mod early_stops;
 mod errors;
 mod forces;
