@@ -111,9 +111,6 @@ pub(crate) fn validate(
             .collect();
         keys.outcome(&by_case, &extremes, &interface(), &said)
     });
-    if let Some(reason) = &no_reader {
-        eprintln!("independent reader: not run ({reason})");
-    }
     studies.extend(audit.map(|audit| (audit::NAME, audit)));
     let mut all = Outcome::default();
     let judged = ValidationRun {
@@ -133,7 +130,11 @@ pub(crate) fn validate(
             [number("passed"), number("required")]
         }),
     };
-    if judged.cases.len() > 1 && judged.cases.iter().any(|case| case.result.is_ok()) {
+    let is_any_validated = judged.cases.iter().any(|case| case.result.is_ok());
+    if let (Some(reason), true) = (&judged.no_reader, is_any_validated) {
+        eprintln!("independent reader: not run ({reason})");
+    }
+    if judged.cases.len() > 1 && is_any_validated {
         add(&mut all, index(&judged));
     }
     let (done, failed) = separate(results);

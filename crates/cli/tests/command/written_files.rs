@@ -6,11 +6,17 @@ use std::collections::BTreeSet;
 use std::fs;
 
 #[test]
-fn validate_judges_the_files_of_the_program_by_nine_checks() {
+fn validate_judges_what_the_program_writes_by_other_runs_and_its_sentences() {
     let dir = TestDir::new();
     let case = home().join("validation/pendulum-a01");
     let run = dir.run(&["validate", case.to_str().unwrap()]);
-    assert_eq!((run.status, run.err.as_str()), (Some(0), ""), "{}", run.out);
+    let no_audit = "independent reader: not run (validation/audit/case.py is not found)\n";
+    assert_eq!(
+        (run.status, run.err.as_str()),
+        (Some(0), no_audit),
+        "{}",
+        run.out
+    );
     let numbers = fs::read_to_string(dir.0.join("reports/pendulum-a01.json")).unwrap();
     let numbers: Value = serde_json::from_str(&numbers).unwrap();
     let findings = numbers["findings"].as_array().unwrap();
@@ -18,9 +24,9 @@ fn validate_judges_the_files_of_the_program_by_nine_checks() {
     let mut of_files = findings.to_vec();
     of_files.retain(|finding| text(finding, "key").starts_with("written-"));
     let checks: BTreeSet<String> = of_files.iter().map(|f| text(f, "check")).collect();
-    assert_eq!(checks.len(), 9, "{checks:?}");
+    assert_eq!(checks.len(), 5, "{checks:?}");
     assert!(
-        of_files.len() >= 25 && of_files.iter().all(|f| f["pass"] == true),
+        of_files.len() >= 15 && of_files.iter().all(|f| f["pass"] == true),
         "{of_files:?}"
     );
     // The page of the case shows them.
