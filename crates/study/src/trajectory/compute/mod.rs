@@ -44,7 +44,9 @@ pub(crate) use extrema::Extremum;
 pub(crate) use extrema::{BetweenRows, Extrema, ExtremaSearch, SamplePrecision, Sampler};
 pub(crate) use followed_scene::FollowedScene;
 pub(crate) use force_evaluator::ForceEvaluator;
-pub(crate) use in_plane::{lifted, requested_bodies};
+#[cfg(feature = "output")]
+pub(crate) use in_plane::lifted;
+pub(crate) use in_plane::requested_bodies;
 pub(crate) use long_rows::{LongRows, RowStorage, not_stored};
 pub(crate) use maximum::{Point, highest_between};
 pub(crate) use mechanical_advantage::SpeedScale;
