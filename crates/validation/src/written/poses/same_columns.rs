@@ -10,6 +10,16 @@ fn kind_of(name: &str, is_point: bool) -> String {
         return format!("c.{load}");
     }
     let end = name.rsplit('.').next().unwrap_or(name);
+    // In space three components of a body are below a name.
+    let of_body = name.rsplit('.').nth(1).unwrap_or("");
+    if is_point
+        && matches!(
+            of_body,
+            "angular_velocity" | "angular_acceleration" | "rotation"
+        )
+    {
+        return of_body.to_owned();
+    }
     if end.starts_with("moment-") || matches!(end, "mx" | "my" | "mz") {
         return "moment".to_owned();
     }
@@ -37,7 +47,14 @@ pub(crate) fn same_columns(rows: &Rows, other: &Rows, file: &str) -> Differences
         let scale = scales.entry(ending(name)).or_default();
         *scale = scale.max(largest(values));
     }
-    // Where nothing accelerates, what the velocities would make of it stands in.
+    // Where no point moves, what rotations would make of it stands in, and where nothing accelerates, what velocities would.
+    let of = |scales: &BTreeMap<String, f64>, kind: &str| scales.get(kind).copied().unwrap_or(0.0);
+    let turning = of(&scales, "position") * of(&scales, "angular_velocity");
+    let moving = scales.entry("v".to_owned()).or_default();
+    *moving = moving.max(turning);
+    let turning = turning * of(&scales, "angular_velocity");
+    let accelerating = scales.entry("a".to_owned()).or_default();
+    *accelerating = accelerating.max(turning);
     for (coordinate, point) in [("velocity", "v"), ("acceleration", "a")] {
         let point = scales.get(point).copied().unwrap_or(0.0);
         let scale = scales.entry(coordinate.to_owned()).or_default();
