@@ -89,7 +89,7 @@ pub(crate) trait Assembled: fmt::Debug + Send + Sync {
 
     fn equation(&self) -> Result<Box<dyn EquationSource>, Error>;
 
-    /// The mechanism at coordinates as SVG, with what it goes through between the limits of the only one.
+    /// The mechanism at coordinates as SVG. Travels, cams and paths are those between the limits of the only coordinate.
     #[cfg(feature = "pictures")]
     fn svg(&self, q: &[f64], limits: Option<(f64, f64)>) -> Result<String, Error>;
 

@@ -69,6 +69,12 @@ impl Mechanism {
 
     /// A picture of it at coordinates, rad or m, as an SVG document.
     ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// assert!(slider.svg(&[0.5])?.starts_with("<svg"));
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error`] where the mechanism cannot reach them.
     #[cfg(feature = "pictures")]

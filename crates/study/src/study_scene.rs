@@ -51,11 +51,11 @@ pub trait StudyScene: SimulatedScene + UnitRunScene + CalibratedScene {
         Ok(None)
     }
 
-    /// The mechanism in a position, with what it goes through in others.
+    /// The mechanism drawn in a position; the other positions give the travel of its slides, the curves of its cams and the paths of points.
     #[cfg(feature = "output")]
     fn drawn(&self, at: &dyn BodyStates, others: &[Box<dyn BodyStates>]) -> dwell_report::Drawing;
 
-    /// The same as an SVG document with the title of the scene.
+    /// This drawing as an SVG document with the title of the scene.
     ///
     /// # Errors
     /// [`StudyError::Report`] where the picture is too large.

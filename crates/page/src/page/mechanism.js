@@ -358,7 +358,8 @@ function renewPaths(group, paths) {
     const path = group.children[k + 1] || group.appendChild(svg('path'));
     path.setAttribute('class', name);
     path.setAttribute('d', d);
-    path.style.setProperty('--part', part === undefined ? '' : `${part}%`);
+    if (part === undefined) path.removeAttribute('style');
+    else path.style.setProperty('--part', `${part}%`);
   });
 }
 

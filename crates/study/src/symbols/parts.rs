@@ -201,7 +201,7 @@ impl<'a> PlaneParts<'a> {
                 }
             }
             JointKind::Rolling { .. } if !self.is_ground(one) => {
-                self.outline(Guide, one, &ends, All)
+                self.outline(Guide, one, &ends, All);
             }
             JointKind::Rolling { radius, .. } => {
                 // The hatching is on the right of the track: away from the disc.

@@ -33,7 +33,7 @@ pub(super) struct Detail {
 }
 
 impl SpaceDrawing<'_> {
-    /// As in the plane.
+    /// The colour of a body.
     pub(super) fn color(&self, body: usize) -> Paint {
         body_color(self.scene.mechanism.ground, BodyId(body))
     }

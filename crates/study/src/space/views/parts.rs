@@ -198,7 +198,7 @@ impl SpaceParts<'_> {
                 ground.clear();
                 match is_ground(on) {
                     true => {
-                        ground.extend(self.guide_ends(j).map(|end| anchor(joint.bodies[on], end)))
+                        ground.extend(self.guide_ends(j).map(|end| anchor(joint.bodies[on], end)));
                     }
                     false => self.guide(j),
                 }
