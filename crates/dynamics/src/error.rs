@@ -148,7 +148,7 @@ pub enum DynamicsError {
     },
     /// A load or drive switches forth and back without end: on both sides it drives the motion back to the switch, as
     /// a brake at rest does.
-    #[error("the load of index {source_index} switches forth and back without end at t = {t} s")]
+    #[error("the load of index {source_index} switches back and forth without end at t = {t} s")]
     Chatters {
         /// Which: the index of a load (those of the drives last).
         source_index: usize,
@@ -168,13 +168,15 @@ pub enum DynamicsError {
     },
     /// Surfaces with dry friction can neither hold nor slide: no mode of them agrees with the forces, or they change it
     /// without end.
-    #[error("the surfaces of friction {source_index} can neither hold nor slide")]
+    #[error("the surfaces of friction {source_index} can neither stick nor slide")]
     NoContactMode {
         /// Which: the index of a load.
         source_index: usize,
     },
     /// A coordinate meets its end stop and leaves it without end at one instant.
-    #[error("at end stop {stop} a coordinate strikes, rests and leaves without end at one instant")]
+    #[error(
+        "at end stop {stop}, impacts or changes between rest and motion follow each other without end"
+    )]
     StopsWithoutEnd {
         /// Which end stop.
         stop: usize,

@@ -36,7 +36,7 @@ pub enum FitError<E> {
         error: f64,
     },
     /// No number of cells reaches the accuracy.
-    #[error("no cells of accuracy {accuracy:e}: {name} bends too much near {q}")]
+    #[error("no cells of accuracy {accuracy:e}: {name} varies too sharply near {q}")]
     NotReached {
         /// The function that is furthest off.
         name: String,

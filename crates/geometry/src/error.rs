@@ -59,7 +59,7 @@ pub enum AssemblyError {
     #[error(transparent)]
     Structure(#[from] StructureError),
     /// The loops of a group cannot be closed at the given coordinates.
-    #[error("the loops cannot be closed at assembly: {gap:.3e} m are missing")]
+    #[error("the loops cannot be closed at assembly: a gap of {gap:.3e} m remains")]
     NoAssembly {
         /// Bodies of the group.
         bodies: Vec<BodyId>,
@@ -150,7 +150,7 @@ pub enum AssemblyError {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum PositionError {
     /// The loops of a group cannot be closed: the coordinate is outside the range.
-    #[error("group {group} cannot close at q = {q}: {gap:.3e} m are missing")]
+    #[error("group {group} cannot close at q = {q}: a gap of {gap:.3e} m remains")]
     NoAssembly {
         /// Index of the group in the plan.
         group: usize,

@@ -131,7 +131,7 @@ pub enum TableError {
     },
     /// The coefficients of the series do not fall to the accuracy.
     #[error(
-        "not smooth enough for a table over this interval: {points} samples leave {residual:.1e} of the largest value"
+        "not smooth enough for a table over this interval: {points} samples leave an error of {residual:.1e} of the largest value"
     )]
     NotSmooth {
         /// Samples taken.

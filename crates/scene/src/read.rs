@@ -137,7 +137,7 @@ fn limited_bytes(
 
 /// What holds a zero byte is no text: showing a line of it would help nobody.
 fn not_text(display_path: &str) -> SceneError {
-    let help = "is it a scene? If it is, save it as UTF-8".to_owned();
+    let help = "if this is a scene, save it as UTF-8".to_owned();
     SceneError::without_labels(format!("`{display_path}` is not a text file"), Some(help))
 }
 

@@ -90,7 +90,7 @@ pub fn find_value(
         return result(current);
     }
     if current == 0.0 {
-        let message = "is zero, and the search multiplies the present value by factors";
+        let message = "is zero, but the search multiplies the value in the scene by factors";
         let help = "give an approximate value in the scene first";
         return Err(refuse(format!("`{path}` {message}"), help));
     }

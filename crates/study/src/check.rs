@@ -120,7 +120,7 @@ pub(crate) fn describe_redundant(
     record.add("degrees_of_freedom.counted", "", counted);
     record.add_count("redundant_constraints", redundant_count);
     format!(
-        "  {counted} degrees of freedom by counting (Grübler), {by_rank} by rank: {redundant}, consistently\n"
+        "  {counted} degrees of freedom by counting (Grübler), {by_rank} by rank: {redundant}, and consistent\n"
     )
 }
 
@@ -399,7 +399,7 @@ fn describe_requests(scene: &PlaneScene) -> String {
     let names: Vec<_> = requested.map(|&r| mechanism.reaction_name(r)).collect();
     let others = match mechanism.reactions().len() - names.len() {
         0 => String::new(),
-        others => format!(" ({others} others are not computed: not requested)"),
+        others => format!(" ({others} others are neither requested nor computed)"),
     };
     let names = list_or(names.iter().map(String::as_str), "none");
     format!("  reactions requested: {names}{others}\n")

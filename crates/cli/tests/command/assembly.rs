@@ -224,7 +224,7 @@ fn joints_written_twice_may_stand_before_the_others() {
     assert!(
         checked
             .out
-            .contains("6 constraints are redundant, consistently"),
+            .contains("6 constraints are redundant, and consistent"),
         "{}",
         checked.out
     );

@@ -44,8 +44,8 @@ impl Model {
             for (load, one) in self.loads.loads.iter().enumerate() {
                 let acts = one.magnitude != Magnitude::Constant(0.0);
                 if acts && idle.iter().any(|idle| self.is_turned(load, idle, &pose)) {
-                    let what = "it turns a body that two balls hold about the line of these balls, and nothing balances that moment; let \
-                                it act on that line, or replace one ball by a universal joint";
+                    let what = "it turns a body about the line through its two spherical joints, and nothing balances that moment; let \
+                                it act on that line, or replace one spherical joint by a universal joint";
                     return Err(LoadError { load, what });
                 }
             }

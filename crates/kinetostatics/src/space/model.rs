@@ -59,8 +59,8 @@ pub enum ModelError {
     Reaction(Reaction),
     /// A body that can turn between its two balls, and whose inertia couples that with the motion.
     #[error(
-        "body {} turns freely about the line of its two balls, and its mass couples that with the motion: replace one ball by a universal \
-         joint, or give it a centre on that line and equal moments of inertia across it", body.0
+        "body {} rotates freely about the line through its spherical joints, and its mass couples this rotation with the motion: replace one \
+         spherical joint by a universal joint, or give the body a centre of mass on that line and equal moments of inertia about the axes normal to it", body.0
     )]
     UnbalancedRod {
         /// The body.

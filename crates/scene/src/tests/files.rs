@@ -49,7 +49,7 @@ fn a_file_that_cannot_be_read_says_why() {
         std::fs::write(folder.join("program"), bytes).unwrap();
         assert_eq!(
             read("program"),
-            "`DIR/program` is not a text file ⇒ is it a scene? If it is, save it as UTF-8"
+            "`DIR/program` is not a text file ⇒ if this is a scene, save it as UTF-8"
         );
     }
     std::fs::remove_dir_all(folder).unwrap();

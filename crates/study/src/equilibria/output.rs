@@ -237,7 +237,7 @@ fn describe_neutral(
         (_, &[(i, _)]) => {
             let name = prepared.coordinate_name(i);
             format!(
-                "    neutral direction {name}: nothing drives it back or away, it stays where it is put\n"
+                "    neutral direction {name}: no force drives it back or away, so it stays at any position\n"
             )
         }
         (_, several) => {
@@ -247,7 +247,7 @@ fn describe_neutral(
             });
             let parts: Vec<String> = parts.collect();
             format!(
-                "    neutral direction {}: nothing drives them back or away along it\n",
+                "    neutral direction {}: no force drives them back or away along this direction\n",
                 parts.join(" with ")
             )
         }

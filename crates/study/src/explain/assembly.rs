@@ -70,11 +70,11 @@ fn explain_assembly(scene: &PlaneScene, error: &AssemblyError) -> StudyError {
                     format!(
                         "the start is a limit position, or just beyond one: {names} barely reach each other"
                     ),
-                    "start a little farther from it",
+                    "start a little farther from the limit position",
                 )
             } else {
                 let missing = match gap.is_finite() {
-                    true => format!(": {} are missing", own_length(scene, *gap, 6)),
+                    true => format!(": a gap of {} remains", own_length(scene, *gap, 6)),
                     false => String::new(),
                 };
                 (
@@ -97,7 +97,7 @@ fn explain_assembly(scene: &PlaneScene, error: &AssemblyError) -> StudyError {
         } => scene_error(
             scene,
             format!(
-                "`{}` cannot mesh: the distance is {} at the start, and the radii ask for {}",
+                "`{}` cannot mesh: the distance is {} at the start, but the radii require {}",
                 mechanism.joints[joint.0].name,
                 own_length(scene, *distance, 6),
                 own_length(scene, *required, 6)
@@ -222,8 +222,8 @@ fn explain_over_constrained(
     let (message, help) = if degrees_of_freedom == 0 {
         (
             format!(
-                "the joints leave the mechanism no degree of freedom: {} and {}, and 3 · {bodies} − {constraints} \
-                 constraints is not above zero",
+                "the joints leave the mechanism no degree of freedom: {} with 3 · {bodies} freedoms, and {} with \
+                 {constraints} constraints",
                 count(bodies, "moving body"),
                 count(mechanism.joints.len(), "joint"),
             ),

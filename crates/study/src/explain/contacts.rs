@@ -9,8 +9,8 @@ use dwell_scene::SceneLocation;
 pub(super) fn explain_no_mode(scene: &impl NamedScene, load: usize) -> StudyError {
     let name = joint_of(scene, load);
     let message = format!(
-        "the surfaces of joint `{name}` can neither hold nor slide: no direction of sliding agrees with the forces, and to \
-         hold takes more than the static limit"
+        "the surfaces of joint `{name}` can neither stick nor slide: no direction of sliding agrees with the forces, and \
+         sticking needs more than the static limit"
     );
     let help = "the joint locks: reduce a friction coefficient, or apply the force where the joint reactions are smaller; \
                 with a `regularization-speed` it has a force at every speed";
@@ -46,7 +46,7 @@ pub(super) fn explain_no_progress(
             message += &format!(
                 "; load `{name}` is a function of your program, which may jump or have a kink there"
             );
-            let help = "name the values of its signals at which it does so as its breakpoints, or write it as an expression, whose switches are found";
+            let help = "name these values of its signals as its `breakpoints`, or write it as an expression, whose switches are found";
             (help, (SceneLocation::Load(load), "its function jumps"))
         }
         None => {
@@ -83,7 +83,7 @@ pub(super) fn explain_stop(scene: &impl NamedScene, stop: usize, what: &str) -> 
 pub(super) fn explain_endless_impacts(scene: &impl NamedScene, stop: usize) -> StudyError {
     let name = stop_name(scene, stop);
     let message = format!(
-        "at end stop `{name}` a coordinate strikes, rests or leaves without end at one instant"
+        "at end stop `{name}`, impacts or changes between rest and motion follow each other without end"
     );
     let place = (SceneLocation::Stop(stop), "this end stop");
     let help = "give it a smaller restitution, or keep other stops from being met at the same instant; one with a `stiffness` \

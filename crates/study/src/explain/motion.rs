@@ -342,7 +342,7 @@ fn explain_unbalanced(
         [low, high] => format!("stays between {low} and {high} {unit}"),
     };
     let message = format!(
-        "no equilibrium found: the static force along `{name}` {forces} wherever it was evaluated"
+        "no equilibrium found: the static force along `{name}` {forces} at every position that was evaluated"
     );
     let help = "the loads must balance somewhere, as with a spring or a weight against it; \
                 `dwell linearise --about initial` needs no equilibrium";
@@ -378,11 +378,11 @@ fn explain_fast(
         None => ("a prescribed motion".to_owned(), SceneLocation::Motion),
     };
     let message = format!(
-        "{what} varies within {} s near t = {} s: to follow it takes more than the {max_steps} steps allowed",
+        "{what} varies within {} s near t = {} s: resolving it takes more than the {max_steps} steps allowed",
         digits(width, 2),
         digits(t, 6),
     );
-    let help = "shorten the motion; or give --max-step, with which it is followed only as far as steps of that length see it";
+    let help = "shorten the motion; or give --max-step: the variation is then followed only as far as steps of that length resolve it";
     scene_error(scene, message, help, [(place, "varies too fast")])
 }
 

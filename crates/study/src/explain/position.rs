@@ -91,7 +91,7 @@ pub(crate) fn describe_ends(file: &SceneFile, from: f64, to: f64, is_angle: bool
 }
 
 /// Help where a coupling's table ends.
-pub(crate) const TABLE_HELP: &str = "add rows to the table, which goes on over whole revolutions; for a function that repeats with each revolution write an \
+pub(crate) const TABLE_HELP: &str = "add rows to the table: its angles are not reduced to one revolution; for a function that repeats with each revolution write an \
      `expression`, in which `x - tau*floor(x/tau)` is the angle within it";
 
 /// Explains a position that cannot be computed.
@@ -152,7 +152,7 @@ pub(crate) fn explain_position_in(
         PositionError::OutOfRange { from, to, .. } => {
             let range = describe_ends(scene, from, to, plan.is_angle(0));
             let message = format!("{at} is outside its range, {range}");
-            (message, "start within the range; `dwell check` shows it")
+            (message, "start within the range, which `dwell check` shows")
         }
         PositionError::OffTable { coupling, .. } => (
             format!(

@@ -8,13 +8,13 @@ use dwell_scene::SceneLocation;
 pub(super) fn explain_chatter(scene: &impl NamedScene, load: usize, t: f64) -> StudyError {
     let name = scene.load_name(load).unwrap_or_default();
     let message = format!(
-        "load `{name}` switches forth and back without end at t = {} s: on both sides of its switch it drives the motion \
+        "load `{name}` switches back and forth without end at t = {} s: on both sides of its switch it drives the motion \
          back to it",
         digits(t, 6)
     );
-    let help = "such switches of one load alone hold the motion, but not those of several: end the motion there with an \
+    let help = "only one such load at a time can hold the motion, not several together: end the motion there with an \
                 event, or use a smooth function, such as tanh(speed/0.01) for sign(speed)";
-    let label = "switches forth and back";
+    let label = "switches back and forth";
     scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
 }
 
@@ -29,9 +29,9 @@ pub(crate) fn explain_switching(
     let name = scene.load_name(load).unwrap_or_default();
     let t = digits(t, 6);
     let message = format!(
-        "load `{name}` switches too often: at t = {t} s, after {switches} switches, about {left:.0e} are left"
+        "load `{name}` switches too often: at t = {t} s, after {switches} switches, about {left:.0e} remain"
     );
-    let help = "where they accumulate, end the motion with an event, or use a smooth function, such as tanh(speed/0.01) for sign(speed)";
+    let help = "if the switches accumulate at an instant, end the motion there with an event, or use a smooth function, such as tanh(speed/0.01) for sign(speed)";
     let label = "switches more and more often";
     scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
 }

@@ -171,7 +171,7 @@ pub(crate) fn domain(
                     [lower, upper].map(|q| scene.to_scene_unit(q, is_angle));
                 format!("the range is from {lower} to {upper} {unit} only")
             }
-            _ => "the interval must end beyond its beginning".to_owned(),
+            _ => "the end of the interval must be greater than its beginning".to_owned(),
         };
         return Err(scene_error(
             scene,

@@ -54,7 +54,7 @@ pub(crate) fn fit_in_plane(
         RecordingError::Evaluation(error) => explain_sampler(&exported, &error),
         RecordingError::Function => no_operations(
             scene,
-            "a law of a cam, of a joint or of an inertia is known by its values alone",
+            "a law of a cam, a joint or an inertia is given by its values only",
         ),
         RecordingError::Differs { .. } => no_operations(scene, SEARCHED),
     })?;
@@ -103,7 +103,7 @@ pub(crate) fn no_operations(scene: &SceneFile, reason: &str) -> StudyError {
     scene_error(
         scene,
         format!("no exact export: {reason}"),
-        "leave --exact out: cells have every function to 1e-12 if you ask for it with --accuracy",
+        "leave --exact out: with --accuracy 1e-12, cells reproduce every function to that accuracy",
         [OVER_COORDINATE],
     )
 }
@@ -140,7 +140,7 @@ pub(crate) fn explain_fit<E: Display>(
         FitError::NarrowPeak { error } => scene_error(
             scene,
             format!(
-                "no export: something moves within a part of the range that is too small for cells, which are off by {error:.1e} of the largest value"
+                "no export: a body moves within a part of the range that is too narrow for cells, which have an error of {error:.1e} of the largest value"
             ),
             "give an interval around the fast motion with --from and --until, or a smoother law",
             [OVER_COORDINATE],
@@ -149,7 +149,7 @@ pub(crate) fn explain_fit<E: Display>(
             let (at, unit) = scene.to_scene_unit(*q, machine.is_angle);
             let accuracy = asked.request.accuracy;
             let message = format!(
-                "no export of accuracy {accuracy:e}: {name} bends too much near {} {unit}",
+                "no export of accuracy {accuracy:e}: {name} varies too sharply near {} {unit}",
                 number(at)
             );
             scene_error(

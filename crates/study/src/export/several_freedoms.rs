@@ -53,7 +53,7 @@ pub(crate) fn several_freedoms_in_plane(
         RecordingError::Evaluation(error) => explain(error),
         RecordingError::Function => without_operations(
             scene,
-            "a law of a cam, of a joint or of an inertia is known by its values alone",
+            "a law of a cam, a joint or an inertia is given by its values only",
         ),
         RecordingError::Differs { .. } => without_operations(scene, SEARCHED),
     })?;

@@ -63,7 +63,7 @@ pub(super) fn with_speeds(
                 false => (1.0, 0.0),
             };
             notes.push(format!(
-                "`{}` has no speeds and accelerations: {text} is meant",
+                "`{}` has no speeds and accelerations: {text} is assumed",
                 run.file
             ));
             q.iter().map(|q| of(q - first)).unzip()

@@ -52,7 +52,7 @@ fn describe_freedom(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> Str
     for idle in &mobility.idle {
         let name = &scene.mechanism.bodies[idle.body.0].name;
         text += &format!(
-            "  {name} turns idly about the line of its two balls: nothing else feels it, and here it does not turn about that line\n"
+            "  {name} has an idle rotation about the line through its spherical joints, which moves no other body; it is held at zero\n"
         );
     }
     if !mobility.idle.is_empty() {

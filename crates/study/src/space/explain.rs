@@ -46,12 +46,12 @@ pub(super) fn explain_model(scene: &SpaceScene, error: &ModelError) -> StudyErro
         ModelError::UnbalancedRod { body } => {
             let name = &scene.mechanism.bodies[body.0].name;
             let message = format!(
-                "`{name}` turns freely about the line of its two balls, and its mass couples that with the motion: the mechanism \
-                 has a second degree of freedom"
+                "`{name}` rotates freely about the line through its spherical joints, and its mass couples this rotation with the \
+                 motion: the mechanism has a second degree of freedom"
             );
-            let help = "replace one ball by a universal joint, or give the body a centre of mass on that line and equal moments of \
-                        inertia across it";
-            let labels = body_labels(&[*body], "turns about its own line");
+            let help = "replace one spherical joint by a universal joint, or give the body a centre of mass on that line and equal \
+                        moments of inertia about the axes normal to it";
+            let labels = body_labels(&[*body], "rotates about this line");
             scene_error(scene, message, help, labels)
         }
         ModelError::Masses | ModelError::Reaction(_) => {
@@ -75,7 +75,7 @@ fn explain_assembly(scene: &SpaceScene, error: &AssemblyError) -> StudyError {
         } => {
             let names = names_of(scene, bodies);
             let message = format!(
-                "{names} cannot be assembled at the start: {} are missing",
+                "{names} cannot be assembled at the start: a gap of {} remains",
                 own_length(scene, *gap, 6)
             );
             let help = "check points, axes and lengths, the coordinate in [assembly], and the placements there: \

@@ -64,8 +64,8 @@ impl<'a, S: SweptScene> PreparedSweep<'a, S> {
         let results = inputs.split_off(design.axes.len());
         let refuse = |message: String| Err(SweepError::Design(message).into());
         if let (Some(shard), Some(_)) = (sweep.shard, sweep.export) {
-            let message = "a table has the points of all shards: leave --shard";
-            return refuse(format!("{message} {shard} out, or --export"));
+            let message = "--export writes the points of all shards: omit --export or --shard";
+            return refuse(format!("{message} {shard}"));
         }
         if design.points > MAX_ROWS && sweep.export.is_some() {
             let points = design.points;

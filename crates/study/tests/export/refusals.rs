@@ -65,7 +65,7 @@ fn an_interval_outside_the_range_is_refused() {
     let mut asked = request(1e-6, Precision::Double);
     asked.interval = Some((1.0, 0.5));
     let found = message("single-dwell", &asked);
-    assert!(found.contains("beyond its beginning"), "{found}");
+    assert!(found.contains("greater than its beginning"), "{found}");
 }
 
 /// A rise of 3 mm within a millionth of a radian, between all points at which functions are sampled.

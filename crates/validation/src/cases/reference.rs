@@ -278,7 +278,7 @@ fn sample(value: &Value, scene: &PlaneScene) -> Result<PublishedSample, String> 
     };
     let nothing = sample.m.is_none() && sample.half_dm.is_none();
     if nothing && sample.reactions.is_empty() && sample.points.is_empty() {
-        return Err("there is nothing to compare in it".to_owned());
+        return Err("no values to compare".to_owned());
     }
     Ok(sample)
 }

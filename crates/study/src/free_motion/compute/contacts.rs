@@ -159,7 +159,7 @@ impl NamedContacts {
                 let other = others.len();
                 record.add_count(format!("event.{name}.count_in_second_run"), other);
                 let other = how_often(other);
-                text += &format!("; {other} in a second run: within its error it is not certain");
+                text += &format!("; {other} in a second run, so this number is not certain");
             }
             text += "\n";
         }

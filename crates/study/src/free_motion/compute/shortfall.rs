@@ -47,7 +47,7 @@ pub(crate) fn too_many_steps(
             ..
         }) => {
             let what = format!(
-                "{max_steps} steps are not enough: after {steps}, about {needed:.0e} are left"
+                "{max_steps} steps are not enough: after {steps}, about {needed:.0e} remain"
             );
             Some(explain_max_steps(scene, t, (steps, &what), &limits))
         }
@@ -58,8 +58,7 @@ pub(crate) fn too_many_steps(
 /// A motion whose error is so large, or so little known, that it is no result.
 pub(crate) fn not_resolved(scene: &impl NamedScene, why: &str) -> StudyError {
     let message = format!("the motion is not resolved: {why}");
-    let help =
-        "use a smaller --rtol, or --accuracy; what is chaotic is known for a shorter time only";
+    let help = "use a smaller --rtol, or --accuracy; a chaotic motion can be computed for a shorter time only";
     let place = (SceneLocation::Duration, "over this time");
     scene_error(scene, message, help, [place])
 }

@@ -47,7 +47,7 @@ pub(crate) fn event_line(
     if let Some(others) = second.filter(|others| others.len() != own.len()) {
         record.add_count(format!("event.{name}.count_in_second_run"), others.len());
         text += &format!(
-            " ({} in a second run: within its error it is not certain)",
+            " ({} in a second run, so this number is not certain)",
             how_often(others.len())
         );
     }

@@ -144,7 +144,7 @@ fn explain_table_error(
             accuracy,
         } => (
             format!(
-                "no table of accuracy {accuracy:e}: {} is known to {reached:.1e} of its largest value only",
+                "no table of accuracy {accuracy:e}: {} is known only to {reached:.1e} of its largest value",
                 coefficient_name(what, labels)
             ),
             "require less accuracy; next to change points and limit positions the model itself loses digits",
@@ -166,7 +166,7 @@ fn explain_table_error(
                 Some((lower, upper)) if from < to => {
                     format!("the range is {}", interval_text(scene, lower, upper))
                 }
-                _ => "its end must be beyond its beginning".to_owned(),
+                _ => "its end must be greater than its beginning".to_owned(),
             };
             (
                 format!("no table {}: {reason}", interval_text(scene, from, to)),

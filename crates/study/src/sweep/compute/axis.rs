@@ -48,7 +48,7 @@ impl Axis {
         let separators = ["=", "~", "±", "+-"].into_iter();
         let found = separators.filter_map(|s| Some((given.find(s)?, s)));
         let Some((at, separator)) = found.min_by_key(|(at, _)| *at) else {
-            return Err(fault("does not define a variation", FORMS));
+            return Err(fault("the values to vary over are missing", FORMS));
         };
         let (path, variation) = (given[..at].trim(), given[at + separator.len()..].trim());
         let nominal = scene.value(path);
@@ -150,12 +150,12 @@ fn grid(variation: &str) -> Parsed {
     if !(2..=MAX_VALUES).contains(&count) {
         return Err(fault(
             format!("{count} values from {from} to {to}"),
-            "a grid has from 2 to a million values, the ends among them; a single one is written PATH=VALUE",
+            "a grid has from 2 to a million values, including both ends; write a single value as PATH=VALUE",
         ));
     }
     if from == to {
         let reason = format!("the range from {from} to {to} is empty");
-        return Err(fault(reason, "a single value is written PATH=VALUE"));
+        return Err(fault(reason, "write a single value as PATH=VALUE"));
     }
     Ok(VariationKind::Grid { from, to, count })
 }

@@ -303,7 +303,7 @@ impl<'a> PlaneStop<'a> {
         });
         let range = range.unwrap_or_default();
         let message = format!("the first position cannot be reached: {position}{range}");
-        let help = "start within the range; `dwell check` shows it";
+        let help = "start within the range, which `dwell check` shows";
         scene_error(scene, message, help, labels)
     }
 

@@ -57,7 +57,7 @@ fn read_state(value: &Value, scene: &PlaneScene) -> Result<ReferenceState, Strin
     check_keys(object(value, "it")?, &STATE_KEYS)?;
     let values = named_values(&value["values"])?;
     if values.is_empty() {
-        return Err("there is nothing to compare in it".to_owned());
+        return Err("no values to compare".to_owned());
     }
     let by_name = |key: &str| by_actuator(&value[key], scene).map_err(|e| format!("{key}: {e}"));
     Ok(ReferenceState {

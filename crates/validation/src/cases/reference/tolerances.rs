@@ -20,7 +20,7 @@ impl Tolerances {
         for (key, value) in object(value, "`tolerances`")? {
             let Some(tolerance) = parse(value).filter(|&tolerance| tolerance >= 0.0) else {
                 return Err(format!(
-                    "tolerances: `{key}` is not a number from zero on: {value}"
+                    "tolerances: `{key}` must be a number of 0 or more, not {value}"
                 ));
             };
             tolerances.by_key.push((key.clone(), tolerance));
@@ -56,7 +56,7 @@ impl Tolerances {
                 known.dedup();
                 let known = known.join(", ");
                 Err(format!(
-                    "tolerances: there is no finding `{key}`; there are {known}"
+                    "tolerances: there is no finding `{key}`; the findings are {known}"
                 ))
             }
             _ => Ok(()),
@@ -97,7 +97,7 @@ mod tests {
         let error = read.apply(&mut findings()).unwrap_err();
         assert_eq!(
             error,
-            "tolerances: there is no finding `pwoer`; there are closure, power"
+            "tolerances: there is no finding `pwoer`; the findings are closure, power"
         );
         let mut failing = findings();
         failing[0].pass = false;

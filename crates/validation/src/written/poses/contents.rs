@@ -199,7 +199,7 @@ fn add_single_request(
     let printed = run.printed;
     let others = match names.len() - 1 {
         0 => String::new(),
-        others => format!(" ({others} others are not computed: not requested)"),
+        others => format!(" ({others} others are neither requested nor computed)"),
     };
     let said = requested_in(&printed).unwrap_or_default();
     to.require(said == format!("{name}{others}"), || {
