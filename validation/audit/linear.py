@@ -47,6 +47,11 @@ def judge_linear(judge, scene, text, npz, summary, reduced, equilibria):
         at, stated = (result(summary, f"equilibrium.{coordinate.name}{end}") for end in ("", ".from_start"))
         if None not in (start, at, stated):
             judge.compare("equilibria", stated - (at - start), max(1.0, abs(start)), "SI", f"{coordinate.name} from the start")
+        # At an equilibrium nothing moves.
+        is_initial = bool(eigenvalues(summary, "initial"))
+        speed = (scene.initial("initial-velocity", coordinate) or 0.0) if is_initial else 0.0
+        if (stated := result(summary, f"state.{coordinate.name}.velocity")) is not None:
+            judge.compare("matrices", stated - speed, max(1.0, abs(speed)), "SI", f"velocity of {coordinate.name}")
     state = {s: result(summary, f"state.{s}") for s in states}
     for name, value in state.items():
         at = result(summary, f"equilibrium.{name}")

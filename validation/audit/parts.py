@@ -116,6 +116,8 @@ def point_files(judge, scene, folder):
         if cycle is not None:
             whole_file(judge, scene, folder, cycle, end, "")
             points.judge_cycle(judge, scene, cycle, summary, prefix, model)
+        elif prefix:
+            points.without_flywheel(judge, summary)
     table, summary, judge.file = folder.csv("equilibria"), folder.summary("equilibria"), "equilibria"
     if table is not None:
         repeated.archive(judge, table, folder.npz("equilibria"))

@@ -131,6 +131,16 @@ def judge_cycle(judge, scene, rows, summary, prefix, reduced):
     cycle_equation(judge, reduced, rows, (time, Jet(q, speed, acceleration)), added or 0.0)
 
 
+def without_flywheel(judge, summary):
+    """Where no flywheel is needed, the cycle with it is the one without."""
+    if result(summary, "flywheel.inertia") is None:
+        return
+    judge.compare("cycle", result(summary, "flywheel.inertia"), 1.0, "kg m2", "a flywheel without a file")
+    for speed in ("mean_speed", "slowest_speed", "fastest_speed"):
+        stated, own = result(summary, f"flywheel.{speed}"), result(summary, speed)
+        judge.compare("cycle", stated - own, own, "SI", f"flywheel.{speed}")
+
+
 def states_of_cycle(judge, scene, rows, name, motion):
     """Works, currents and integrals of drives change over the coordinate by what the scene says."""
     time, q = motion

@@ -49,8 +49,13 @@ def reason(name, folder):
     table = name.split(": ")[0]
     if "json: static_force" in name and re.search(r"^\[(prescribed|coordinate-sweep|drives|friction)", folder.scene_text, re.MULTILINE):
         return "the rows of `statics` are other positions, or drives and friction act: " + PRODUCT
-    if name.startswith("scene: assembly.") and re.search(r"\b(gear|rack|rolling) *=", folder.scene_text):
-        return "the angles at which teeth mesh are those of the first row"
+    has_teeth = re.search(r"\b(gear|rack|rolling) *=", folder.scene_text)
+    if has_teeth and re.match(r"scene: (assembly\.|joints\..*\.(rack|normals)\.)", name):
+        return "the places at which teeth mesh are those of the first row"
+    if "cycle.json: flywheel.coefficient_of_fluctuation" in name and folder.csv("cycle-flywheel") is None:
+        return "what was asked for, in no file"
+    if re.search(r"cycle.json: .*_speed\.at$", name) and all(np.ptp(v) < 1e-9 * np.max(np.abs(v)) for _, v in folder.csv("cycle").ending(".velocity")):
+        return "the speed is constant"
     if name.startswith("scene: assembly.") and name.endswith((".turn.0", ".turn.1", ".turn.2")) and folder.scene_text.count("spherical") > 1:
         return "the idle rotation of a body between two balls begins where it is assembled"
     if is_rounding(name, table, folder):
