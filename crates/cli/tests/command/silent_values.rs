@@ -203,8 +203,8 @@ fn a_gap_is_in_the_units_of_the_scene() {
             .split_whitespace()
             .filter(|word| *word != "│")
             .collect();
-        let at = words.iter().position(|word| *word == "missing").unwrap();
-        words[at - 3].parse().unwrap()
+        let at = words.iter().position(|word| *word == "gap").unwrap();
+        words[at + 2].parse().unwrap()
     };
     let metres = gap(&run(scene("m", 1.0), &["check"]).1.err);
     for (unit, factor) in [("mm", 1e3), ("in", 1.0 / 0.0254), ("ft", 1.0 / 0.3048)] {
