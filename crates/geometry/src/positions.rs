@@ -243,7 +243,7 @@ impl Plan {
         Ok(())
     }
 
-    /// Checks that the tables of a group's couplings have values.
+    /// Checks that the tables of a group's couplings have values. Few groups have any: the steps of the others stay as they are compiled.
     #[cold]
     fn check_tables<T: Scalar>(&self, group: usize, pose: &Pose<T>) -> Result<(), PositionError> {
         for &r in &self.groups[group].group.couplings {

@@ -201,6 +201,7 @@ fn studied_keys(scenes: &[PlantedScene], faults: Option<&KeyFaults>) -> Vec<Stud
         let mut planted = faults.into_iter().flat_map(|faults| &faults.faults);
         StudiedKey {
             scenes: (0..scenes.len()).filter(uses_it).collect(),
+            are_faults_at_hand: faults.is_some(),
             fault: planted.find(|f| f.key == key.id).map(|f| f.fault.clone()),
             key,
         }
