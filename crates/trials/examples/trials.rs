@@ -13,10 +13,15 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let slow = arguments.iter().any(|a| a == "--slow");
-    let after_seed = arguments.iter().skip_while(|a| *a != "--seed").nth(1);
-    let seed = after_seed.map_or(Ok(1), |seed| seed.parse())?;
+    let (mut slow, mut seed) = (false, 1);
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        match (argument.as_str(), &mut arguments) {
+            ("--slow", _) => slow = true,
+            ("--seed", rest) => seed = rest.next().ok_or("--seed needs a number")?.parse()?,
+            (other, _) => return Err(format!("`{other}` is neither --slow nor --seed").into()),
+        }
+    }
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let gaps = plant(&root)?;
     for gap in &gaps {
