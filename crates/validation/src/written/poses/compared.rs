@@ -20,7 +20,7 @@ const SPECS: [Spec; 33] = [
     ("written-sweep-files", Check::WrittenTwice, "archive and Parquet files of `sweep` with its table", 1e-15),
     ("written-sweep-motion", Check::WrittenTwice, "end, largest size, mean and root mean square of columns of motions in `sweep` with rows of `simulate` of the changed scene", 1e-14),
     ("written-sweep-sentences", Check::WrittenSentences, "numbers that `sweep` prints with its summary, to their digits", 1e-12),
-    ("written-units", Check::WrittenUnits, "files of the scene with those of the scene in other units", 1e-10),
+    ("written-units", Check::WrittenUnits, "files of the scene with those of the scene in other units", 1e-11),
     ("written-motion-again", Check::WrittenTwice, "rows and events of `simulate` by its default method and by dop853", 2e-6),
     ("written-motion-extrema-again", Check::WrittenTwice, "extrema of `simulate` with those of the same motion by esdirk34 in other rows", 4e-5),
     ("written-motion-accuracy", Check::WrittenTwice, "coordinates of `simulate --accuracy 1e-8` with those by dop853 to 1e-12, and stated errors with the accuracy", 1e-8),
