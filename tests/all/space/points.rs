@@ -10,9 +10,17 @@ fn feeler(bodies: &str, joints: &str, guide: &str, is_driven: bool) -> SpaceScen
     let (actuator, assembly) = match is_driven {
         true => (
             format!("s = {{ travel = \"{guide}\" }}"),
-            "s = 0.02\ncrank = { turn = [0, 0, 0.3] }",
+            "s = 0.003\ncrank = { turn = [0, 0, 0.3] }",
         ),
         false => ("phi = { angle = \"A\" }".to_owned(), "phi = 0.3"),
+    };
+    // What acts along the guide acts on the block, and goes through its ball.
+    let (of_guide, resistance) = match is_driven {
+        true => (
+            "",
+            format!("resistance = {{ slide-damper = \"{guide}\", damping = 3 }}"),
+        ),
+        false => (", \"Q.x\", \"Q.y\", \"Q.z\"", String::new()),
     };
     scene(&format!(
         "[bodies.ground]\npoints = {{ A = [0, 0, 0], S = [0.25, 0.05, 0.1], T = [0.4, 0, 0.12] }}\n\
@@ -21,9 +29,9 @@ fn feeler(bodies: &str, joints: &str, guide: &str, is_driven: bool) -> SpaceScen
          inertia = [0.002, 0.009, 0.008, 0.0003, -0.0002, 0.0001]\n{bodies}\n\
          [joints]\nA = {{ revolute = [\"ground.A\", \"crank.A\"], axis = [0, 0, 1] }}\nB = {{ spherical = [\"crank.B\", \"feeler.B\"] }}\n{joints}\n\
          [actuators]\n{actuator}\n[coordinates]\nalong = {{ travel = \"{guide}\" }}\n\
-         [assembly]\n{assembly}\nfeeler = {{ at = [0.09, 0.06, 0.02] }}\n\
-         [loads]\nweight = {{ gravity = [0, 0, -9.81] }}\nresistance = {{ slide-damper = \"{guide}\", damping = 3 }}\n\
-         [requests]\nreactions = [\"A\", \"B.x\", \"B.y\", \"B.z\", \"P.x\", \"P.y\", \"P.z\", \"Q.x\", \"Q.y\", \"Q.z\"]\n"
+         [assembly]\n{assembly}\nfeeler = {{ at = [0.087, 0.058, 0.02], turn = [0.062, -0.392, -0.255] }}\n\
+         [loads]\nweight = {{ gravity = [0, 0, -9.81] }}\n{resistance}\n\
+         [requests]\nreactions = [\"A\", \"B.x\", \"B.y\", \"B.z\", \"P.x\", \"P.y\", \"P.z\"{of_guide}]\n"
     ))
 }
 
@@ -49,7 +57,8 @@ fn reduced(scene: &SpaceScene, q: &[f64]) -> Vec<Vec<f64>> {
 fn points_on_lines_and_in_planes_do_what_blocks_with_balls_do() {
     let points = "P = { point-in-plane = [\"ground.T\", \"feeler.P\"], axis = [0.2, 0.1, 1] }\n\
                   Q = { point-on-line = [\"ground.S\", \"feeler.Q\"], axis = [1, 0.1, 0.05] }";
-    let bodies = "[bodies.across]\npoints = { T = [0, 0, 0] }\n[bodies.disc]\npoints = { T = [0, 0, 0] }\n[bodies.block]\npoints = { Q = [0, 0, 0] }\n";
+    let bodies = "[bodies.across]\npoints = { T = [0, 0, 0] }\n[bodies.disc]\npoints = { T = [0, 0, 0] }\n[bodies.block]\npoints = { Q = [0, 0, 0] }\n\
+                  [assembly.across]\nat = [0.36, 0, 0.13]\n[assembly.disc]\nat = [0.36, -0.02, 0.13]\n[assembly.block]\nat = [0.253, 0.05, 0.1]";
     let blocks = "first = { prismatic = [\"ground.T\", \"across.T\"], axis = [1, 0, -0.2] }\n\
                   second = { prismatic = [\"across.T\", \"disc.T\"], axis = [-0.02, 1.04, -0.1] }\n\
                   guide = { prismatic = [\"ground.S\", \"block.Q\"], axis = [1, 0.1, 0.05] }\n\
@@ -57,7 +66,7 @@ fn points_on_lines_and_in_planes_do_what_blocks_with_balls_do() {
     let mut largest = 0.0_f64;
     for is_driven in [false, true] {
         let q: &[f64] = if is_driven {
-            &[0.0, 0.02, 0.035]
+            &[-0.02, 0.003, 0.009]
         } else {
             &[-0.2, 0.3, 0.6]
         };
