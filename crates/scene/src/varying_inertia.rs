@@ -138,7 +138,7 @@ impl Curves {
         SampledCurve::Cubic(both.map(|(i, half)| [*i, 2.0 * half]).collect())
     }
 
-    /// Reports an inertia that is not above zero, and one that changes otherwise than half its slope says.
+    /// Reports an inertia of zero or less, and one that changes otherwise than half its slope says.
     fn check(
         &self,
         fields: &TableReader<'_>,
@@ -146,8 +146,12 @@ impl Curves {
         (inertia, half_slope, curve): (&[f64], Option<&[f64]>, &SampledCurve),
     ) -> Option<()> {
         if let Some(k) = inertia.iter().position(|&i| i <= 0.0) {
-            let message = format!("inertia {} of {} is not above zero", k + 1, fields.what);
-            return entry.reject(message, "this inertia", "a moment of inertia is above zero");
+            let message = format!(
+                "inertia {} of {} must be greater than zero",
+                k + 1,
+                fields.what
+            );
+            return entry.reject(message, "expected numbers greater than 0", "");
         }
         let Some(half_slope) = half_slope else {
             return Some(());
