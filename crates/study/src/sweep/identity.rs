@@ -73,10 +73,10 @@ fn study_difference(stored: &HashMap<String, String>, study: &StudyIdentity) -> 
         }
         if *key != SCENE_TEXT && found != expected {
             return Some(StoreFault::Differs(match *key {
-                "scene_sha256" => "the scene has changed since".to_owned(),
+                "scene_sha256" => "of a scene that has changed since".to_owned(),
                 key => {
-                    let [found, expected] = [found, expected].map(shortened);
-                    format!("its {key}: {found}, not {expected}")
+                    let [existing, own] = [found, expected].map(shortened);
+                    format!("with the {} {existing} instead of {own}", key.replace('_', " "))
                 }
             }));
         }
