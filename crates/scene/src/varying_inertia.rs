@@ -173,7 +173,7 @@ impl Curves {
         });
         let Some(k) = found else { return Some(()) };
         let message = format!(
-            "inertia and half-slope of {} contradict each other near {:.4} rad",
+            "inertia and half-slope of {} are inconsistent near {:.4} rad",
             fields.what, x[k]
         );
         let help = "half-slope is ½ dI/dθ, per rad: is its sign or its unit another one? Or are the angles too few?";
