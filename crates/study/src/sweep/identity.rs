@@ -68,7 +68,7 @@ fn study_difference(stored: &HashMap<String, String>, study: &StudyIdentity) -> 
         let text = |text: &str| text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
         if *key == SCENE_TEXT && text(found) != text(expected) {
             let fault =
-                "the file is damaged (the scene's text is not that of its hash): move the folder";
+                "the file is damaged (the text of the scene does not match its hash): move the folder";
             return Some(StoreFault::Reason(fault.to_owned()));
         }
         if *key != SCENE_TEXT && found != expected {
