@@ -399,8 +399,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases.max(1000), failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// The pieces that hold at a point have its value and slope, and go on smoothly: up to a switch they are the
-        /// function, and no function that is watched passes a bound before the function leaves them.
+        /// The held pieces at a point have the value and slope of the function and equal it up to a switch; no monitored
+        /// function passes a bound before that.
         #[test]
         fn held_pieces_are_the_function_up_to_its_switches(
             text in prop::sample::select(TEXTS.to_vec()),

@@ -161,8 +161,8 @@ impl<'a> Traced<'a> {
     }
 }
 
-/// Where in a step a function is outside of an interval: soon behind where it first is, as far as so many parts show; with nothing before it
-/// but what is inside.
+/// Where in a step a function is outside an interval: shortly after the first such instant that the examined parts show, with no
+/// earlier instant outside.
 pub(crate) fn first_outside(
     bounds: [f64; 2],
     value: impl Fn(f64) -> f64,
@@ -362,7 +362,7 @@ pub(crate) fn may_hide(ops: &[Op], tree: &Operands, last: usize) -> bool {
     degree(ops, tree, last) > PARABOLA_DEGREE
 }
 
-/// The degree of a part as a polynomial; `u32::MAX` if it is none.
+/// The degree of a part as a polynomial; 1000 or more if it is none.
 fn degree(ops: &[Op], tree: &Operands, last: usize) -> u32 {
     const NONE: u32 = 1000;
     let of: Vec<u32> = tree.operands[last]
