@@ -60,7 +60,7 @@ impl Drive {
         Self(keys.with("proportional", proportional))
     }
 
-    /// The same with one more key of its kind.
+    /// Sets another key of its kind.
     ///
     /// ```
     /// let motor = dwell::Drive::motor_line("phi", 0.5, 240.0).with("inertia", 1e-5);
