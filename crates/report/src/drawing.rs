@@ -40,7 +40,7 @@ pub(crate) fn height(drawings: &[Drawing], width: f64) -> f64 {
     top + plot_height + bottom
 }
 
-/// Strips the labels need in a cell of this size.
+/// Widths of the strips that the labels need in a cell of this size.
 pub(crate) fn insets(drawings: &[Drawing], cell: &Rect) -> Insets {
     let title = drawings.iter().map(|d| axes::top_room(&d.title, cell));
     // A first guess: ticks depend on the plot, and the plot on their labels.

@@ -1,4 +1,4 @@
-//! What the axes of a chart must show.
+//! The ranges of the axes of a chart.
 
 use crate::axis::{Axis, Scale};
 use crate::axis_range::{AxisRange, drawable};

@@ -1,4 +1,4 @@
-//! Long tables as files: the same bytes as those of a table in memory, made part by part.
+//! Long tables as files, written part by part with the bytes of a table in memory.
 
 use crate::error::ReportError;
 use crate::npz::table_archive;

@@ -6,7 +6,7 @@ use crate::typeset::typeset;
 use dwell_findings::Finding;
 use std::fmt::Write as _;
 
-/// A study in words, tables, figures and findings.
+/// A document of text, tables, figures and findings.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Document {
     /// The heading of the whole.
@@ -22,7 +22,7 @@ pub enum Block {
     Heading(String),
     /// Markdown as it is.
     Text(String),
-    /// Words of a user, such as the note of a scene, in their lines: no markup.
+    /// Text of a user, such as the note of a scene, line by line and without markup.
     Words(String),
     /// Cells of text.
     Table {
@@ -35,9 +35,9 @@ pub enum Block {
     Figure {
         /// Path of the picture, relative to the document.
         file: String,
-        /// Short words for those who do not see it.
+        /// Alternative text.
         alt: String,
-        /// Words under it, or nothing.
+        /// The caption, or empty.
         caption: String,
     },
     /// Findings, one row each.
@@ -63,7 +63,7 @@ impl Document {
     }
 }
 
-/// What every machine reproduces of the findings: key, truth, what is compared, tolerance and verdict.
+/// The reproducible part of the findings: key, check, comparison, tolerance and verdict.
 pub fn reproducible_text(findings: &[Finding]) -> String {
     let mut text = String::new();
     for f in findings {
@@ -146,7 +146,7 @@ fn image(file: &str, alt: &str, caption: &str) -> String {
     }
 }
 
-/// Words of a user, such as the title of a scene, as words in Markdown: what would be markup there is escaped.
+/// Text of a user, such as the title of a scene, with Markdown markup escaped.
 pub fn markdown_text(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -160,7 +160,7 @@ pub fn markdown_text(text: &str) -> String {
     one_line(&out)
 }
 
-/// Words of a user in their lines and paragraphs: what would be markup, also at the beginning of a line, is escaped.
+/// Text of a user, line by line, with Markdown markup escaped, also at the beginning of a line.
 fn words_in_lines(words: &str) -> String {
     let line = |line: &str| {
         let text = markdown_text(line.trim());

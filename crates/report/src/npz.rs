@@ -17,14 +17,14 @@ const ALIGNMENT: usize = 64;
 /// An array of an archive.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Array {
-    /// Rows of so many columns each.
+    /// Rows with equal numbers of columns.
     Matrix {
         /// Number of columns.
         columns: usize,
         /// The rows.
         rows: Vec<Vec<f64>>,
     },
-    /// Words, one behind another.
+    /// A list of strings.
     Strings(Vec<String>),
 }
 
@@ -33,7 +33,7 @@ pub enum Array {
 ///
 /// # Errors
 ///
-/// [`ReportError::Row`] if a row of a matrix has not its number of columns; [`ReportError::Npz`] if the archive refuses.
+/// [`ReportError::Row`] if a row of a matrix has a wrong number of columns; [`ReportError::Npz`] if the archive cannot be written.
 pub fn npz(arrays: &[(&str, Array)]) -> Result<Vec<u8>, ReportError> {
     let bytes = |array: &Array| -> Result<_, ReportError> {
         Ok(match array {
@@ -120,7 +120,7 @@ fn file_name(name: &str) -> String {
     }
 }
 
-/// Nothing that depends on the day or the machine. Stored: the digits of measured numbers hardly compress.
+/// Options independent of date and machine. Without compression, because the digits of measured numbers hardly compress.
 fn options() -> SimpleFileOptions {
     SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)

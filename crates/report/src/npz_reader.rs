@@ -5,13 +5,13 @@ use std::io::{Cursor, Read as _};
 use thiserror::Error;
 use zip::ZipArchive;
 
-/// Why an archive gives no columns.
+/// Why no columns can be read from an archive.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum NpzError {
-    /// It is no archive.
+    /// The file is no archive.
     #[error("this is no NumPy archive: {reason}")]
     NotAnArchive {
-        /// What the reader of archives says.
+        /// The message of the archive reader.
         reason: String,
     },
     /// An array is compressed.
@@ -36,7 +36,7 @@ enum Array {
     Words(Vec<String>),
 }
 
-/// The columns of an archive with their names; with units in brackets where it has the arrays `columns` and `units`.
+/// The named columns of an archive, with units in brackets if it has the arrays `columns` and `units`.
 ///
 /// # Errors
 /// [`NpzError`]: no archive, a compressed array, an array that is no row of numbers.

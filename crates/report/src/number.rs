@@ -1,4 +1,4 @@
-//! Numbers as people write them.
+//! Numbers as text.
 
 /// `10` to a power, with a raised exponent: `10⁻¹²`.
 pub(crate) fn power_of_ten(exponent: i32) -> String {
@@ -53,7 +53,7 @@ pub(crate) fn exponent(value: f64) -> i32 {
         .unwrap_or(0)
 }
 
-/// Everything on one line.
+/// The text on one line.
 pub(crate) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -1,4 +1,4 @@
-//! Where in a plot something has been drawn already, so that words can go elsewhere.
+//! The occupied parts of a plot, which labels avoid.
 
 use crate::curve::steps;
 use crate::rect::Rect;

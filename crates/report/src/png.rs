@@ -19,7 +19,7 @@ const MAX_SIDE: u32 = 16_384;
 ///
 /// # Errors
 ///
-/// [`ReportError::Size`] if the page is too large; [`ReportError::Draw`] and [`ReportError::Encode`] if a library refuses,
+/// [`ReportError::Size`] if the page is too large; [`ReportError::Draw`] and [`ReportError::Encode`] if a library fails,
 /// which no data should cause.
 pub fn png(figure: &Figure) -> Result<Vec<u8>, ReportError> {
     let page = page_of(figure)?;

@@ -91,7 +91,7 @@ pub(crate) fn mark_occupied(frame: &PlotFrame, shape: &Shape, occupied: &mut Occ
     }
 }
 
-/// Draws a shape; parts outside the plot are cut off, and what is not finite is left out.
+/// Draws a shape; parts outside the plot are cut off, and points that are not finite are omitted.
 //
 // Long: a few lines for each kind of shape.
 pub(crate) fn draw(canvas: &mut Canvas<'_>, frame: &PlotFrame, shape: &Shape) {
