@@ -11,7 +11,7 @@ pub struct Figure {
     pub name: String,
     /// Line on top of the page.
     pub title: String,
-    /// Words at the foot of the page; wrapped, and split at `\n`.
+    /// Text at the foot of the page; wrapped, and split at `\n`.
     pub caption: String,
     /// The provenance of the figure: version, scene and its hash, method; printed small and grey under the caption. It is set once
     /// for all figures of a document.

@@ -1,4 +1,4 @@
-//! A reduced model in a form, with the errors that it states.
+//! A reduced model in one form of evaluation, with its stated errors.
 
 use super::forms::{Evaluated, Form};
 use super::mechanisms::scene;
@@ -22,27 +22,27 @@ use std::sync::Arc;
 
 /// Writes the coefficients at a coordinate.
 type Evaluate = Box<dyn FnMut(f64, &mut Coefficients) -> Result<(), PositionError> + Send>;
-/// Yields one with memory of its own.
+/// Creates an evaluator with its own memory.
 type NewEvaluate = Box<dyn Fn() -> Evaluate + Send + Sync>;
 
 /// A reduced model in a form.
 pub(super) struct FormModel {
     form: Form,
-    /// The planar mechanism, of which are the derivatives that Newton's method uses.
+    /// The planar mechanism, whose derivatives Newton's method uses.
     plane: ExactModel,
     evaluate: NewEvaluate,
     statement: Statement,
 }
 
-/// How a form states its errors.
+/// The origin of a form's stated errors.
 enum Statement {
-    /// By the same evaluation in wider numbers, and two roundings of its own.
+    /// Difference from the evaluation in wider numbers, plus two rounding errors.
     Wider(NewEvaluate),
-    /// As it was measured against the planar model: the absolute error of each coefficient.
+    /// Measured against the planar model: the absolute error of each coefficient.
     Measured(Coefficients),
 }
 
-/// By reaction of the plane: the reactions in space that it is the sum of, each times a factor.
+/// By planar reaction: the spatial reactions of which it is a linear combination, with their factors.
 type Sums = Vec<Vec<(usize, f64)>>;
 
 /// Both unit passes in a kind of number.
@@ -102,7 +102,7 @@ fn exported<R: Real + Send + Sync + 'static>(
     })
 }
 
-/// The planar scene obliquely in space, at a distance from the origin and with heights in proportion to it.
+/// The planar scene in an oblique plane in space, at a distance from the origin and with heights in proportion to it.
 fn in_space(
     scene: &PlaneScene,
     reactions: &[Reaction],
@@ -176,7 +176,7 @@ impl FormModel {
     ) -> Result<Self, Box<dyn Error>> {
         let plane = reduced_model(&scene, &reactions)?;
         let interval = around.map(|[q, width]| (q - 0.5 * width, q + 0.5 * width));
-        // What never repeats has a table over the rows.
+        // An unbounded range has a table over the rows.
         let unbounded = plane.range() == Range::Unbounded;
         let interval = interval.or(unbounded.then_some((0.0, TAU)));
         let (evaluate, statement) = match form.evaluated {
@@ -207,7 +207,7 @@ impl FormModel {
         })
     }
 
-    /// The coefficients at a coordinate, and the error that the form states of each.
+    /// The coefficients at a coordinate, with their stated errors.
     pub(super) fn coefficients_with_errors(
         &self,
         q: f64,
@@ -227,7 +227,7 @@ impl FormModel {
                     |v: f64, w: f64, size: f64| (v - w).abs() + roundings * v.abs().max(size);
                 combined(&values, &at(wider)?, error)
             }
-            // What is fitted states nothing about the model that it is fitted to, which states its own rounding.
+            // A fit states its own error only; the fitted model states its rounding error.
             Statement::Measured(errors) => {
                 let (_, of_model) = estimate::coefficients_with_errors(self.plane.model(), q)?;
                 combined(errors, &of_model, |a, b, _| a + b)
@@ -237,7 +237,7 @@ impl FormModel {
     }
 }
 
-/// Something of two values of each coefficient, and the largest of its kind.
+/// Combines two values of each coefficient and the largest of its kind.
 fn combined(
     one: &Coefficients,
     other: &Coefficients,

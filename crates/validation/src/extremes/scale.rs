@@ -1,4 +1,4 @@
-//! Scales: masses, lengths, and the distance of a mechanism from the origin.
+//! Extreme scales: masses, lengths, and the distance of a mechanism from the origin.
 
 use super::closed_forms::dd;
 use super::forms::{Form, FormModel};
@@ -10,7 +10,7 @@ use super::series::{
 use dwell_geometry::vec2;
 use dwell_kinetostatics::Coefficients;
 
-/// A crank angle in no special place, rad.
+/// A generic crank angle, rad.
 const CRANK_ANGLE: f64 = 1.125;
 
 /// Figure of these rows, and its title.
@@ -114,13 +114,13 @@ fn powers_of_two(form: Form) -> ParameterSeries {
         parameter: ("crank's length", "m"),
         reference: "the same bits as at 1 m, with another exponent",
         reason: "a power of two is exact in every sum, product and root: not one last place may differ",
-        // Half a last place of a number of 53 bits, which stands for no difference.
+        // Half a unit in the last place of 53 bits, which represents no difference.
         requirement: Box::new(|_, _| {
             Requirement::from_error(0.5 * f64::EPSILON * (1.0 + 1e-6), 1.0)
         }),
         run: Box::new(move |by| {
             let (got, base) = (reduced_at_scale(by)?, reduced_at_scale(1.0)?);
-            // What may differ is the last place.
+            // Only the last place may differ.
             let compared = |got: f64, base: f64, power: i32| {
                 cell((got, f64::EPSILON * got.abs()), dd(base * by.powi(power)))
             };

@@ -12,7 +12,7 @@ use dwell_report::{Block, Document, markdown_text};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Names of cases in a cell.
+/// Maximum number of cases in a cell.
 const LISTED_CASES: usize = 3;
 
 /// A case in the list of cases.
@@ -30,21 +30,21 @@ impl CaseEntry<'_> {
     }
 }
 
-/// What the document is made of.
+/// The contents of the document.
 pub(super) struct Contents<'a> {
     pub(super) folder: &'a Path,
     pub(super) lines: &'a [Line],
     pub(super) cases: &'a [CaseEntry<'a>],
     pub(super) extremes: &'a [Finding],
-    /// The texts of committed fault studies that were at hand, and the number of faults in them.
+    /// The available texts of committed fault studies, and the number of faults in them.
     pub(super) fault_texts: (&'a [&'static str], usize),
-    /// When faults were planted in keys, if that is known.
+    /// The commit and date of the faults planted in keys, if known.
     pub(super) keys_made: Option<&'a str>,
-    /// What the independent reader says.
+    /// The result of the independent reader, in words.
     pub(super) independent_reader: &'a str,
 }
 
-/// How many lines pass, fail and are exempt.
+/// The numbers of lines that pass, fail and are exempt.
 pub(super) fn counts(lines: &[Line]) -> [usize; 3] {
     let count = |is: fn(&LineState) -> bool| lines.iter().filter(|line| is(&line.state)).count();
     [
@@ -101,7 +101,7 @@ fn how_to_read() -> Block {
     .replace('*', ""))
 }
 
-/// What is missing.
+/// The failed lines.
 fn failures(lines: &[Line]) -> Vec<Block> {
     let failed = lines.iter().filter_map(|line| {
         let why = line.failure()?;
@@ -117,7 +117,7 @@ fn failures(lines: &[Line]) -> Vec<Block> {
     }
 }
 
-/// What the checks compare results with.
+/// The independent targets of the checks.
 fn targets() -> Block {
     let about = |check: Check| match check {
         Check::ConstraintClosure => {
@@ -144,7 +144,7 @@ fn targets() -> Block {
         Check::ClosedForms => {
             "closed forms, in 32 digits where parameters are extreme; a rotor's own equation"
         }
-        // Checks that are added say what they compare by their name.
+        // New checks are described by their name.
         _ => "what is written to files, read back by readers of its own",
     };
     let rows = Check::ALL.map(|check| vec![check.to_string(), about(check).to_owned()]);
@@ -232,7 +232,7 @@ fn line_table(lines: &[Line]) -> Block {
     table_of(&columns, lines.iter())
 }
 
-/// What is said of the finding of a line that is nearest to its tolerance.
+/// A text on the finding of a line that is nearest to its tolerance.
 fn near(line: &Line, text: fn(&Finding) -> String) -> String {
     line.nearest.as_ref().map_or_else(String::new, text)
 }
@@ -276,7 +276,7 @@ fn limits(contents: &Contents<'_>) -> Block {
     Block::Text(text)
 }
 
-/// To be signed on paper.
+/// The signature block.
 fn signature() -> Block {
     let rows = [
         "Installation",
@@ -292,7 +292,7 @@ fn signature() -> Block {
     )
 }
 
-/// The text that every machine reproduces: capabilities, checks, and results.
+/// The reproducible text: capabilities, checks, and results.
 pub(super) fn text(lines: &[Line], cases: &[CaseEntry<'_>]) -> String {
     let [passed, failed, exempt] = counts(lines);
     let mut out = format!(

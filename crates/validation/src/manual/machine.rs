@@ -1,4 +1,4 @@
-//! Where and of what the manual was made: program, compiler, commit, machine.
+//! The provenance of the manual: program, compiler, commit, machine.
 
 use std::path::Path;
 use std::process::Command;
@@ -42,7 +42,7 @@ fn commit(folder: &Path) -> Option<String> {
     })
 }
 
-/// The processor's name, where the system says it.
+/// The processor's name, if the system states it.
 fn processor() -> Option<String> {
     let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = text.lines().find(|line| line.starts_with("model name"))?;

@@ -1,4 +1,4 @@
-//! The verdict in one picture: what passed, the numbers it rests on, and every case by every check.
+//! The verdict in one picture: passed checks, key numbers, and every case by every check.
 
 use super::{CheckCell, ValidationRun, check_cells, summary};
 use crate::report_parts::{margin, margin_text};

@@ -1,4 +1,4 @@
-//! The overview as one HTML file: from every case and check to its findings and pictures, and to the other reports.
+//! The overview as one HTML file, with links from every case and check to its findings and pictures, and to the other reports.
 
 use super::{CheckCell, ValidatedCase, ValidationRun, check_cells};
 use crate::report_parts::{margin, margin_text};
@@ -7,7 +7,7 @@ use dwell_report::escaped;
 
 const STYLE: &str = include_str!("page.css");
 
-/// The other reports, each with what it holds.
+/// The other reports with their contents.
 const REPORTS: &str = "<nav><ul>\n\
     <li><a href=\"manual.html\">Verification manual</a>: what is required, and the evidence for each capability</li>\n\
     <li><a href=\"extremes.html\">Extreme parameters</a>: ratios, scales, singular and stiff cases</li>\n\
@@ -17,7 +17,7 @@ const REPORTS: &str = "<nav><ul>\n\
     <li><a href=\"exported-runs.html\">Exported runs</a>: what tables of other programs are worth</li>\n\
     </ul></nav>\n";
 
-/// The overview. Its text is escaped, it has no script, and loads nothing.
+/// The overview. Its text is escaped; it has no script and loads nothing.
 pub(super) fn html(judged: &ValidationRun<'_>) -> String {
     let results = &judged.cases;
     let mut text = format!(
@@ -92,7 +92,7 @@ fn shade(margin: f64) -> usize {
     margin.log10().clamp(0.0, 5.0) as usize
 }
 
-/// The pictures of a case, and what fails in it.
+/// The pictures of a case, and its failures.
 fn case(case: &ValidatedCase<'_>) -> String {
     let Ok(done) = &case.result else {
         return format!(

@@ -1,4 +1,4 @@
-//! The verdict: did it pass, what is nearest to its tolerance, and what the paper's mechanism does.
+//! The verdict: whether all passed, the finding nearest to its tolerance, and the results of the paper's mechanism.
 
 use super::{ValidatedCase, ValidationRun};
 use crate::report_parts::{margin, margin_text, nearest, table};
@@ -11,7 +11,7 @@ const PUBLISHED_PERIOD: &str = "5.42";
 /// The first check of what commands write.
 const FIRST_WRITTEN: Check = Check::WrittenPositions;
 
-/// What was judged of one kind, and how much of it passed.
+/// The number of judged and passed items of one kind.
 pub(super) struct Tally {
     name: &'static str,
     passed: usize,
@@ -56,7 +56,7 @@ impl<'a> ValidationRun<'a> {
             .flat_map(|(name, findings)| findings.iter().map(move |f| (name, f)))
     }
 
-    /// What was judged, by kind; kinds of which there is nothing are left out.
+    /// The judged items by kind, without empty kinds.
     pub(super) fn tallies(&self) -> Vec<Tally> {
         let cases = |in_space: bool| {
             let cases = self.cases.iter().filter(move |c| c.in_space == in_space);
@@ -91,8 +91,8 @@ impl<'a> ValidationRun<'a> {
         tallies
     }
 
-    /// The finding of a case that is nearest to its tolerance, with the name of the case; one that fails, be it of a study, comes first.
-    /// Studies require digits and estimates that they may just reach, so that they are always nearest.
+    /// The finding of a case that is nearest to its tolerance, with the name of the case; failing ones, also of studies, come first.
+    /// Passing findings of studies are excluded, because studies are designed to reach their requirements closely.
     pub(super) fn nearest(&self) -> Option<(&'a str, &'a Finding)> {
         let is_case = |name: &str| self.cases.iter().any(|case| case.name == name);
         let counted = self.findings().filter(|(name, f)| !f.pass || is_case(name));
@@ -127,7 +127,7 @@ impl<'a> ValidationRun<'a> {
         }
     }
 
-    /// What the paper's mechanism does, by number: its period, the drift of its energy, the unit runs beside the kinetic energy.
+    /// The key numbers of the paper's mechanism: its period, the drift of its energy, the unit runs compared with the kinetic energy.
     pub(super) fn paper(&self) -> Vec<Tile> {
         let case = self
             .cases
@@ -175,7 +175,7 @@ impl<'a> ValidationRun<'a> {
     }
 }
 
-/// The verdict in twenty lines: the first says whether all passed, the third what is nearest to its tolerance.
+/// The verdict in twenty lines: the first states whether all passed, the third which finding is nearest to its tolerance.
 pub(super) fn document(judged: &ValidationRun<'_>) -> Document {
     let nearest = judged.nearest().map_or_else(String::new, |(name, f)| {
         let words = if f.pass { "Nearest to its tolerance" } else { "Worst" };

@@ -13,9 +13,9 @@ use dwell_study::ranges::extent;
 
 /// Margin at the outermost errors, as a factor.
 const AXIS_MARGIN: f64 = 4.0;
-/// A larger error is not drawn: the motion is another one.
+/// Larger errors are not drawn: the motion is a different one.
 const MAX_ERROR: f64 = 10.0;
-/// How far apart in powers of ten the points of a front are whose names are written, and of one among many marks.
+/// Smallest distance, in powers of ten, of the labelled points of a front.
 const MIN_LABEL_GAP: f64 = 1.6;
 const MIN_LABEL_GAP_CROWDED: f64 = 3.0;
 
@@ -119,7 +119,7 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
     })
 }
 
-/// What is requested, and its cost.
+/// The cost of the requested results.
 fn requested(found: &WorkPrecision) -> Panel {
     let of = &found.requested;
     let line = Series::line("", of.by_reactions.clone()).stroke(Stroke::LineAndPoints);
@@ -135,7 +135,7 @@ fn requested(found: &WorkPrecision) -> Panel {
     Panel::from(chart(title, x, y, curves.collect()))
 }
 
-/// The command by its accuracies and the exported code by its steps of a millisecond, over the error of the coordinate.
+/// The command at its accuracies and the exported code with steps of 1 ms, over the error of the coordinate.
 fn commands(found: &WorkPrecision) -> [Series; 2] {
     let (unit, floor) = (found.evaluation_time, found.reference.error.coordinate);
     let commands = found.commands.iter();
@@ -174,7 +174,7 @@ fn method_series(
         let paint = Paint::Palette(i);
         let exact = Series::line(method.name(), of(&|e| e == Evaluation::Exact));
         series.push(exact.stroke(Stroke::LineAndPoints).color(paint));
-        // Counted, the others equal the mechanism itself.
+        // The numbers of evaluations of the others equal those of the mechanism itself.
         if measure != CostMeasure::Evaluations {
             let tables = Series::line("", of(&|e| matches!(e, Evaluation::Table { .. })));
             let single = Series::line("", of(&|e| e == Evaluation::SinglePrecision));
@@ -185,7 +185,7 @@ fn method_series(
     series
 }
 
-/// The axis of the errors, from below the floor to the largest that is one.
+/// The axis of the errors, from below the error of the reference to the largest error drawn.
 fn error_axis(found: &WorkPrecision, quantity: ErrorQuantity, label: &str) -> Axis {
     let all = found.points.iter().map(|p| found.error_bound(p, quantity));
     let [min, max] = extent(all.filter(|e| e.is_finite() && *e > 0.0));
