@@ -18,12 +18,13 @@ pub(crate) fn find(names: &[String], folder: &Path) -> Result<Vec<PathBuf>, Repo
                 "cannot list the cases in `{shown}`: {reason}"
             )
         })?;
-        return match cases.is_empty() {
-            true => Err(miette!(
+        return if cases.is_empty() {
+            Err(miette!(
                 help = "a case is a folder with a scene.toml; name the folder of the cases with --folder",
                 "there is no case in `{shown}`"
-            )),
-            false => Ok(cases),
+            ))
+        } else {
+            Ok(cases)
         };
     }
     let mut found: Vec<PathBuf> = Vec::new();

@@ -78,9 +78,10 @@ pub(crate) struct ExportArgs {
 impl ExportArgs {
     /// The requested export.
     pub(crate) fn request(&self) -> ExportRequest {
-        let (precision, accuracy) = match self.float {
-            true => (Precision::Float, 1e-6),
-            false => (Precision::Double, 1e-9),
+        let (precision, accuracy) = if self.float {
+            (Precision::Float, 1e-6)
+        } else {
+            (Precision::Double, 1e-9)
         };
         ExportRequest {
             request: Request {

@@ -145,7 +145,8 @@ struct Done {
 /// Prints and writes the results, and returns whether all checks passed.
 fn finish(
     mut done: Done,
-    (options, name): (&Options, &str),
+    options: &Options,
+    name: &str,
     folder: OutputFolder,
     mut times: Times,
 ) -> Result<bool, Report> {
@@ -288,9 +289,10 @@ fn progress_bar() -> ProgressBar {
 /// Reads the scene of a command.
 fn read(options: &Options, command: &Command, bar: &ProgressBar) -> Result<Scene, StudyError> {
     let path = command.scene().unwrap_or_else(|| Path::new(STANDARD_INPUT));
-    let scene = match path == Path::new(STANDARD_INPUT) {
-        true => Scene::read_from(std::io::stdin().lock(), STANDARD_INPUT_NAME, "<stdin>")?,
-        false => Scene::read(path)?,
+    let scene = if path == Path::new(STANDARD_INPUT) {
+        Scene::read_from(std::io::stdin().lock(), STANDARD_INPUT_NAME, "<stdin>")?
+    } else {
+        Scene::read(path)?
     };
     let scene = scene.named(scene_name(options, path));
     print_warnings(&scene);

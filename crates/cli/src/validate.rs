@@ -25,9 +25,10 @@ pub(crate) fn validate(
     bar: &ProgressBar,
 ) -> Result<(Outcome, Option<SceneError>), Report> {
     let (in_space, others) = cases::find_in_space(names, folder);
-    let cases = match names.is_empty() || !others.is_empty() {
-        true => cases::find(&others, folder)?,
-        false => Vec::new(),
+    let cases = if names.is_empty() || !others.is_empty() {
+        cases::find(&others, folder)?
+    } else {
+        Vec::new()
     };
     let read = |case: &PathBuf| PlaneScene::read(case.join("scene.toml"));
     let scenes: Vec<_> = cases.iter().map(read).collect();

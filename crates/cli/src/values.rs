@@ -38,11 +38,12 @@ pub(crate) fn parse_checked(
 /// The name of a scene: part of the names of its files.
 pub(crate) fn parse_name(text: &str) -> Result<String, String> {
     let is_plain = |c: char| c.is_alphanumeric() || "-_ ".contains(c);
-    match !text.trim().is_empty() && text.len() <= MAX_NAME && text.chars().all(is_plain) {
-        true => Ok(text.to_owned()),
-        false => Err(format!(
+    if !text.trim().is_empty() && text.len() <= MAX_NAME && text.chars().all(is_plain) {
+        Ok(text.to_owned())
+    } else {
+        Err(format!(
             "a name has letters, digits, `-`, `_` and spaces, at most {MAX_NAME} bytes"
-        )),
+        ))
     }
 }
 

@@ -80,14 +80,13 @@ fn found() -> Result<PathBuf, Report> {
 fn text(scene: &Path) -> Result<String, Report> {
     let shown = scene.display();
     let mut bytes = Vec::new();
-    let read = match scene == Path::new(STANDARD_INPUT) {
-        true => std::io::stdin()
+    let read = if scene == Path::new(STANDARD_INPUT) {
+        std::io::stdin()
             .lock()
             .take(MAX_BYTES + 1)
-            .read_to_end(&mut bytes),
-        false => {
-            fs::File::open(scene).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes))
-        }
+            .read_to_end(&mut bytes)
+    } else {
+        fs::File::open(scene).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes))
     };
     read.map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound => miette!(

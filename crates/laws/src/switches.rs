@@ -132,9 +132,12 @@ impl Switches {
             let is_one = |last: usize| may_hide(&ops, &tree, last);
             is_one(switch.left) || switch.right.is_some_and(is_one)
         };
-        let kind = |(switch, _): &(Switch, _)| match switch.at_integers {
-            true => SwitchKind::Integers,
-            false => SwitchKind::Zero,
+        let kind = |(switch, _): &(Switch, _)| {
+            if switch.at_integers {
+                SwitchKind::Integers
+            } else {
+                SwitchKind::Zero
+            }
         };
         Self {
             kinds: switches.iter().map(kind).collect(),
@@ -332,9 +335,10 @@ fn unrounded(
     /// Differences above this fraction of a value are no rounding errors.
     const NEAR: f64 = 1e-10;
     let value = minuend - subtrahend;
-    let bound = match switch.at_integers {
-        true => value.round(),
-        false => 0.0,
+    let bound = if switch.at_integers {
+        value.round()
+    } else {
+        0.0
     };
     let distance = (value - bound).abs();
     if distance == 0.0 || distance > NEAR * (1.0 + minuend.abs()) {
@@ -350,9 +354,10 @@ fn unrounded(
         .error
     };
     let subtracted = switch.right.map_or(0.0, |last| error(*right, last));
-    match distance <= error(*left, switch.left) + subtracted {
-        true => bound,
-        false => value,
+    if distance <= error(*left, switch.left) + subtracted {
+        bound
+    } else {
+        value
     }
 }
 

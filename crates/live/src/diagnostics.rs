@@ -56,12 +56,14 @@ fn message(severity: &'static str, error: &SceneError) -> MessageInText {
         severity,
         message: error.message.clone(),
         help: error.help.clone(),
-        labels: spans.map(|span| label(text, span)).collect(),
+        labels: spans
+            .map(|(offset, length, remark)| label(text, offset, length, remark))
+            .collect(),
     }
 }
 
 /// A byte span of the text as a place in it.
-fn label(text: &str, (offset, length, remark): (usize, usize, &str)) -> LabelInText {
+fn label(text: &str, offset: usize, length: usize, remark: &str) -> LabelInText {
     let before = text.get(..offset).unwrap_or(text);
     let within = text.get(offset..offset + length).unwrap_or_default();
     let units = |part: &str| part.encode_utf16().count();
@@ -80,7 +82,7 @@ mod tests {
     #[test]
     fn places_count_as_a_browser_does() {
         // Two bytes are one code unit; four bytes are two.
-        let found = label("é\n𝜑 = 1", (3, 4, "here"));
+        let found = label("é\n𝜑 = 1", 3, 4, "here");
         assert_eq!((found.from, found.to, found.line), (2, 4, 2));
     }
 }

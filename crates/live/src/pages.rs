@@ -96,9 +96,10 @@ pub(crate) fn add_reduced_inertia<S: StudyScene>(scene: &S, page: &mut Page) {
     let rows = rows.map(|&q| inertia(q).unwrap_or((f64::NAN, f64::NAN)));
     let (m, half_dm) = rows.unzip();
     drop(inertia);
-    let units = match prepared.is_angle() {
-        true => ["kg m2", "kg m2/rad"],
-        false => ["kg", "kg/m"],
+    let units = if prepared.is_angle() {
+        ["kg m2", "kg m2/rad"]
+    } else {
+        ["kg", "kg/m"]
     };
     for ((key, values), unit) in [("m", m), ("half_dm", half_dm)].into_iter().zip(units) {
         let (group, description) = match key {

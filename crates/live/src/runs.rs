@@ -19,10 +19,13 @@ impl SceneTask for Command {
 
     fn run<S: StudyScene>(self, scene: &S) -> Self::Output {
         match self {
-            Self::Motion => match scene.prescribes_positions() {
-                true => along_motion(scene, Analysis::Kinetostatics),
-                false => along_motion(scene, Analysis::Kinematics),
-            },
+            Self::Motion => {
+                if scene.prescribes_positions() {
+                    along_motion(scene, Analysis::Kinetostatics)
+                } else {
+                    along_motion(scene, Analysis::Kinematics)
+                }
+            }
             Self::Kinematics => along_motion(scene, Analysis::Kinematics),
             Self::Statics => along_motion(scene, Analysis::Statics),
             Self::Kinetostatics => along_motion(scene, Analysis::Kinetostatics),

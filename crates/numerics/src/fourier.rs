@@ -86,9 +86,10 @@ impl FourierSeries {
         for part in BETWEEN {
             let error = (at(part)? - self.eval(TAU * part)[0]).abs() / size;
             // A NaN counts as a difference.
-            difference = match error.is_nan() {
-                true => f64::INFINITY,
-                false => difference.max(error),
+            difference = if error.is_nan() {
+                f64::INFINITY
+            } else {
+                difference.max(error)
             };
         }
         if difference > LEFT_OUT * self.tail.max(COEFFICIENT_ROUNDING) {

@@ -214,9 +214,12 @@ fn changes(before: &[u8], now: &[u8], width: usize, unchanged: u8) -> Frame<'sta
     let (left, right) = if left > right { (0, 0) } else { (left, right) };
     let top = new().next().unwrap_or(0) / width;
     let bottom = new().next_back().unwrap_or(0) / width;
-    let index = |i: usize| match now[i] == before[i] {
-        true => unchanged,
-        false => now[i],
+    let index = |i: usize| {
+        if now[i] == before[i] {
+            unchanged
+        } else {
+            now[i]
+        }
     };
     let row = |y: usize| (y * width + left..=y * width + right).map(index);
     Frame {

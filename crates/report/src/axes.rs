@@ -215,17 +215,19 @@ pub(crate) fn vertical_axis(
     // The words keep to the heights of the plot, as it was before it gave way to a legend: what is above and below them is a
     // title, the words of the horizontal axis, or the next chart of a stack.
     let (top, bottom) = style.heights;
-    let strip = match style.right {
-        true => cell.x1 - plot.x1,
-        false => plot.x0 - cell.x0,
+    let strip = if style.right {
+        cell.x1 - plot.x1
+    } else {
+        plot.x0 - cell.x0
     };
     let room = strip - ticks_room(style.ticks) - 0.5 * LABEL_GAP;
     let wrapped = wrapped_text::fitted_label(axis, style.ticks, bottom - top);
     let wrapped = wrapped.shrunk_to_fit(bottom - top, room, false);
     // Lines that read upwards follow each other to the right.
-    let left = match style.right {
-        true => cell.x1 - wrapped.height(),
-        false => cell.x0,
+    let left = if style.right {
+        cell.x1 - wrapped.height()
+    } else {
+        cell.x0
     };
     for (line, baseline) in wrapped.baselines() {
         let text_style = TextStyle::new(wrapped.size, style.color, Align::Middle);

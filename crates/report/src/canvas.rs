@@ -231,17 +231,19 @@ impl Canvas<'_> {
             Align::Middle => HPos::Center,
             Align::End => HPos::Right,
         };
-        let weight = match style.bold {
-            true => FontStyle::Bold,
-            false => FontStyle::Normal,
+        let weight = if style.bold {
+            FontStyle::Bold
+        } else {
+            FontStyle::Normal
         };
         let size = style.size * LINE * UNITS_PER_PIXEL;
         let [r, g, b] = style.color;
         let font = FontDesc::new(FontFamily::Name(FAMILY), size, weight);
         let ascent = ASCENT * style.size;
-        let (at, turn) = match upwards {
-            true => ([x - ascent, y], FontTransform::Rotate270),
-            false => ([x, y - ascent], FontTransform::None),
+        let (at, turn) = if upwards {
+            ([x - ascent, y], FontTransform::Rotate270)
+        } else {
+            ([x, y - ascent], FontTransform::None)
         };
         let style = font.transform(turn).color(&RGBColor(r, g, b));
         let style = style.pos(Pos::new(h_pos, VPos::Top));

@@ -223,9 +223,12 @@ impl<'a> PreparedChart<'a> {
 
     /// By curve, its lines in pixels; none of those with markers.
     fn lines(&self, frame: &PlotFrame) -> Vec<coincidence::Lines> {
-        let lines = |series: &Series| match has_markers(series.stroke) {
-            true => Vec::new(),
-            false => polylines(frame, series),
+        let lines = |series: &Series| {
+            if has_markers(series.stroke) {
+                Vec::new()
+            } else {
+                polylines(frame, series)
+            }
         };
         self.chart.series.iter().map(lines).collect()
     }

@@ -53,17 +53,20 @@ pub(crate) fn insets(drawings: &[Drawing], cell: &Rect) -> Insets {
     let frame = fitted(bounds(drawings), cell.inset(guess));
     let x_ticks = axes::horizontal_ticks(&frame.x, frame.plot.width());
     let y_ticks = axes::vertical_ticks(&frame.y, frame.plot.height());
-    let needed = |drawing: &Drawing| match drawing.without_axes {
-        true => Insets {
-            left: 0.0,
-            bottom: 0.0,
-            ..guess
-        },
-        false => Insets {
-            left: axes::side_room(&drawing.y, &y_ticks, frame.plot.height()),
-            bottom: axes::bottom_room(Some(&drawing.x), &x_ticks, cell),
-            ..guess
-        },
+    let needed = |drawing: &Drawing| {
+        if drawing.without_axes {
+            Insets {
+                left: 0.0,
+                bottom: 0.0,
+                ..guess
+            }
+        } else {
+            Insets {
+                left: axes::side_room(&drawing.y, &y_ticks, frame.plot.height()),
+                bottom: axes::bottom_room(Some(&drawing.x), &x_ticks, cell),
+                ..guess
+            }
+        }
     };
     let all = drawings.iter().map(needed).reduce(Insets::max);
     all.unwrap_or(guess)

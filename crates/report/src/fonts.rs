@@ -42,10 +42,7 @@ pub(crate) fn drawable(c: char) -> char {
         let face = face.as_ref();
         face.is_some_and(|face| face.glyph_index(c).is_some())
     };
-    match FACES.iter().all(has) {
-        true => c,
-        false => MISSING,
-    }
+    if FACES.iter().all(has) { c } else { MISSING }
 }
 
 /// Width of the text in pixels, at a size in pixels per em: the advances of its glyphs and the kerning between them.

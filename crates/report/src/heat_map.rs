@@ -37,9 +37,10 @@ struct Sizes {
 
 impl Sizes {
     fn of(grid: &Grid) -> Self {
-        let [text, min_text, row, pad] = match grid.compact {
-            true => [19.0, 16.0, 20.8, 3.0],
-            false => [25.0, 18.0, 40.0, 7.0],
+        let [text, min_text, row, pad] = if grid.compact {
+            [19.0, 16.0, 20.8, 3.0]
+        } else {
+            [25.0, 18.0, 40.0, 7.0]
         };
         Self {
             text,

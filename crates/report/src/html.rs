@@ -68,9 +68,10 @@ fn findings(all: &[Finding]) -> String {
         "Worst at",
     ];
     let line = |f: &Finding| {
-        let result = match f.pass {
-            true => "<td>pass</td>".to_owned(),
-            false => "<td class=\"fail\">FAIL</td>".to_owned(),
+        let result = if f.pass {
+            "<td>pass</td>".to_owned()
+        } else {
+            "<td class=\"fail\">FAIL</td>".to_owned()
         };
         let [relative, tolerance] =
             [f.relative_difference, f.tolerance].map(|value| scientific(value, 3));

@@ -99,9 +99,10 @@ fn findings_table(findings: &[Finding]) -> String {
             "" => number,
             text => format!("{number}{separator}{text}"),
         };
-        let result = match f.pass {
-            true => pass_or_fail(f).to_owned(),
-            false => format!("**{}**", pass_or_fail(f)),
+        let result = if f.pass {
+            pass_or_fail(f).to_owned()
+        } else {
+            format!("**{}**", pass_or_fail(f))
         };
         vec![
             result,
@@ -136,9 +137,10 @@ fn image(file: &str, alt: &str, caption: &str) -> String {
     let alt = markdown_text(alt);
     // In angle brackets a path may hold blanks and brackets.
     let file = one_line(file).replace('<', "%3C").replace('>', "%3E");
-    let target = match file.contains([' ', '(', ')']) {
-        true => format!("<{file}>"),
-        false => file,
+    let target = if file.contains([' ', '(', ')']) {
+        format!("<{file}>")
+    } else {
+        file
     };
     match markdown_text(&typeset(caption)).as_str() {
         "" => format!("![{alt}]({target})\n"),

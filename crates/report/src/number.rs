@@ -35,9 +35,10 @@ pub(crate) fn scientific(value: f64, digits: usize) -> String {
 
 /// A number in decimals without zeros at its end.
 pub(crate) fn trimmed(text: &str) -> &str {
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.'),
-        false => text,
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        text
     }
 }
 

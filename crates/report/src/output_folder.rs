@@ -159,9 +159,10 @@ impl OutputFolder {
                 Err(e) => return Err(file_error(folder)(e)),
             }
         }
-        match folder.as_os_str().is_empty() || folder.is_dir() {
-            true => Ok(()),
-            false => Err(file_error(folder)(io::ErrorKind::NotADirectory.into())),
+        if folder.as_os_str().is_empty() || folder.is_dir() {
+            Ok(())
+        } else {
+            Err(file_error(folder)(io::ErrorKind::NotADirectory.into()))
         }
     }
 }

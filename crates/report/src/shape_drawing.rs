@@ -149,9 +149,10 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>, frame: &PlotFrame, shape: &Shape) {
 }
 
 fn line(pen: &Pen) -> LineStyle {
-    let width = match pen.width.is_finite() {
-        true => pen.width.clamp(0.5, 400.0),
-        false => 1.0,
+    let width = if pen.width.is_finite() {
+        pen.width.clamp(0.5, 400.0)
+    } else {
+        1.0
     };
     LineStyle {
         color: lightened(rgb(pen.color), pen.lightness),

@@ -53,13 +53,15 @@ type Written = Result<(), DrawingErrorKind<Infallible>>;
 fn paint(style: &impl BackendStyle, fill: bool) -> String {
     let (BackendColor { alpha, rgb }, width) = (style.color(), style.stroke_width());
     let color = format!("#{:02X}{:02X}{:02X}", rgb.0, rgb.1, rgb.2);
-    let paint = match fill {
-        true => format!("fill=\"{color}\""),
-        false => format!("fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\""),
+    let paint = if fill {
+        format!("fill=\"{color}\"")
+    } else {
+        format!("fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\"")
     };
-    match alpha < 1.0 {
-        true => paint + &format!(" opacity=\"{alpha}\""),
-        false => paint,
+    if alpha < 1.0 {
+        paint + &format!(" opacity=\"{alpha}\"")
+    } else {
+        paint
     }
 }
 

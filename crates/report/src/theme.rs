@@ -63,9 +63,10 @@ pub(crate) fn rgb(paint: Paint) -> Rgb {
 
 /// The colour moved towards white: 0 keeps it, 1 is white.
 pub(crate) fn lightened(color: Rgb, lightness: f64) -> Rgb {
-    let fraction = match lightness.is_finite() {
-        true => lightness.clamp(0.0, 1.0),
-        false => 0.0,
+    let fraction = if lightness.is_finite() {
+        lightness.clamp(0.0, 1.0)
+    } else {
+        0.0
     };
     color.map(|c| {
         let c = f64::from(c);

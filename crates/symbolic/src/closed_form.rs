@@ -75,7 +75,7 @@ impl<'a> Symbolic<'a> {
             let symbols = &mut positions.symbols;
             let mut named = |letter, value: f64, unit, what: &str| {
                 let meaning = format!("{name}: {what}");
-                (value > 0.0).then(|| symbols.add_constant((letter, &[name]), value, unit, meaning))
+                (value > 0.0).then(|| symbols.add_constant(letter, &[name], value, unit, meaning))
             };
             inertial_bodies.push(SymbolicMass {
                 body: tree_joint.body,

@@ -79,7 +79,7 @@ impl PositionFormulas<'_> {
         let sign = if branch < 0.0 { -1.0 } else { 1.0 };
         let meaning = format!("branch of the dyad that {joint} closes");
         let symbols = &mut self.symbols;
-        let sign = symbols.add_constant(("sigma", &[joint]), sign, "", meaning);
+        let sign = symbols.add_constant("sigma", &[joint], sign, "", meaning);
         let code = symbols.new_name(letter, &[joint]);
         let radicand = radicand.simplify();
         // From h² = R: h′ = R′/2h.

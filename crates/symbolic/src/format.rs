@@ -45,9 +45,10 @@ impl OutputStyle<'_> {
         }
         let only_one = found.len() == 1;
         let text = |(minus, term): (bool, Term)| {
-            let precedence = match only_one && !minus {
-                true => Precedence::Lowest,
-                false => Precedence::Product,
+            let precedence = if only_one && !minus {
+                Precedence::Lowest
+            } else {
+                Precedence::Product
             };
             (minus, self.single(&term, precedence))
         };

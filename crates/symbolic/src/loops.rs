@@ -109,7 +109,7 @@ impl LoopEquation {
             };
             let joint_origin = point_on(tree_joint.pair, body);
             let names = [tree_joint.pair, reached].map(|b| pair_name(mechanism, plan, b));
-            loop_equation.add_link_vector(frames, body, (joint_origin, point), sign, names);
+            loop_equation.add_link_vector(frames, body, [joint_origin, point], sign, names);
             let is_first = plan.pairs()[tree_joint.pair].bodies[1] != body;
             let pair_sign = if is_first { -sign } else { sign };
             loop_equation.tree_pairs.push((tree_joint.pair, pair_sign));
@@ -125,7 +125,7 @@ impl LoopEquation {
             ends[which] = (parent, point_on(pair, parent), pair);
         }
         let names = [ends[0].2, ends[1].2].map(|b| pair_name(mechanism, plan, b));
-        loop_equation.add_link_vector(frames, ends[0].0, (ends[0].1, ends[1].1), 1.0, names);
+        loop_equation.add_link_vector(frames, ends[0].0, [ends[0].1, ends[1].1], 1.0, names);
         let vectors = &mut loop_equation.link_vectors;
         vectors.retain(|vector| vector.local != Vec2::ZERO);
         if let PairKind::Prismatic { axes, .. } = pair.kind {
@@ -150,7 +150,7 @@ impl LoopEquation {
         &mut self,
         frames: &Frames,
         body: usize,
-        (from, to): (Vec2, Vec2),
+        [from, to]: [Vec2; 2],
         sign: f64,
         joints: [String; 2],
     ) {

@@ -58,9 +58,10 @@ impl<'a> PositionFormulas<'a> {
         plan.positions(plan.assembly_coordinates(), &mut pose)?;
         let mut symbols = SymbolTable::default();
         let name = actuator.name.as_str();
-        let q = match is_greek(name) {
-            true => symbols.new_name(name, &[]),
-            false => symbols.new_name("q", &[name]),
+        let q = if is_greek(name) {
+            symbols.new_name(name, &[])
+        } else {
+            symbols.new_name("q", &[name])
         };
         let bodies = plan.frames().orientations.len();
         let mut positions = Self {
@@ -172,7 +173,7 @@ impl<'a> PositionFormulas<'a> {
     ) -> Term {
         let k = self.next_number();
         let symbols = &mut self.symbols;
-        symbols.add_constant((letter, &[&k]), value, unit, meaning)
+        symbols.add_constant(letter, &[&k], value, unit, meaning)
     }
 
     /// The vector of a key, created once.
@@ -205,7 +206,7 @@ impl<'a> PositionFormulas<'a> {
         let mut named = |letter, value, what| {
             let meaning = format!("{meaning}{what}");
             let symbols = &mut self.symbols;
-            symbols.add_constant((letter, &[&k]), value, "m", meaning)
+            symbols.add_constant(letter, &[&k], value, "m", meaning)
         };
         match (local.x == 0.0, local.y == 0.0) {
             (_, true) => [named("l", local.x, ""), zero()],

@@ -141,7 +141,8 @@ impl SymbolTable {
     /// A number of the scene, by name.
     pub(crate) fn add_constant(
         &mut self,
-        (letter, below): (&str, &[&str]),
+        letter: &str,
+        below: &[&str],
         value: f64,
         unit: &'static str,
         meaning: String,

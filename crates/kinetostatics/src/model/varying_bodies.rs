@@ -25,7 +25,9 @@ impl Model {
             }
             let [smallest, largest] = one.inertia.extent();
             if !(smallest > 0.0 && largest.is_finite()) {
-                return Err(refused("its varying inertia must be greater than zero everywhere"));
+                return Err(refused(
+                    "its varying inertia must be greater than zero everywhere",
+                ));
             }
             if let Some(ends) = one.inertia.ends() {
                 let of_body =

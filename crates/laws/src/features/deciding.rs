@@ -21,10 +21,12 @@ pub(super) enum Decision {
     Unknown,
 }
 
+/// The side of a switch in an interval of a problem that begins at `start`.
 pub(super) fn decide(
     pieces: &Pieces,
     switch: &Switch,
-    (over, start): (Interval, f64),
+    over: Interval,
+    start: f64,
     sides: &[Sides],
 ) -> Decision {
     let enclosure = pieces.enclose_switch(switch, over, sides);
@@ -48,14 +50,17 @@ pub(super) fn decide(
         0.0
     };
     let undecided = || {
-        let resting = || match switch.at_integers {
-            true => None,
-            false => pieces.resting_side(switch, over, sides),
+        let resting = || {
+            if switch.at_integers {
+                None
+            } else {
+                pieces.resting_side(switch, over, sides)
+            }
         };
-        let touches = touching(pieces, switch, (over, start, sides), (enclosure, level));
+        let touches = touching(pieces, switch, over, start, sides, enclosure, level);
         // In a tail that underflows.
         let vanishes = || {
-            let [before, behind] = sides_around(pieces, switch, (over, over.lo), 0.0);
+            let [before, behind] = sides_around(pieces, switch, over, over.lo, 0.0);
             (value.magnitude() < NOTHING && before == behind).then_some(before)
         };
         touches
@@ -80,9 +85,9 @@ pub(super) fn decide(
 }
 
 /// The side of a switch in an interval of a few rounding errors.
-pub(super) fn side_within(pieces: &Pieces, switch: &Switch, (over, start): (Interval, f64)) -> f64 {
+pub(super) fn side_within(pieces: &Pieces, switch: &Switch, over: Interval, start: f64) -> f64 {
     let apart = TOUCH * over.magnitude();
-    match sides_around(pieces, switch, (over, start), apart) {
+    match sides_around(pieces, switch, over, start, apart) {
         [before, behind] if before == behind => before,
         _ => switch.side(pieces.switch_value(switch, 0.5 * (over.lo + over.hi))),
     }
@@ -92,7 +97,8 @@ pub(super) fn side_within(pieces: &Pieces, switch: &Switch, (over, start): (Inte
 fn sides_around(
     pieces: &Pieces,
     switch: &Switch,
-    (over, start): (Interval, f64),
+    over: Interval,
+    start: f64,
     apart: f64,
 ) -> [f64; 2] {
     let ends = [over.lo - apart, over.hi + apart];
@@ -104,8 +110,11 @@ fn sides_around(
 fn touching(
     pieces: &Pieces,
     switch: &Switch,
-    (over, start, sides): (Interval, f64, &[Sides]),
-    (enclosure, level): (Enclosure, f64),
+    over: Interval,
+    start: f64,
+    sides: &[Sides],
+    enclosure: Enclosure,
+    level: f64,
 ) -> Option<f64> {
     /// Multiple of the distance from the level at which a parabola differs from it by a rounding error.
     const CLEARLY: f64 = 4.0;
@@ -125,7 +134,7 @@ fn touching(
     if over.width() > apart {
         return None;
     }
-    let [before, behind] = sides_around(pieces, switch, (over, start), apart);
+    let [before, behind] = sides_around(pieces, switch, over, start, apart);
     (before == behind).then_some(before)
 }
 

@@ -91,9 +91,12 @@ enum Examined {
 impl<'f> Scan<'f> {
     /// The pieces between switches; with `smooth` they are divided until all functions are smooth.
     pub(super) fn new(features: &'f Features, from: f64, to: f64, smooth: bool) -> Self {
-        let scales = features.expressions.iter().map(|(_, pieces)| match smooth {
-            true => term_scales(pieces, from, to),
-            false => Vec::new(),
+        let scales = features.expressions.iter().map(|(_, pieces)| {
+            if smooth {
+                term_scales(pieces, from, to)
+            } else {
+                Vec::new()
+            }
         });
         Self {
             scales: scales.collect(),
@@ -154,10 +157,10 @@ impl<'f> Scan<'f> {
                 if is_decided || pieces.is_unused(switch.op, sides) {
                     continue;
                 }
-                match decide(pieces, switch, (over, self.start), sides) {
+                match decide(pieces, switch, over, self.start, sides) {
                     Decision::Side(side) => sides[switch.op][switch.function] = Some(side),
                     Decision::Unknown if is_short => {
-                        let side = side_within(pieces, switch, (over, self.start));
+                        let side = side_within(pieces, switch, over, self.start);
                         sides[switch.op][switch.function] = Some(side);
                     }
                     Decision::Unknown => return Examined::Halve(*source),
@@ -251,9 +254,10 @@ pub(super) fn term_scales(pieces: &Pieces, from: f64, to: f64) -> Vec<f64> {
         let of = |k: usize| {
             let over = Interval::checked(part(k), part(k + 1));
             let bound = pieces.enclose(term, over, &sides).value().magnitude();
-            match bound.is_finite() {
-                true => bound,
-                false => pieces.term_value(term, over.lo).abs(),
+            if bound.is_finite() {
+                bound
+            } else {
+                pieces.term_value(term, over.lo).abs()
             }
         };
         let finite = (0..SCALE_PARTS).map(of).filter(|s| s.is_finite());

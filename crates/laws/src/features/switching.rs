@@ -224,9 +224,10 @@ impl Pieces {
         let mut unused = outer.filter_map(|(i, (outer, [side, _]))| match (outer, side) {
             (Op::If(comparison), &Some(side)) => {
                 let no = self.starts[i - 1];
-                Some(match comparison.holds(side, 0.0) {
-                    true => no..i,
-                    false => self.starts[no - 1]..no,
+                Some(if comparison.holds(side, 0.0) {
+                    no..i
+                } else {
+                    self.starts[no - 1]..no
                 })
             }
             _ => None,

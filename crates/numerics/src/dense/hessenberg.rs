@@ -171,8 +171,8 @@ fn step(a: &mut Matrix, first: usize, last: usize, shifts: &Shifts) {
             }
             column = column.map(|c| c / size);
         }
-        let length = column.iter().map(|c| c * c).sum::<f64>().sqrt();
-        let length = length.copysign(column[0]);
+        let norm = column.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let length = norm.copysign(column[0]);
         if length == 0.0 {
             continue;
         }
@@ -181,26 +181,34 @@ fn step(a: &mut Matrix, first: usize, last: usize, shifts: &Shifts) {
         } else if first < begin {
             a[(k, k - 1)] = -a[(k, k - 1)];
         }
-        reflect(a, (first, k, last), rows, (column, length));
+        let reflection = Reflection { k, rows, column, length };
+        reflection.apply(a, first, last);
     }
 }
 
-/// Applies the reflection that makes all entries but the first of a column zero to rows and columns from `k` on.
-fn reflect(
-    a: &mut Matrix,
-    (first, k, last): (usize, usize, usize),
+/// The reflection that makes all entries but the first of a column of two or three `rows` from row `k` on zero.
+struct Reflection {
+    k: usize,
     rows: usize,
-    (column, length): ([f64; 3], f64),
-) {
-    let head = column[0] + length;
-    let of_rows = [head / length, column[1] / length, column[2] / length];
-    let others = [1.0, column[1] / head, column[2] / head];
-    for j in k..=last {
-        let part: f64 = (0..rows).map(|i| others[i] * a[(k + i, j)]).sum();
-        (0..rows).for_each(|i| a[(k + i, j)] -= part * of_rows[i]);
-    }
-    for i in first..=(k + 3).min(last) {
-        let part: f64 = (0..rows).map(|j| of_rows[j] * a[(i, k + j)]).sum();
-        (0..rows).for_each(|j| a[(i, k + j)] -= part * others[j]);
+    column: [f64; 3],
+    /// Length of the column, with the sign of its first entry.
+    length: f64,
+}
+
+impl Reflection {
+    /// Applies it to the active rows and columns from `first` to `last`.
+    fn apply(&self, a: &mut Matrix, first: usize, last: usize) {
+        let Self { k, rows, column, length } = *self;
+        let head = column[0] + length;
+        let of_rows = [head / length, column[1] / length, column[2] / length];
+        let others = [1.0, column[1] / head, column[2] / head];
+        for j in k..=last {
+            let part: f64 = (0..rows).map(|i| others[i] * a[(k + i, j)]).sum();
+            (0..rows).for_each(|i| a[(k + i, j)] -= part * of_rows[i]);
+        }
+        for i in first..=(k + 3).min(last) {
+            let part: f64 = (0..rows).map(|j| of_rows[j] * a[(i, k + j)]).sum();
+            (0..rows).for_each(|j| a[(i, k + j)] -= part * others[j]);
+        }
     }
 }

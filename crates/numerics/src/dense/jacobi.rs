@@ -39,7 +39,7 @@ pub(super) fn svd(matrix: &Matrix) -> Option<Svd> {
         is_done = true;
         for q in 1..n {
             for p in 0..q {
-                is_done &= !make_orthogonal(&mut columns, &mut turns, (p, q), &limits);
+                is_done &= !make_orthogonal(&mut columns, &mut turns, p, q, &limits);
             }
         }
         if is_done {
@@ -69,11 +69,12 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-/// Rotates two columns in their plane until they are orthogonal. Returns whether they were not orthogonal before.
+/// Rotates the columns p < q in their plane until they are orthogonal. Returns whether they were not orthogonal before.
 fn make_orthogonal(
     columns: &mut [Vec<f64>],
     turns: &mut [Vec<f64>],
-    (p, q): (usize, usize),
+    p: usize,
+    q: usize,
     limits: &Limits,
 ) -> bool {
     let [pp, qq, pq] = [(p, p), (q, q), (p, q)].map(|(i, j)| dot(&columns[i], &columns[j]));

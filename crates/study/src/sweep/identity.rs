@@ -67,8 +67,7 @@ fn study_difference(stored: &HashMap<String, String>, study: &StudyIdentity) -> 
         // The scene's hash is independent of line ends and a byte order mark, its text is not.
         let text = |text: &str| text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
         if *key == SCENE_TEXT && text(found) != text(expected) {
-            let fault =
-                "the file is damaged (the text of the scene does not match its hash): move the folder";
+            let fault = "the file is damaged (the text of the scene does not match its hash): move the folder";
             return Some(StoreFault::Reason(fault.to_owned()));
         }
         if *key != SCENE_TEXT && found != expected {
@@ -76,7 +75,10 @@ fn study_difference(stored: &HashMap<String, String>, study: &StudyIdentity) -> 
                 "scene_sha256" => "of a scene that has changed since".to_owned(),
                 key => {
                     let [existing, own] = [found, expected].map(shortened);
-                    format!("with the {} {existing} instead of {own}", key.replace('_', " "))
+                    format!(
+                        "with the {} {existing} instead of {own}",
+                        key.replace('_', " ")
+                    )
                 }
             }));
         }

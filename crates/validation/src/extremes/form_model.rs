@@ -145,9 +145,10 @@ fn in_space(
         }
         sums.push(sum);
     }
-    let compile = match planes {
-        true => SpaceModel::new,
-        false => SpaceModel::without_planes,
+    let compile = if planes {
+        SpaceModel::new
+    } else {
+        SpaceModel::without_planes
     };
     let model = compile(&lifted.mechanism, &lifted.masses, &lifted.assembly, &all)?;
     Ok((model, sums))

@@ -130,9 +130,10 @@ impl Form {
 
     /// The tolerance of a motion in it: below its rounding error, step control is meaningless.
     pub(super) fn tolerance(self, tolerance: f64) -> f64 {
-        match self.is_single() {
-            true => tolerance.max(SINGLE_ACCURACY),
-            false => tolerance,
+        if self.is_single() {
+            tolerance.max(SINGLE_ACCURACY)
+        } else {
+            tolerance
         }
     }
 

@@ -82,7 +82,7 @@ fn solve_revolutions(
     };
     let mut angle = dd(START_ANGLE);
     let runs = if parts > 1.0 {
-        wrapped_free_motion(model, start, (parts as usize, duration), advance, options)?
+        wrapped_free_motion(model, start, parts as usize, duration, advance, options)?
     } else {
         angle += advance;
         free_motion(model, start, duration, options)?

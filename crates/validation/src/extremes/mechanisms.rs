@@ -117,9 +117,10 @@ impl SliderCrank {
         let [crank, rod] = self.lengths;
         let [one, two, three] = &self.masses;
         let [q, initial_guess] = self.assembly;
-        let (actuator, guessed) = match actuated_slider {
-            true => ("length = \"guide\"", "crank"),
-            false => ("angle = [\"ground\", \"crank\"]", "rod"),
+        let (actuator, guessed) = if actuated_slider {
+            ("length = \"guide\"", "crank")
+        } else {
+            ("angle = [\"ground\", \"crank\"]", "rod")
         };
         format!(
             "[bodies]\nground = {{ points = {{ A = [0, 0], G = [0, {}] }} }}\n{}{}{}\

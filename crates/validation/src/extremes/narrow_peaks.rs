@@ -31,31 +31,32 @@ const SPEED: f64 = 1.0;
 pub(super) fn series() -> Vec<ParameterSeries> {
     vec![
         row(
-            (
-                "near-pivot",
-                "Crank pin that passes the pivot of its guide: distance",
-            ),
+            "near-pivot",
+            "Crank pin that passes the pivot of its guide: distance",
             ("distance d", "m"),
             "the angle of the guide in closed form, and the trapezoidal rule in 32 digits",
-            (near_pivot, -5),
+            near_pivot,
+            -5,
         ),
         row(
-            (
-                "hooke-near-right-angle",
-                "Hooke joint in space, near a right angle: cosine of its angle",
-            ),
+            "hooke-near-right-angle",
+            "Hooke joint in space, near a right angle: cosine of its angle",
             ("cos β", "1"),
             "the turn of the output in closed form, and the trapezoidal rule in 32 digits",
-            (hooke, -6),
+            hooke,
+            -6,
         ),
     ]
 }
 
+/// A row down to 10 to the power `smallest`.
 fn row(
-    (key, description): (&str, &str),
+    key: &str,
+    description: &str,
     parameter: (&'static str, &'static str),
     reference: &'static str,
-    (run, smallest): (fn(f64) -> RunResult, i32),
+    run: fn(f64) -> RunResult,
+    smallest: i32,
 ) -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,

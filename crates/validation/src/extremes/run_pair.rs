@@ -75,7 +75,8 @@ pub(super) fn free_motion(
 pub(super) fn wrapped_free_motion(
     model: &impl ReducedModel,
     start: ReducedState,
-    (parts, duration): (usize, f64),
+    parts: usize,
+    duration: f64,
     advance: DoubleDouble,
     options: &Options,
 ) -> Result<RunPair, DynamicsError> {

@@ -32,7 +32,8 @@ fn required(_: f64, _: usize) -> Requirement {
 /// A row that evaluates a four-bar for each value.
 fn base_series(
     form: Form,
-    (key, what): (&str, &str),
+    key: &str,
+    what: &str,
     values: Vec<f64>,
     of: fn(f64) -> FourBar,
 ) -> ParameterSeries {
@@ -65,7 +66,7 @@ fn mass_ratio(form: Form) -> ParameterSeries {
     ParameterSeries {
         parameter: ("mass of the coupler over its initial mass", ""),
         reason: "the parameters are sums over the bodies, each of which a well-shaped dyad magnifies by 8; 16 roundings",
-        ..base_series(form, ("mass-ratio", what), decades(-12, 12), make)
+        ..base_series(form, "mass-ratio", what, decades(-12, 12), make)
     }
 }
 
@@ -75,7 +76,7 @@ fn lengths(form: Form) -> ParameterSeries {
         reason: "nothing but the unit of length changes; a dyad's 8, 16 roundings",
         ..base_series(
             form,
-            ("length", "Four-bar: all lengths"),
+            "length", "Four-bar: all lengths",
             decades(-9, 9),
             |by| CRANK_ROCKER.scaled(by),
         )
@@ -96,7 +97,7 @@ fn placement(form: Form) -> ParameterSeries {
         reference: "circle and circle in 32 digits, at the same double-precision coordinates of the ground's points",
         ..base_series(
             form,
-            ("placement", "Four-bar: its position"),
+            "placement", "Four-bar: its position",
             decades(0, 9),
             make,
         )
@@ -133,7 +134,7 @@ fn powers_of_two(form: Form) -> ParameterSeries {
         }),
         ..base_series(
             form,
-            ("power-of-two", "Four-bar: all lengths times a power of two"),
+            "power-of-two", "Four-bar: all lengths times a power of two",
             (-10..=10).map(|k| 8.0_f64.powi(k)).collect(),
             |by| CRANK_ROCKER.scaled(by),
         )

@@ -54,15 +54,16 @@ fn near_separatrix(sign: f64) -> ParameterSeries {
         };
         Ok(vec![quadrature(orbit, period)])
     };
-    let (key, what) = match sign < 0.0 {
-        true => (
+    let (key, what) = if sign < 0.0 {
+        (
             "libration",
             "Pendulum in libration: speed short of the separatrix",
-        ),
-        false => (
+        )
+    } else {
+        (
             "rotation",
             "Pendulum in rotation: speed beyond the separatrix",
-        ),
+        )
     };
     ParameterSeries {
         figure: FIGURE,

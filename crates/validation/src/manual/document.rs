@@ -108,12 +108,13 @@ fn failures(lines: &[Line]) -> Vec<Block> {
         Some(format!("- `{}` `{}`: {why}", line.section, line.item))
     });
     let failed: Vec<String> = failed.collect();
-    match failed.is_empty() {
-        true => Vec::new(),
-        false => vec![
+    if failed.is_empty() {
+        Vec::new()
+    } else {
+        vec![
             Block::Heading("Failures".to_owned()),
             Block::Text(failed.join("\n")),
-        ],
+        ]
     }
 }
 
@@ -257,9 +258,10 @@ fn limits(contents: &Contents<'_>) -> Block {
     let mut text = format!(
         "- Faults in keys {keys_made}.\n- A fault in a key is planted between the scene's text and the results; a fault that readers and checks share, because both use the same reader of scenes, is for the independent reader to find.\n- The line of a command lists the findings on what it computes from: states, reduced models, motions. What it alone computes from them (a cycle, an equilibrium, a matrix, a row of a sweep) is checked by tests, by runs of the program from other starts, and by the independent reader.\n- Checks 0 to 11 share the reader of scenes with the program. The numbers of written files, checks 12 to 18 and 20, are judged by the independent reader in Python, `validation/audit`, which shares nothing with it: {}. What needs a second run or the printed text (of 14, 15, 17, 18 and 19) is judged within this program.\n- Committed studies of mutations that were at hand: {}, {count} of them.",
         contents.independent_reader,
-        match texts.is_empty() {
-            true => "none".to_owned(),
-            false => texts.join(", "),
+        if texts.is_empty() {
+            "none".to_owned()
+        } else {
+            texts.join(", ")
         }
     );
     let exempt = contents.lines.iter().filter_map(|line| match line.state {

@@ -75,9 +75,10 @@ impl KeyFaults {
     /// [`std::io::Error`] if the file cannot be written.
     pub fn write(&self, folder: &Path) -> std::io::Result<()> {
         let is_known = Self::read(folder).is_some_and(|known| known.faults == self.faults);
-        match is_known {
-            true => Ok(()),
-            false => std::fs::write(folder.join(FILE), self.text()),
+        if is_known {
+            Ok(())
+        } else {
+            std::fs::write(folder.join(FILE), self.text())
         }
     }
 

@@ -36,9 +36,10 @@ fn commit(folder: &Path) -> Option<String> {
     };
     let commit = git(&["rev-parse", "HEAD"])?;
     let changed = git(&["status", "--porcelain", "--untracked-files=no"])?;
-    Some(match changed.is_empty() {
-        true => commit,
-        false => format!("{commit}, with changed files"),
+    Some(if changed.is_empty() {
+        commit
+    } else {
+        format!("{commit}, with changed files")
     })
 }
 

@@ -73,9 +73,10 @@ impl Manual {
         let scenes: Vec<PlantedScene> = written.iter().filter_map(planted).collect();
         let own = scenes.par_iter().map(|planted| {
             let is_case = cases.iter().any(|case| case.name == planted.scene.name);
-            match is_case {
-                true => Vec::new(),
-                false => planted.findings(),
+            if is_case {
+                Vec::new()
+            } else {
+                planted.findings()
             }
         });
         let faults = KeyFaults::read(&reports(folder));

@@ -136,14 +136,16 @@ impl MotionClaims {
                 let drive = at.y.get(2 * count).copied().unwrap_or(0.0);
                 let state: RotorState = [at.y[0], at.y[count], drive];
                 let ends = rotor.ends_with(k) == ((at.t - ended).abs() < 1e-9 * ended);
-                match ends {
-                    true => rotor.residual(k, at.t, state),
-                    false => f64::INFINITY,
+                if ends {
+                    rotor.residual(k, at.t, state)
+                } else {
+                    f64::INFINITY
                 }
             });
-            let check = match rotor.is_reaction(k) {
-                true => Check::NewtonEuler,
-                false => Check::ConstraintClosure,
+            let check = if rotor.is_reaction(k) {
+                Check::NewtonEuler
+            } else {
+                Check::ConstraintClosure
             };
             findings.push(finding("rotor-event-state", check, residual));
         }

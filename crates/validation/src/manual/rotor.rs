@@ -71,9 +71,10 @@ impl Rotor {
         let arm = center.and_then(as_number).unwrap_or(0.0);
         let joints = root.get("joints").and_then(Value::as_table)?;
         let slides = joints.values().any(|j| j.get("prismatic").is_some());
-        let of_rotor = match slides {
-            true => mass,
-            false => number(body, "inertia")? + mass * arm * arm,
+        let of_rotor = if slides {
+            mass
+        } else {
+            number(body, "inertia")? + mass * arm * arm
         };
         // A number, or a table with one number.
         let only = |key: &str| {
@@ -247,9 +248,10 @@ fn zero_of(value: &dyn Fn(f64) -> f64, step: f64) -> f64 {
     let sign = value(low);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        match value(middle) * sign > 0.0 {
-            true => low = middle,
-            false => high = middle,
+        if value(middle) * sign > 0.0 {
+            low = middle
+        } else {
+            high = middle
         }
     }
     0.5 * (low + high)

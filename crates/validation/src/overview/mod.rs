@@ -181,9 +181,10 @@ fn failures(results: &[ValidatedCase<'_>]) -> Vec<Block> {
             Err(reason) => text += &format!("- `{name}`: {reason}\n"),
         }
     }
-    match text.is_empty() {
-        true => Vec::new(),
-        false => vec![Block::Heading("Failures".to_owned()), Block::Text(text)],
+    if text.is_empty() {
+        Vec::new()
+    } else {
+        vec![Block::Heading("Failures".to_owned()), Block::Text(text)]
     }
 }
 
@@ -200,9 +201,10 @@ fn tolerance_row(case: &ValidatedCase<'_>) -> Vec<String> {
     let passed = findings.iter().filter(|f| f.pass).count();
     let loose = findings.iter().filter(|f| f.is_loose());
     let loose: Vec<&str> = loose.map(|f| f.key.as_str()).collect();
-    let loose = match loose.is_empty() {
-        true => "none".to_owned(),
-        false => loose.join(", "),
+    let loose = if loose.is_empty() {
+        "none".to_owned()
+    } else {
+        loose.join(", ")
     };
     vec![
         case.link(),

@@ -67,9 +67,10 @@ fn row(case: &ValidatedCase<'_>) -> String {
         };
         let (difference, tolerance) = (f.relative_difference, f.tolerance);
         let title = format!("{}: {difference:.1e}, tolerance {tolerance:.1e}", f.key);
-        let (class, text) = match f.pass {
-            true => (format!("d{}", shade(margin(f))), margin_text(margin(f))),
-            false => ("fail".to_owned(), format!("FAIL {}", f.key)),
+        let (class, text) = if f.pass {
+            (format!("d{}", shade(margin(f))), margin_text(margin(f)))
+        } else {
+            ("fail".to_owned(), format!("FAIL {}", f.key))
         };
         format!(
             "<td class=\"{class}\"><a href=\"{}#check={}\" title=\"{}\">{}</a></td>",

@@ -240,12 +240,13 @@ pub(super) fn tiles(judged: &ValidationRun<'_>) -> [Vec<Tile>; 2] {
         } else {
             "FAIL".to_owned()
         };
-        let by = match f.pass {
-            true => String::new(),
-            false => format!(
+        let by = if f.pass {
+            String::new()
+        } else {
+            format!(
                 ": difference {:.1e}, tolerance {:.1e}",
                 f.relative_difference, f.tolerance
-            ),
+            )
         };
         let note = format!("{name}, check {}, {}{by}", f.check, f.key);
         let words = if f.pass { "least margin" } else { "worst" };

@@ -257,9 +257,10 @@ impl WorkPrecision {
 
     /// An error of a point as text: below the error of the reference as an upper bound.
     pub(super) fn describe_error(&self, of: &CombinationResult, quantity: ErrorQuantity) -> String {
-        match self.is_below_reference(of, quantity) {
-            true => format!("< {}", digits(self.reference.error.of(quantity), 2)),
-            false => digits_or_dash(of.errors.of(quantity), 2),
+        if self.is_below_reference(of, quantity) {
+            format!("< {}", digits(self.reference.error.of(quantity), 2))
+        } else {
+            digits_or_dash(of.errors.of(quantity), 2)
         }
     }
 

@@ -76,9 +76,10 @@ pub(super) fn command_runs<S: StudiedScene>(
         let computing = started.elapsed().as_secs_f64();
         let states = rows_at(subject, &reference.states, &table);
         // Loads may have no value where there is no row.
-        let errors = match states.iter().flatten().all(|value| value.is_finite()) {
-            true => reference.errors(&states, &mut exact.reactions()),
-            false => Ok(Errors::UNKNOWN),
+        let errors = if states.iter().flatten().all(|value| value.is_finite()) {
+            reference.errors(&states, &mut exact.reactions())
+        } else {
+            Ok(Errors::UNKNOWN)
         };
         let whole = with_files.then(|| whole_command(&scene, preset.1));
         done(&format!("simulate --accuracy {:.0e}", preset.1));

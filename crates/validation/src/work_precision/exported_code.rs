@@ -158,9 +158,10 @@ fn run<S: StudiedScene>(
 fn output(command: &mut Command, folder: &Path) -> Result<String, String> {
     let output = command.current_dir(folder).output();
     let output = output.map_err(|e| e.to_string())?;
-    match output.status.success() {
-        true => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
-        false => Err(String::from_utf8_lossy(&output.stderr).into_owned()),
+    if output.status.success() {
+        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    } else {
+        Err(String::from_utf8_lossy(&output.stderr).into_owned())
     }
 }
 
@@ -168,13 +169,15 @@ fn output(command: &mut Command, folder: &Path) -> Result<String, String> {
 fn driver<S: StudiedScene>(export: &Export, subject: &Subject<S>) -> String {
     let names = Identifiers::new(&export.machine);
     let times: Vec<String> = subject.times.iter().map(|t| format!("{t:e}")).collect();
-    let coefficients = match export.machine.reactions.is_empty() {
-        true => "@p@_motion_terms_at(state.q, &motion)",
-        false => "@p@_coefficients(state.q, &motion, &reactions)",
+    let coefficients = if export.machine.reactions.is_empty() {
+        "@p@_motion_terms_at(state.q, &motion)"
+    } else {
+        "@p@_coefficients(state.q, &motion, &reactions)"
     };
-    let reactions = match export.machine.reactions.is_empty() {
-        true => "",
-        false => "static @p@_reaction_terms reactions;",
+    let reactions = if export.machine.reactions.is_empty() {
+        ""
+    } else {
+        "static @p@_reaction_terms reactions;"
     };
     let state = subject.reduced_state();
     DRIVER

@@ -23,11 +23,10 @@ const MIN_LABEL_GAP_CROWDED: f64 = 3.0;
 pub(super) fn figure(scene: &SceneFile, found: &WorkPrecision, name: &str) -> Figure {
     let tables =
         |p: &CombinationResult| matches!(p.combination.evaluation, Evaluation::Table { .. });
-    let hollow = match found.points.iter().any(tables) {
-        true => {
-            "; hollow: tables, without their build time; dashed: build time of the finest table"
-        }
-        false => "",
+    let hollow = if found.points.iter().any(tables) {
+        "; hollow: tables, without their build time; dashed: build time of the finest table"
+    } else {
+        ""
     };
     let reference_error = found.reference.error;
     let text = format!(
@@ -95,9 +94,10 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
             "build time of the finest table",
         ));
     }
-    let (label_gap, cost) = match measure == CostMeasure::Evaluations {
-        true => (MIN_LABEL_GAP, "evaluations"),
-        false => (MIN_LABEL_GAP_CROWDED, "time / one exact evaluation"),
+    let (label_gap, cost) = if measure == CostMeasure::Evaluations {
+        (MIN_LABEL_GAP, "evaluations")
+    } else {
+        (MIN_LABEL_GAP_CROWDED, "time / one exact evaluation")
     };
     marks.extend(named_points(&front, label_gap, &at));
     let coordinate = "largest error of the free coordinates";
@@ -194,9 +194,10 @@ fn error_axis(found: &WorkPrecision, quantity: ErrorQuantity, label: &str) -> Ax
         ErrorQuantity::Coordinate => found.unit,
         ErrorQuantity::Energy | ErrorQuantity::Reaction => "",
     };
-    match min < max {
-        true => Axis::log(label, unit).with_range(min / AXIS_MARGIN, max * AXIS_MARGIN),
-        false => Axis::log(label, unit),
+    if min < max {
+        Axis::log(label, unit).with_range(min / AXIS_MARGIN, max * AXIS_MARGIN)
+    } else {
+        Axis::log(label, unit)
     }
 }
 

@@ -150,9 +150,10 @@ pub fn measure_with<S: StudiedScene>(
     let fixed_step = fixed_step::fixed_step(&mut reference, exact, &subject, evaluation_time);
     let fixed_step =
         fixed_step.map_err(|e| omitted.push(format!("fixed step: {}", run::reason(&e))));
-    let exported_code = match effort.exported_code {
-        true => exported_code::exported_code(&mut reference, exact, &subject, evaluation_time),
-        false => Ok(Vec::new()),
+    let exported_code = if effort.exported_code {
+        exported_code::exported_code(&mut reference, exact, &subject, evaluation_time)
+    } else {
+        Ok(Vec::new())
     };
     let exported_code = exported_code.map_err(|e| omitted.push(format!("exported code: {e}")));
     Ok(WorkPrecision {

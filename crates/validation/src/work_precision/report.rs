@@ -328,9 +328,10 @@ pub(super) fn command_summary(scene: &SceneFile, found: &WorkPrecision) -> Strin
         if !of.is_reached {
             return format!("  for {accuracy}: not reached; measured {errors}\n");
         }
-        let kept = match of.keeps_accuracy(&found.reference.error) {
-            true => "measured",
-            false => "NOT KEPT:",
+        let kept = if of.keeps_accuracy(&found.reference.error) {
+            "measured"
+        } else {
+            "NOT KEPT:"
         };
         let whole = of.whole.map_or_else(String::new, |whole| {
             let [files, pictures] = whole.map(|s| digits(1e3 * s, 2));

@@ -238,9 +238,10 @@ impl StudiedScene for SpaceScene {
         // From the assembly, at one rad/s or m/s of the first actuator: about a revolution, or over the size.
         let is_angle = self.actuator(0).is_none_or(|(_, is_angle)| is_angle);
         let machine = self.machine(&[])?;
-        let travel = match is_angle {
-            true => TAU,
-            false => dwell_kinetostatics::MachineModel::size(machine.model()),
+        let travel = if is_angle {
+            TAU
+        } else {
+            dwell_kinetostatics::MachineModel::size(machine.model())
         };
         let count = self.assembly.q.len();
         let mut velocities = vec![0.0; count];

@@ -147,9 +147,10 @@ impl<S: StudiedScene> Subject<S> {
         let changes = rates[..self.machine.work_offset()]
             .iter()
             .any(|rate| *rate != 0.0);
-        match changes || self.machine.depends_on_time() {
-            true => Ok(()),
-            false => Err(self.explain(&DynamicsError::AtRest)),
+        if changes || self.machine.depends_on_time() {
+            Ok(())
+        } else {
+            Err(self.explain(&DynamicsError::AtRest))
         }
     }
 }
