@@ -44,8 +44,9 @@ use times::Times;
 
 fn main() -> ExitCode {
     // clap itself exits with 2 on a bad argument, and with 0 for help.
-    let matches = Options::command().try_get_matches();
-    let matches = matches.unwrap_or_else(|error| former::with_current_name(error).exit());
+    let matches = Options::command()
+        .try_get_matches()
+        .unwrap_or_else(|error| former::with_current_name(error).exit());
     let options = Options::from_arg_matches(&matches).unwrap_or_else(|e| e.exit());
     match run(&options, matches.subcommand_name().unwrap_or_default()) {
         Ok(true) => ExitCode::SUCCESS,

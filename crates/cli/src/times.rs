@@ -27,8 +27,9 @@ impl Times {
     /// The stages as a line.
     pub(crate) fn text(&self) -> String {
         let whole: Duration = self.stages.iter().map(|(_, time)| *time).sum();
-        let stages = self.stages.iter();
-        let stages: Vec<String> = stages
+        let stages: Vec<String> = self
+            .stages
+            .iter()
             .map(|(stage, time)| format!("{stage} {}", seconds(*time)))
             .collect();
         format!("time: {} ({})", seconds(whole), stages.join(", "))

@@ -79,10 +79,10 @@ pub(crate) fn validate(
                 )
             },
         );
-    let spatial = in_space
+    let mut spatial: Vec<_> = in_space
         .par_iter()
-        .map(|path| case_in_space(path, program.as_deref()));
-    let mut spatial: Vec<_> = spatial.collect();
+        .map(|path| case_in_space(path, program.as_deref()))
+        .collect();
     bar.finish_and_clear();
     let mut studies = studies.map_err(SceneError::from)?;
     let (audit, no_reader) = match audit {
@@ -190,8 +190,7 @@ fn case_in_space(
 ) -> Result<(SpaceScene, Validation), SceneError> {
     let scene = SpaceScene::read(path)?;
     print_warnings(&scene);
-    let reference = path.with_extension("json");
-    let reference = reference.is_file().then_some(reference);
+    let reference = path.with_extension("json").is_file().then_some(reference);
     let done = dwell_validation::validate_in_space(&scene, reference.as_deref(), program);
     Ok((scene, done.map_err(validation_error)?))
 }

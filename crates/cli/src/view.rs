@@ -27,8 +27,10 @@ pub(crate) fn write(
     let template = template(page)?;
     let text = text(scene)?;
     // Within a script element only `</` and `<!--` are special; in JSON `<` can be escaped.
-    let text = json(&text).map_err(|e| unwritten(&e))?;
-    let text = text.trim_end().replace('<', "\\u003c");
+    let text = json(&text)
+        .map_err(|e| unwritten(&e))?
+        .trim_end()
+        .replace('<', "\\u003c");
     let html = template.replacen(SCENE_ELEMENT, &format!("{SCENE_START}{text}</script>"), 1);
     let mut files = Files::new();
     files.add(format!("{}-live.html", scene_name(options, scene)), html);
@@ -66,8 +68,10 @@ fn template(given: Option<&Path>) -> Result<String, Report> {
 fn found() -> Result<PathBuf, Report> {
     let program = std::env::current_exe();
     let beside = program.as_deref().ok().and_then(Path::parent);
-    let places = beside.map(|folder| [folder.join(PAGE), folder.join("../web").join(PAGE)]);
-    let mut places = places.into_iter().flatten();
+    let mut places = beside
+        .map(|folder| [folder.join(PAGE), folder.join("../web").join(PAGE)])
+        .into_iter()
+        .flatten();
     places.find(|path| path.is_file()).ok_or_else(|| {
         miette!(
             help = "build it with `just web` (it needs the target wasm32-unknown-unknown of Rust), or give its file with --page",

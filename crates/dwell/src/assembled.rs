@@ -124,20 +124,21 @@ impl SceneTask for Assemble {
 fn names<S: StudyScene>(scene: &S, assembled: &AssembledModel<S>) -> Names {
     let actuators = (0..).map_while(|k| scene.actuator(k));
     let owned = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect();
-    let bodies = scene.named_points().into_iter();
-    let bodies = bodies.map(|(name, points)| {
+    let bodies = scene.named_points().into_iter().map(|(name, points)| {
         let points = points.into_iter().map(|(point, at)| (point.to_owned(), at));
         NamedBody {
             name: name.to_owned(),
             points: points.collect(),
         }
     });
-    let reactions = assembled.reactions.iter();
-    let reactions = reactions.map(|&(reaction, place)| NamedReaction {
-        name: scene.name_of_reaction(reaction),
-        joint: scene.joint_of(reaction).to_owned(),
-        place,
-    });
+    let reactions = assembled
+        .reactions
+        .iter()
+        .map(|&(reaction, place)| NamedReaction {
+            name: scene.name_of_reaction(reaction),
+            joint: scene.joint_of(reaction).to_owned(),
+            place,
+        });
     Names {
         dimension: S::DIMENSION,
         actuators: actuators.map(|(name, _)| name.to_owned()).collect(),
@@ -182,8 +183,10 @@ impl<S: StudyScene> Assembled for AssembledScene<S> {
     ) -> Result<(FoundStates, InverseDynamics<f64>), Error> {
         let model = &self.assembled.model;
         let mut forces = model.result_buffer();
-        let found = self.scene.loaded_states(model, t, motion, &mut forces);
-        let found = found.map_err(|error| self.explain(&error))?;
+        let found = self
+            .scene
+            .loaded_states(model, t, motion, &mut forces)
+            .map_err(|error| self.explain(&error))?;
         Ok((found, forces))
     }
 

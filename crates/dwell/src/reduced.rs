@@ -277,8 +277,8 @@ impl<S: StudyScene> CoefficientEvaluator for SceneEvaluator<S> {
             return Ok(found);
         };
         // At unit velocity, so that a damper has a direction.
-        let state = KinematicState::new(model, [&[q], &[1.0]], workspace);
-        let mut state = state.map_err(|e| scene.explain(model, &e.into()))?;
+        let mut state = KinematicState::new(model, [&[q], &[1.0]], workspace)
+            .map_err(|e| scene.explain(model, &e.into()))?;
         found.w.resize(model.loads().len(), 0.0);
         found.c.resize(model.loads().len(), Vec::new());
         for load in 0..model.loads().len() {

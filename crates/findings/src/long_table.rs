@@ -136,8 +136,10 @@ impl LongTable {
     /// # Errors
     /// As [`part`](Self::part).
     pub fn rows_of_part(&self, part: usize, columns: &[usize]) -> io::Result<Vec<Vec<f64>>> {
-        let columns = columns.iter().map(|&k| self.part(part, k));
-        let columns: Vec<Vec<f64>> = columns.collect::<io::Result<_>>()?;
+        let columns: Vec<Vec<f64>> = columns
+            .iter()
+            .map(|&k| self.part(part, k))
+            .collect::<io::Result<_>>()?;
         let rows = columns.first().map_or(0, Vec::len);
         let row = |i: usize| columns.iter().map(|values| values[i]).collect();
         Ok((0..rows).map(row).collect())

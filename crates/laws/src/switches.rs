@@ -149,8 +149,9 @@ impl Switches {
 
     /// The switches of an unknown function that is smooth between given values of its variables (index and values).
     pub fn at_values<'v>(values: impl IntoIterator<Item = (usize, &'v [f64])>) -> Self {
-        let all = values.into_iter();
-        let all = all.map(|(variable, values)| (variable, SwitchKind::Knots(values.to_vec())));
+        let all = values
+            .into_iter()
+            .map(|(variable, values)| (variable, SwitchKind::Knots(values.to_vec())));
         let (variables, kinds): (Vec<usize>, Vec<SwitchKind>) = all.unzip();
         Self {
             may_hide: vec![false; kinds.len()],
@@ -427,8 +428,8 @@ mod tests {
                 let part = f64::from(k) / 200.0;
                 let at = [0, 1, 2].map(|i| from[i] + part * (to[i] - from[i]));
                 switches.values(&at, &held, &mut values);
-                let inside = switches.kinds().iter().zip(values.iter().zip(&first));
-                let inside = inside.map(|(kind, (value, first))| {
+                let watched = switches.kinds().iter().zip(values.iter().zip(&first));
+                let inside = watched.map(|(kind, (value, first))| {
                     kind.piece_at(*first).is_none_or(|piece| {
                         let [low, high] = kind.bounds(piece);
                         (low..=high).contains(value)

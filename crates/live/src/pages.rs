@@ -92,8 +92,10 @@ pub(crate) fn add_reduced_inertia<S: StudyScene>(scene: &S, page: &mut Page) {
         return;
     };
     let mut inertia = prepared.inertia();
-    let rows = coordinate.values.iter();
-    let rows = rows.map(|&q| inertia(q).unwrap_or((f64::NAN, f64::NAN)));
+    let rows = coordinate
+        .values
+        .iter()
+        .map(|&q| inertia(q).unwrap_or((f64::NAN, f64::NAN)));
     let (m, half_dm) = rows.unzip();
     drop(inertia);
     let units = if prepared.is_angle() {

@@ -36,11 +36,12 @@ impl OrthogonalBasis {
             alpha.push(dot(&moved, last) / square);
             beta.push(if k == 0 { 0.0 } else { square / before });
             before = square;
-            let next = (0..x.len()).map(|i| {
-                let earlier = if k == 0 { 0.0 } else { all[k - 1][i] };
-                (x[i] - alpha[k]) * last[i] - beta[k] * earlier
-            });
-            let next = next.collect();
+            let next = (0..x.len())
+                .map(|i| {
+                    let earlier = if k == 0 { 0.0 } else { all[k - 1][i] };
+                    (x[i] - alpha[k]) * last[i] - beta[k] * earlier
+                })
+                .collect();
             all.push(next);
         }
         (Self { scale, alpha, beta }, all)

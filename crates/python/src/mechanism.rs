@@ -85,8 +85,9 @@ impl Mechanism {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let q = q.as_slice()?;
         let names = points.iter().map(String::as_str);
-        let found = py.detach(|| self.mechanism.paths::<3>(names, q));
-        let found = found.or_raise(py)?;
+        let found = py
+            .detach(|| self.mechanism.paths::<3>(names, q))
+            .or_raise(py)?;
         Ok(found.into_flattened().into_pyarray(py))
     }
 

@@ -80,8 +80,10 @@ fn pool(threads: usize) -> PyResult<Arc<ThreadPool>> {
     if let Some(pool) = pools.get(&threads) {
         return Ok(Arc::clone(pool));
     }
-    let built = ThreadPoolBuilder::new().num_threads(threads).build();
-    let built = built.map_err(|e| DwellError::new_err(e.to_string()))?;
+    let built = ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|e| DwellError::new_err(e.to_string()))?;
     let pool = Arc::clone(pools.entry(threads).or_insert(Arc::new(built)));
     Ok(pool)
 }

@@ -76,8 +76,7 @@ impl Scene {
         for (signal, values) in breakpoints {
             magnitude = magnitude.breakpoints(&signal, &values);
         }
-        let scene = self.scene.with_magnitude(load, &magnitude);
-        let scene = scene.or_raise(py)?;
+        let scene = self.scene.with_magnitude(load, &magnitude).or_raise(py)?;
         Ok(Self { scene })
     }
 

@@ -221,8 +221,11 @@ pub(crate) fn vertical_axis(
         plot.x0 - cell.x0
     };
     let room = strip - ticks_room(style.ticks) - 0.5 * LABEL_GAP;
-    let wrapped = wrapped_text::fitted_label(axis, style.ticks, bottom - top);
-    let wrapped = wrapped.shrunk_to_fit(bottom - top, room, false);
+    let wrapped = wrapped_text::fitted_label(axis, style.ticks, bottom - top).shrunk_to_fit(
+        bottom - top,
+        room,
+        false,
+    );
     // Lines that read upwards follow each other to the right.
     let left = if style.right {
         cell.x1 - wrapped.height()

@@ -245,8 +245,10 @@ impl Canvas<'_> {
         } else {
             ([x, y - ascent], FontTransform::None)
         };
-        let style = font.transform(turn).color(&RGBColor(r, g, b));
-        let style = style.pos(Pos::new(h_pos, VPos::Top));
+        let style = font
+            .transform(turn)
+            .color(&RGBColor(r, g, b))
+            .pos(Pos::new(h_pos, VPos::Top));
         let _ = self.page.draw(&Text::new(text, at, style));
     }
 }

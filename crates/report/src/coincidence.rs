@@ -75,8 +75,9 @@ fn steps(line: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> {
 
 /// Joins the groups of curves that hide each other.
 fn find_groups(group: &mut [usize], styles: &[SeriesStyle], lines: &[Lines], plot: &Rect) {
-    let covers = styles.iter().zip(lines);
-    let covers: Vec<Cover> = covers
+    let covers: Vec<Cover> = styles
+        .iter()
+        .zip(lines)
         .map(|(style, lines)| Cover::of(style, lines, plot))
         .collect();
     for i in 0..covers.len() {

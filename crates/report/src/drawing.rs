@@ -154,8 +154,10 @@ fn bounds(drawings: &[Drawing]) -> [[f64; 2]; 2] {
     };
     let side = |axis: fn(&Drawing) -> &Axis, i: usize| {
         let given = drawings.iter().filter_map(|d| axis(d).range).flatten();
-        let all = points().map(|p| p[i]).chain(given);
-        let all = all.filter(|v| v.abs() < 1e150);
+        let all = points()
+            .map(|p| p[i])
+            .chain(given)
+            .filter(|v| v.abs() < 1e150);
         let AxisRange { min, max, .. } = AxisRange::of(&Axis::default(), all, 0.0);
         [min, max]
     };

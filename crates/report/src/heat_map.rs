@@ -89,8 +89,10 @@ impl<'a> HeatMap<'a> {
             .then_some(range);
         let not_applicable = cells(grid).any(|cell| cell.is_none());
         let failed = cells(grid).flatten().any(|cell| cell.failed);
-        let key = not_applicable.then_some(CellMark::NotApplicable);
-        let key = key.into_iter().chain(failed.then_some(CellMark::Failed));
+        let key = not_applicable
+            .then_some(CellMark::NotApplicable)
+            .into_iter()
+            .chain(failed.then_some(CellMark::Failed));
         Self {
             title: wrapped_text::title(&grid.title, &Rect::sized(0.0, 0.0, total_width, 0.0)),
             bar: ColorBar::new(&grid.values, bar_range, key.collect(), total_width),

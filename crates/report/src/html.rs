@@ -81,8 +81,8 @@ fn findings(all: &[Finding]) -> String {
             relative,
             tolerance,
             f.worst_at.clone(),
-        ];
-        let cells = cells.map(|cell| format!("<td>{}</td>", escaped(&cell)));
+        ]
+        .map(|cell| format!("<td>{}</td>", escaped(&cell)));
         format!("<tr>{result}{}</tr>\n", cells.concat())
     };
     let header = HEADER.map(|cell| format!("<th>{cell}</th>")).concat();

@@ -169,8 +169,7 @@ pub(crate) fn draw_labels(
         | Mark::Slope { label, .. }
         | Mark::Point { label, .. }
         | Mark::Text { label, .. }) = mark;
-        let label = typeset(label.trim());
-        let label = label.as_str();
+        let label = typeset(label.trim()).as_str();
         if label.is_empty() {
             continue;
         }

@@ -45,8 +45,9 @@ pub fn npz(arrays: &[(&str, Array)]) -> Result<Vec<u8>, ReportError> {
             }
         })
     };
-    let arrays = arrays.iter();
-    let arrays = arrays.map(|(name, array)| Ok((file_name(name), bytes(array)?)));
+    let arrays = arrays
+        .iter()
+        .map(|(name, array)| Ok((file_name(name), bytes(array)?)));
     Ok(archive(Cursor::new(Vec::new()), arrays)?.into_inner())
 }
 
@@ -90,8 +91,10 @@ pub(crate) fn table_archive<W: Write + Seek>(
         let values = values(i).map_err(ZipError::Io)?;
         Ok::<_, ReportError>(number_array(&shape, values.iter()))
     };
-    let numbers = keys.into_iter().enumerate();
-    let numbers = numbers.map(|(i, key)| Ok((key, column(i)?)));
+    let numbers = keys
+        .into_iter()
+        .enumerate()
+        .map(|(i, key)| Ok((key, column(i)?)));
     archive(out, numbers.chain(described.map(Ok)))
 }
 
@@ -137,8 +140,12 @@ fn number_array<'v>(shape: &str, values: impl Iterator<Item = &'v f64>) -> Vec<u
 
 /// Words as four bytes a character, padded with zeros to the longest.
 fn string_array(words: &[impl AsRef<str>]) -> Vec<u8> {
-    let width = words.iter().map(|w| w.as_ref().chars().count()).max();
-    let width = width.unwrap_or(0).max(1);
+    let width = words
+        .iter()
+        .map(|w| w.as_ref().chars().count())
+        .max()
+        .unwrap_or(0)
+        .max(1);
     let mut array = header(&format!("<U{width}"), &format!("({},)", words.len()));
     for word in words {
         let end = array.len() + 4 * width;

@@ -49,8 +49,11 @@ pub fn npz_columns(bytes: &[u8]) -> Result<Vec<(String, Vec<f64>)>, NpzError> {
     let mut words = BTreeMap::new();
     for k in 0..archive.len() {
         let file = archive.by_index_raw(k).map_err(|e| refused(&e))?;
-        let name = file.name().map_err(|e| refused(&e))?;
-        let name = name.trim_end_matches(".npy").to_owned();
+        let name = file
+            .name()
+            .map_err(|e| refused(&e))?
+            .trim_end_matches(".npy")
+            .to_owned();
         if file.compression() != zip::CompressionMethod::Stored {
             return Err(NpzError::Compressed { name });
         }

@@ -117,13 +117,18 @@ impl OutputFolder {
     /// [`ReportError::File`] with the path and the system's reason.
     pub fn write(mut self, files: &Files) -> Result<Vec<PathBuf>, ReportError> {
         let mut staged = Vec::new();
-        let owner = self.owner.take().map(|(name, scene)| {
-            let text = format!("{}\n", scene.display());
-            (self.owner_file(&name), Content::Bytes(text.into_bytes()))
-        });
-        let owner = owner.iter().map(|(path, text)| (path.clone(), text));
-        let files = files.contents();
-        let files = files.map(|(path, content)| (self.root.join(path), content));
+        let owner = self
+            .owner
+            .take()
+            .map(|(name, scene)| {
+                let text = format!("{}\n", scene.display());
+                (self.owner_file(&name), Content::Bytes(text.into_bytes()))
+            })
+            .iter()
+            .map(|(path, text)| (path.clone(), text));
+        let files = files
+            .contents()
+            .map(|(path, content)| (self.root.join(path), content));
         for (target, content) in files.chain(owner).collect::<Vec<_>>() {
             // Renaming onto a folder would fail too, but only after others have been renamed.
             if target.is_dir() {

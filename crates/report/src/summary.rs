@@ -141,11 +141,14 @@ impl Summary<'_> {
     /// [`ReportError::Json`], which does not occur for a summary.
     pub fn json(&self) -> Result<String, ReportError> {
         let record = &self.record;
-        let events = record.events.iter().take(MAX_EVENTS);
-        let events = events.map(|event| EventRecord {
-            name: &event.name,
-            t: Number(event.t),
-        });
+        let events = record
+            .events
+            .iter()
+            .take(MAX_EVENTS)
+            .map(|event| EventRecord {
+                name: &event.name,
+                t: Number(event.t),
+            });
         let end = |[value, at]: [f64; 2]| EndRecord {
             value: Number(value),
             at: Number(at),

@@ -375,8 +375,9 @@ impl<'a> PositionFormulas<'a> {
             };
             let local = vector_between(frames, parent, from, point);
             let reached = tree.joint_of_body[parent].map(|p| tree.joints[p].pair);
-            let start = reached.map(|b| pair_name(self.mechanism, self.plan, b));
-            let start = start.unwrap_or_else(|| "the origin".to_owned());
+            let start = reached
+                .map(|b| pair_name(self.mechanism, self.plan, b))
+                .unwrap_or_else(|| "the origin".to_owned());
             let name = self.body_or_joint_name(parent);
             let arm = self.frame_vector(frame, local, &format!("{name}: from {start} to {joint}"));
             let mut joint_origin = rotate(&arm, &self.angle(frame));

@@ -84,8 +84,10 @@ impl SymbolTable {
     /// A unique name from a letter and its indices.
     pub(crate) fn new_name(&mut self, letter: &str, below: &[&str]) -> String {
         // A name in code contains letters and digits only.
-        let base = [&[letter], below].concat().join("_");
-        let base = base.replace(|c: char| !c.is_ascii_alphanumeric(), "_");
+        let base = [&[letter], below]
+            .concat()
+            .join("_")
+            .replace(|c: char| !c.is_ascii_alphanumeric(), "_");
         let mut below: Vec<String> = below.iter().map(|part| upright(part)).collect();
         let mut code = base.clone();
         let mut suffix = 1;

@@ -308,8 +308,10 @@ impl InverseDynamics {
     /// ```
     pub fn actuator_force(&self, name: &str) -> Result<f64, Error> {
         let names = self.kinematics.names.actuators.iter().map(String::as_str);
-        let found = names.clone().position(|known| known == name);
-        let found = found.ok_or_else(|| Error::unknown("actuator", "actuators", name, names));
+        let found = names
+            .clone()
+            .position(|known| known == name)
+            .ok_or_else(|| Error::unknown("actuator", "actuators", name, names));
         Ok(self.result.tau[found?])
     }
 }

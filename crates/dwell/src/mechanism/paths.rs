@@ -33,8 +33,10 @@ impl Mechanism {
                 actuators,
             });
         }
-        let points = points.into_iter().map(|name| self.names.point(name));
-        let points = points.collect::<Result<Vec<_>, _>>()?;
+        let points = points
+            .into_iter()
+            .map(|name| self.names.point(name))
+            .collect::<Result<Vec<_>, _>>()?;
         let dimension = self.names.dimension;
         // A wrong number of components is reported before the computation.
         components::<N>([0.0; 3], dimension)?;

@@ -196,10 +196,17 @@ impl Scene {
     /// A copy of the scene whose load has a magnitude given by a function.
     pub(crate) fn with_load_function(&self, load: &str, of: &LoadFunction) -> Result<Self, Error> {
         let signals: Vec<&str> = of.signals.iter().map(String::as_str).collect();
-        let breakpoints = of.breakpoints.iter();
-        let breakpoints: Vec<_> = breakpoints.map(|(s, v)| (&s[..], &v[..])).collect();
-        let scene = (*self.0).clone();
-        let scene = scene.with_load_function(load, &signals, of.function.clone(), &breakpoints)?;
+        let breakpoints: Vec<_> = of
+            .breakpoints
+            .iter()
+            .map(|(s, v)| (&s[..], &v[..]))
+            .collect();
+        let scene = (*self.0).clone().with_load_function(
+            load,
+            &signals,
+            of.function.clone(),
+            &breakpoints,
+        )?;
         Ok(Self(Arc::new(scene)))
     }
 }

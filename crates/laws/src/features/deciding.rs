@@ -51,11 +51,8 @@ pub(super) fn decide(
     };
     let undecided = || {
         let resting = || {
-            if switch.at_integers {
-                None
-            } else {
-                pieces.resting_side(switch, over, sides)
-            }
+            let resting_side = || pieces.resting_side(switch, over, sides);
+            (!switch.at_integers).then(resting_side).flatten()
         };
         let touches = touching(pieces, switch, over, start, sides, enclosure, level);
         // In a tail that underflows.

@@ -208,8 +208,8 @@ impl<'f> Scan<'f> {
     fn first_instant(&self, cell: &Cell) -> f64 {
         const GROWTH: f64 = 16.0;
         let rounding = (f64::EPSILON * cell.from.abs()).max(NOTHING);
-        let shifts = std::iter::successors(Some(rounding), |shift| Some(GROWTH * shift));
-        let shifts = shifts.take_while(|&shift| shift < self.min_width);
+        let shifts = std::iter::successors(Some(rounding), |shift| Some(GROWTH * shift))
+            .take_while(|&shift| shift < self.min_width);
         let instants = || std::iter::once(cell.from).chain(shifts.clone().map(|s| cell.from + s));
         let mut first = cell.from;
         for ((_, pieces), sides) in self.features.expressions.iter().zip(&cell.sides) {

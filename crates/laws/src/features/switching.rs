@@ -237,8 +237,9 @@ impl Pieces {
 
     /// The largest slope of all parts of a switch's function.
     fn largest_slope(&self, switch: &Switch, over: Interval, sides: &[Sides]) -> f64 {
-        let parts = std::iter::once(switch.left).chain(switch.right);
-        let parts = parts.flat_map(|last| self.starts[last]..=last);
+        let parts = std::iter::once(switch.left)
+            .chain(switch.right)
+            .flat_map(|last| self.starts[last]..=last);
         let slopes = parts.map(|last| self.enclose(last, over, sides).0[1].magnitude());
         slopes.fold(0.0, f64::max)
     }

@@ -181,7 +181,12 @@ fn step(a: &mut Matrix, first: usize, last: usize, shifts: &Shifts) {
         } else if first < begin {
             a[(k, k - 1)] = -a[(k, k - 1)];
         }
-        let reflection = Reflection { k, rows, column, length };
+        let reflection = Reflection {
+            k,
+            rows,
+            column,
+            length,
+        };
         reflection.apply(a, first, last);
     }
 }
@@ -198,7 +203,12 @@ struct Reflection {
 impl Reflection {
     /// Applies it to the active rows and columns from `first` to `last`.
     fn apply(&self, a: &mut Matrix, first: usize, last: usize) {
-        let Self { k, rows, column, length } = *self;
+        let Self {
+            k,
+            rows,
+            column,
+            length,
+        } = *self;
         let head = column[0] + length;
         let of_rows = [head / length, column[1] / length, column[2] / length];
         let others = [1.0, column[1] / head, column[2] / head];

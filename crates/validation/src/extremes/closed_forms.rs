@@ -168,8 +168,9 @@ pub(crate) fn slider_crank(parts: &SliderCrank, q: DoubleDouble) -> [DoubleDoubl
     let e = (rise * w * w - ab.y) / run;
     let axis = vec2(run, rise) * (dd(1.0) / rod);
     let two = UnitSpeedBody::new([b, vb, ab], axis, [w, e], parts.masses[1]);
-    let end = two.point_motion(vec2(rod, dd(0.0)));
-    let end = end.map(|p| vec2(p.x, dd(0.0)));
+    let end = two
+        .point_motion(vec2(rod, dd(0.0)))
+        .map(|p| vec2(p.x, dd(0.0)));
     let axis = Vec2::IDENTITY.cast();
     let three = UnitSpeedBody::new(end, axis, [dd(0.0); 2], parts.masses[2]);
     let sums = [one, two, three].map(|body| body.inertia_terms());

@@ -118,14 +118,17 @@ fn in_space(
         heights: &|j| 0.04 * size * j as f64,
     };
     let model = compile_model(scene, &[])?;
-    let lifted = plane.lift(&model, &scene.masses);
-    let lifted = lifted.ok_or("a joint has no counterpart in space")?;
+    let lifted = plane
+        .lift(&model, &scene.masses)
+        .ok_or("a joint has no counterpart in space")?;
     let (mut all, mut sums) = (Vec::new(), Vec::new());
     for reaction in reactions {
         let along = |axis: usize, of: fn(Axes, usize) -> SpaceComponent| {
             let Vec3 { x, y, z } = tilted.rotation.apply(Vec3::AXES[axis]);
-            let parts = [x, y, z].into_iter().enumerate();
-            let parts = parts.map(|(k, part)| (of(Axes::Ground, k), part));
+            let parts = [x, y, z]
+                .into_iter()
+                .enumerate()
+                .map(|(k, part)| (of(Axes::Ground, k), part));
             parts.collect::<Vec<_>>()
         };
         let parts = match reaction.component {

@@ -106,11 +106,14 @@ pub(super) fn series(form: Form) -> Vec<ParameterSeries> {
         let found = StatedTable::reduced(form, &ring.text, POINTS)?;
         let (m, [x, y]) = ring.sums();
         // Ground on disk: F = Σ M c̈, which for c̈ = q̈ k × c − q̇² c is a and b.
-        let turned = found.column("phi")?.into_iter().map(|q| {
-            let (sin, cos) = dd(q).sin_cos();
-            [x * cos - y * sin, x * sin + y * cos]
-        });
-        let turned: Vec<_> = turned.collect();
+        let turned: Vec<_> = found
+            .column("phi")?
+            .into_iter()
+            .map(|q| {
+                let (sin, cos) = dd(q).sin_cos();
+                [x * cos - y * sin, x * sin + y * cos]
+            })
+            .collect();
         let of =
             |pick: &dyn Fn(&[DoubleDouble; 2]) -> DoubleDouble| turned.iter().map(pick).collect();
         found.compare(&[

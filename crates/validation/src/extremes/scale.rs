@@ -76,7 +76,8 @@ fn lengths(form: Form) -> ParameterSeries {
         reason: "nothing but the unit of length changes; a dyad's 8, 16 roundings",
         ..base_series(
             form,
-            "length", "Four-bar: all lengths",
+            "length",
+            "Four-bar: all lengths",
             decades(-9, 9),
             |by| CRANK_ROCKER.scaled(by),
         )
@@ -97,7 +98,8 @@ fn placement(form: Form) -> ParameterSeries {
         reference: "circle and circle in 32 digits, at the same double-precision coordinates of the ground's points",
         ..base_series(
             form,
-            "placement", "Four-bar: its position",
+            "placement",
+            "Four-bar: its position",
             decades(0, 9),
             make,
         )
@@ -134,7 +136,8 @@ fn powers_of_two(form: Form) -> ParameterSeries {
         }),
         ..base_series(
             form,
-            "power-of-two", "Four-bar: all lengths times a power of two",
+            "power-of-two",
+            "Four-bar: all lengths times a power of two",
             (-10..=10).map(|k| 8.0_f64.powi(k)).collect(),
             |by| CRANK_ROCKER.scaled(by),
         )

@@ -79,8 +79,11 @@ pub(super) fn document(contents: &Contents<'_>) -> Document {
 
 fn summary(contents: &Contents<'_>) -> Block {
     let [passed, failed, exempt] = counts(contents.lines);
-    let findings = contents.cases.iter().flat_map(|case| case.findings);
-    let findings = findings.chain(contents.extremes);
+    let findings = contents
+        .cases
+        .iter()
+        .flat_map(|case| case.findings)
+        .chain(contents.extremes);
     let wrong = findings.clone().filter(|f| !f.pass).count();
     let result = match failed + wrong {
         0 => "**This installation passes.**",
@@ -103,11 +106,13 @@ fn how_to_read() -> Block {
 
 /// The failed lines.
 fn failures(lines: &[Line]) -> Vec<Block> {
-    let failed = lines.iter().filter_map(|line| {
-        let why = line.failure()?;
-        Some(format!("- `{}` `{}`: {why}", line.section, line.item))
-    });
-    let failed: Vec<String> = failed.collect();
+    let failed: Vec<String> = lines
+        .iter()
+        .filter_map(|line| {
+            let why = line.failure()?;
+            Some(format!("- `{}` `{}`: {why}", line.section, line.item))
+        })
+        .collect();
     if failed.is_empty() {
         Vec::new()
     } else {

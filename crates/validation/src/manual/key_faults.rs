@@ -100,8 +100,12 @@ impl KeyFaults {
 
 /// A line of the text: key, change, and numbers of checks, separated by two blanks.
 fn read_line(line: &str) -> Option<KeyFault> {
-    let parts = line.strip_prefix("  ")?.split("  ").map(str::trim);
-    let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
+    let parts: Vec<&str> = line
+        .strip_prefix("  ")?
+        .split("  ")
+        .map(str::trim)
+        .filter(|part| !part.is_empty())
+        .collect();
     let [key, what, by] = parts[..] else {
         return None;
     };

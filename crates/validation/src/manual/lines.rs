@@ -132,7 +132,7 @@ pub(super) fn command_lines(
                 ..Line::default()
             };
             lines.push(match required {
-                Some(required) => checked_line(line, required, (cases, others), faults),
+                Some(required) => checked_line(line, required, cases, others, faults),
                 None => line,
             });
         };
@@ -159,7 +159,8 @@ pub(super) fn command_lines(
 fn checked_line(
     line: Line,
     (requirement, _, keys, words): &'static CommandRequirement,
-    (cases, others): (&[CaseFindings<'_>], &[Finding]),
+    cases: &[CaseFindings<'_>],
+    others: &[Finding],
     faults: &[CommittedMutation],
 ) -> Line {
     let judges = |f: &&Finding| keys.iter().any(|key| f.key.starts_with(key.as_str()));
@@ -185,8 +186,7 @@ fn checked_line(
         (None, _, 0) if !faults.is_empty() => LineState::Fail("no fault is caught".to_owned()),
         _ => LineState::Pass,
     };
-    let listed = caught.iter().take(MAX_LISTED);
-    let listed = listed.map(|fault| {
+    let listed = caught.iter().take(MAX_LISTED).map(|fault| {
         let by: Vec<String> = fault.detected_by.iter().map(usize::to_string).collect();
         format!("{}: {}", fault.description, by.join(" "))
     });

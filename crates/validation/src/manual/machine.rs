@@ -12,8 +12,7 @@ pub(super) fn facts(folder: &Path) -> [Vec<String>; 4] {
         std::env::consts::OS,
         std::env::consts::ARCH
     );
-    let commit = commit(folder);
-    let commit = commit.unwrap_or("unknown: the cases are not in a repository".to_owned());
+    let commit = commit(folder).unwrap_or("unknown: the cases are not in a repository".to_owned());
     [
         ("Program", format!("Dwell {}", env!("CARGO_PKG_VERSION"))),
         ("Compiler", env!("DWELL_COMPILER").to_owned()),

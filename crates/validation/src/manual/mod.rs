@@ -141,10 +141,9 @@ impl Manual {
         let mut lines: Vec<Line> = self.keys.iter().map(|key| key_line(key, &cases)).collect();
         lines.extend(command_lines(interface, &cases, extremes, &faults));
         let of_name = |name: &str| self.written.iter().find(|scene| scene.name == name);
-        let entries = cases
+        let entries: Vec<CaseEntry<'_>> = cases
             .iter()
-            .filter_map(|case| Some((of_name(case.name)?, case)));
-        let entries: Vec<CaseEntry<'_>> = entries
+            .filter_map(|case| Some((of_name(case.name)?, case)))
             .map(|(scene, case)| CaseEntry {
                 name: case.name,
                 title: &scene.title,
@@ -234,8 +233,9 @@ fn failed_finding(why: String) -> Finding {
 
 /// The small scenes in the folder of the cases, by name.
 pub fn capability_scenes(folder: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(folder.join(CAPABILITY_FOLDER));
-    let entries = entries.into_iter().flatten();
+    let entries = std::fs::read_dir(folder.join(CAPABILITY_FOLDER))
+        .into_iter()
+        .flatten();
     let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
     let mut scenes: Vec<PathBuf> = paths
         .filter(|path| path.extension().is_some_and(|e| e == "toml"))

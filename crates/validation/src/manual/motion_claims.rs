@@ -44,8 +44,13 @@ impl MotionClaims {
     pub(super) fn differ_from(&self, own: &Self) -> bool {
         let values = |claims: &Self| {
             let last = claims.run.coordinates.last().cloned().unwrap_or_default();
-            let times = claims.run.events.iter().map(|(_, at)| at.t);
-            let times: Vec<f64> = times.chain([claims.end()]).collect();
+            let times: Vec<f64> = claims
+                .run
+                .events
+                .iter()
+                .map(|(_, at)| at.t)
+                .chain([claims.end()])
+                .collect();
             let reactions = claims.run.steps.last().map(|step| step.reactions.clone());
             [last.concat(), times, reactions.unwrap_or_default()]
         };
@@ -165,8 +170,13 @@ impl MotionClaims {
     /// Error of the kinetic energy along the claimed steps, from the power of the scene's own torques, relative to the largest energy. The power
     /// is evaluated inside the steps, because torques may jump at their ends.
     fn energy_error(&self, rotor: &Rotor) -> f64 {
-        let states = self.run.steps.iter().zip(&self.run.coordinates);
-        let states: Vec<(f64, f64, f64)> = states.map(|(s, c)| (s.t, c[0][0], c[0][1])).collect();
+        let states: Vec<(f64, f64, f64)> = self
+            .run
+            .steps
+            .iter()
+            .zip(&self.run.coordinates)
+            .map(|(s, c)| (s.t, c[0][0], c[0][1]))
+            .collect();
         let kinetic = |v: f64| 0.5 * rotor.forces.inertia * v * v;
         let mut energy = states.first().map_or(0.0, |first| kinetic(first.2));
         let (mut state, mut largest, mut worst) = (0.0, 0.0_f64, 0.0_f64);

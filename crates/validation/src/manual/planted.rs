@@ -167,8 +167,9 @@ impl PlantedScene {
     fn claims(&self, scene: &PlaneScene) -> Option<StateClaims> {
         let claims = || -> Result<StateClaims, StudyError> {
             let mut model = ModelStates::new(scene)?;
-            let requests = motions(scene, &model, &self.reference, STATES).flatten();
-            let requests: Vec<StateRequest> = requests.collect();
+            let requests: Vec<StateRequest> = motions(scene, &model, &self.reference, STATES)
+                .flatten()
+                .collect();
             let (mut states, mut mass_matrices) = (Vec::new(), Vec::new());
             for request in &requests {
                 states.push(model.state(request)?);

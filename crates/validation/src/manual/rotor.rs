@@ -84,8 +84,11 @@ impl Rotor {
         };
         let assembly = root.get("assembly");
         let assembled = assembly.and_then(|assembly| number(assembly, "phi"));
-        let events = motion.get("events").and_then(Value::as_table);
-        let events = events.into_iter().flat_map(|all| all.values());
+        let events = motion
+            .get("events")
+            .and_then(Value::as_table)
+            .into_iter()
+            .flat_map(|all| all.values());
         let stops = root.get("stops").and_then(Value::as_table);
         let stop = stops.and_then(|all| all.values().next());
         let limits = stop.map(|stop| {

@@ -199,8 +199,11 @@ fn tolerance_row(case: &ValidatedCase<'_>) -> Vec<String> {
     };
     let findings = &done.outcome.findings;
     let passed = findings.iter().filter(|f| f.pass).count();
-    let loose = findings.iter().filter(|f| f.is_loose());
-    let loose: Vec<&str> = loose.map(|f| f.key.as_str()).collect();
+    let loose: Vec<&str> = findings
+        .iter()
+        .filter(|f| f.is_loose())
+        .map(|f| f.key.as_str())
+        .collect();
     let loose = if loose.is_empty() {
         "none".to_owned()
     } else {

@@ -62,8 +62,10 @@ impl<'a> ValidationRun<'a> {
             let cases = self.cases.iter().filter(move |c| c.in_space == in_space);
             cases.map(ValidatedCase::passes)
         };
-        let written = self.findings().map(|(_, f)| f);
-        let written = written.filter(|f| f.check >= FIRST_WRITTEN);
+        let written = self
+            .findings()
+            .map(|(_, f)| f)
+            .filter(|f| f.check >= FIRST_WRITTEN);
         let mut tallies = vec![
             Tally::new("cases in the plane", cases(false), "up to 21 checks"),
             Tally::new("in space", cases(true), "by the same checks"),
@@ -159,8 +161,7 @@ impl<'a> ValidationRun<'a> {
                 note,
             )
         });
-        let unit_runs = finding("half-dm-differences").zip(finding("m-energy"));
-        let unit_runs = unit_runs.map(|(slope, m)| {
+        let unit_runs = finding("half-dm-differences").zip(finding("m-energy")).map(|(slope, m)| {
             let note = format!(
                 "relative difference of ½m′ from differences of the kinetic energy; of m: {:.1e}",
                 m.relative_difference
@@ -197,8 +198,10 @@ pub(super) fn document(judged: &ValidationRun<'_>) -> Document {
             tally.note.to_owned(),
         ]
     });
-    let paper = judged.paper().into_iter();
-    let paper = paper.map(|tile| format!("{} **{}** ({})", tile.name, tile.value, tile.note));
+    let paper = judged
+        .paper()
+        .into_iter()
+        .map(|tile| format!("{} **{}** ({})", tile.name, tile.value, tile.note));
     let paper: Vec<String> = paper.collect();
     let mut blocks = vec![
         Block::Text(nearest),
@@ -229,8 +232,7 @@ pub(super) fn document(judged: &ValidationRun<'_>) -> Document {
 
 /// The kinds as tiles, and the numbers.
 pub(super) fn tiles(judged: &ValidationRun<'_>) -> [Vec<Tile>; 2] {
-    let tallies = judged.tallies().into_iter();
-    let tallies = tallies.map(|tally| {
+    let tallies = judged.tallies().into_iter().map(|tally| {
         let passed = tally.passes();
         Tile::new(tally.name, tally.counts(), tally.note).with_result(passed)
     });

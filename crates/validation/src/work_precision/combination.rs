@@ -87,8 +87,11 @@ pub struct Combination {
 impl Combination {
     /// Its name in figures and tables.
     pub fn name(&self) -> String {
-        let tolerance = self.integrator.tolerance().map(|t| format!(" {t:.0e}"));
-        let tolerance = tolerance.unwrap_or_default();
+        let tolerance = self
+            .integrator
+            .tolerance()
+            .map(|t| format!(" {t:.0e}"))
+            .unwrap_or_default();
         let evaluation = match self.evaluation {
             Evaluation::Exact => String::new(),
             other => format!(", {}", other.name().trim_start_matches("exact ")),

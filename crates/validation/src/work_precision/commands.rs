@@ -108,8 +108,12 @@ fn rows_at<S: StudiedScene>(
     let name = |i: usize| subject.scene.actuator(i).map_or("", |(name, _)| name);
     let names: Vec<String> = free.iter().map(|&i| name(i).to_owned()).collect();
     let speeds = names.iter().map(|name| format!("{name}.velocity"));
-    let columns = names.iter().cloned().chain(speeds);
-    let columns: Vec<Option<usize>> = columns.map(|name| column(&name)).collect();
+    let columns: Vec<Option<usize>> = names
+        .iter()
+        .cloned()
+        .chain(speeds)
+        .map(|name| column(&name))
+        .collect();
     let time = column("t");
     let at = |row: &[f64]| time.map_or(f64::NAN, |t| row[t]);
     let times = subject.times.iter().zip(reference);

@@ -156,8 +156,10 @@ fn run<S: StudiedScene>(
 }
 
 fn output(command: &mut Command, folder: &Path) -> Result<String, String> {
-    let output = command.current_dir(folder).output();
-    let output = output.map_err(|e| e.to_string())?;
+    let output = command
+        .current_dir(folder)
+        .output()
+        .map_err(|e| e.to_string())?;
     if output.status.success() {
         Ok(String::from_utf8_lossy(&output.stdout).into_owned())
     } else {

@@ -48,8 +48,8 @@ pub(super) fn figure(scene: &SceneFile, found: &WorkPrecision, name: &str) -> Fi
         (ErrorQuantity::Coordinate, CostMeasure::Time),
         (ErrorQuantity::Energy, CostMeasure::Evaluations),
         (ErrorQuantity::Reaction, CostMeasure::Evaluations),
-    ];
-    let panels = panels.map(|(quantity, measure)| panel(found, quantity, measure));
+    ]
+    .map(|(quantity, measure)| panel(found, quantity, measure));
     let panels = panels.into_iter().chain([requested(found)]);
     let (title, provenance) = (
         "Work–precision diagram",
@@ -65,8 +65,11 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
     let at = |point: &CombinationResult| -> [f64; 2] {
         [found.error_bound(point, quantity), point.cost.of(measure)]
     };
-    let front = found.pareto_front(quantity, measure).into_iter();
-    let front: Vec<&CombinationResult> = front.map(|k| &found.points[k]).collect();
+    let front: Vec<&CombinationResult> = found
+        .pareto_front(quantity, measure)
+        .into_iter()
+        .map(|k| &found.points[k])
+        .collect();
     let line = front.iter().map(|point| at(point)).collect();
     let mut series = vec![Series::line("", line).color(Paint::Grey)];
     series.extend(method_series(found, measure, &at));
@@ -138,13 +141,17 @@ fn requested(found: &WorkPrecision) -> Panel {
 /// The command at its accuracies and the exported code with steps of 1 ms, over the error of the coordinate.
 fn commands(found: &WorkPrecision) -> [Series; 2] {
     let (unit, floor) = (found.evaluation_time, found.reference.error.coordinate);
-    let commands = found.commands.iter();
-    let commands = commands.map(|of| [of.errors.coordinate.max(floor), of.computing / unit]);
+    let commands = found
+        .commands
+        .iter()
+        .map(|of| [of.errors.coordinate.max(floor), of.computing / unit]);
     let steps = found
         .fixed_step
         .map_or(f64::NAN, |fixed| fixed.steps as f64);
-    let codes = found.exported_code.iter();
-    let codes = codes.map(|code| [code.errors.coordinate.max(floor), steps * code.times[1][0]]);
+    let codes = found
+        .exported_code
+        .iter()
+        .map(|code| [code.errors.coordinate.max(floor), steps * code.times[1][0]]);
     [
         Series::line("simulate --accuracy", commands.collect())
             .stroke(Stroke::LineAndPoints)

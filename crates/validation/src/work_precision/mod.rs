@@ -374,7 +374,7 @@ fn time_runs<S: StudiedScene>(
             }
             let rerun = match combination.integrator {
                 Integrator::Steps(method, tolerance) => {
-                    run::solve(*evaluator, subject, (method, tolerance), usize::MAX).ok()
+                    run::solve(*evaluator, subject, method, tolerance, usize::MAX).ok()
                 }
                 Integrator::Quadrature => run::quadrature(*evaluator, subject),
             };

@@ -230,11 +230,10 @@ fn from_integrators<S: StudiedScene>(
         };
         let finer_tolerance = (0.1 * fine).max(MIN_TOLERANCE);
         let max_steps = STEP_FACTOR * effort.max_steps;
-        let at = (series.method, finer_tolerance);
+        let solve_finer = || solve(exact, subject, series.method, finer_tolerance, max_steps).ok();
         // A series that the step limit stopped before the last tolerance is not eligible.
         let complete = finest == Some(*fine) && series.predicted_steps() < max_steps as f64;
-        let finer = (complete && finer_tolerance < 0.5 * fine)
-            .then(|| solve(exact, subject, at, max_steps).ok());
+        let finer = (complete && finer_tolerance < 0.5 * fine).then(solve_finer);
         // A change over two decades bounds that over one.
         let (tolerance, before, states) = match finer.flatten() {
             Some(finer) => (finer_tolerance, &last.states, finer.states),

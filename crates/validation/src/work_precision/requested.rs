@@ -43,7 +43,7 @@ pub(super) fn requested_costs<S: StudiedScene>(
     counts.sort_unstable();
     counts.dedup();
     let time = |machine: &Machine<S::Model>, count: usize| {
-        evaluation_time_of((subject, states), machine, count > 0)
+        evaluation_time_of(subject, states, machine, count > 0)
     };
     let one = |count: usize| {
         let machine = subject.scene.machine(&all[..count])?;
@@ -62,7 +62,8 @@ pub(super) fn requested_costs<S: StudiedScene>(
 
 /// The minimum time of an evaluation, s, with or without reactions.
 fn evaluation_time_of<S: StudiedScene>(
-    (subject, states): (&Subject<S>, &[Vec<f64>]),
+    subject: &Subject<S>,
+    states: &[Vec<f64>],
     machine: &Machine<S::Model>,
     has_reactions: bool,
 ) -> Result<f64, StudyError> {

@@ -39,7 +39,8 @@ pub(super) struct ToleranceSeries {
 pub(super) fn solve<S: StudiedScene>(
     evaluator: &dyn Evaluator,
     subject: &Subject<S>,
-    (method, tolerance): (Method, f64),
+    method: Method,
+    tolerance: f64,
     max_steps: usize,
 ) -> Result<Run, DynamicsError> {
     let options = Options {
@@ -147,7 +148,7 @@ impl ToleranceSeries {
                 series.omitted.push(too_many_steps());
                 break;
             }
-            match solve(evaluator, subject, (method, tolerance), max_steps) {
+            match solve(evaluator, subject, method, tolerance, max_steps) {
                 Ok(run) => series.runs.push((tolerance, run)),
                 Err(DynamicsError::MaxStepsReached { .. }) => {
                     series.omitted.push(too_many_steps());

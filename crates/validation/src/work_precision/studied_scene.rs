@@ -137,8 +137,8 @@ fn range_ends(scene: &SpaceScene, machine: &Machine<SpaceModel>) -> Vec<Event<Co
     let margin = NEAR_LIMIT * (to - from);
     let ends = [from + margin, to - margin]
         .into_iter()
-        .zip(plan.range_ends());
-    let ends = ends.filter(|(_, found)| *found);
+        .zip(plan.range_ends())
+        .filter(|(_, found)| *found);
     let event = |(q, _): (f64, bool)| Event {
         kind: EventKind::Reaches(coordinate, q),
         terminal: Some(NonZeroUsize::MIN),
@@ -294,8 +294,8 @@ impl StudiedScene for SpaceScene {
         options: &Options,
     ) -> Result<PreliminaryRun, StudyError> {
         let ends = range_ends(self, machine);
-        let solution = solve(machine, machine.model(), start, end, options, &ends);
-        let solution = solution.map_err(|e| self.explain(machine.model(), &e))?;
+        let solution = solve(machine, machine.model(), start, end, options, &ends)
+            .map_err(|e| self.explain(machine.model(), &e))?;
         Ok(PreliminaryRun {
             steps: solution.steps,
             has_one_chart: !solution.terminated_by_event,

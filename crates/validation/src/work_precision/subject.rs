@@ -81,10 +81,11 @@ impl<S: StudiedScene> Subject<S> {
             q: starts.coordinates[first],
             q_dot: starts.velocities[first],
         };
-        let orbit = is_one.then(|| Orbit::loaded(&machine, reduced_start));
-        let orbit = orbit.and_then(Result::ok);
-        let problem = (&scene, &machine, &initial_state);
-        let (end, coordinate_range) = bound_duration(problem, orbit.as_ref(), &mut notes)?;
+        let orbit = is_one
+            .then(|| Orbit::loaded(&machine, reduced_start))
+            .and_then(Result::ok);
+        let (end, coordinate_range) =
+            bound_duration(&scene, &machine, &initial_state, orbit.as_ref(), &mut notes)?;
         if !has_motion {
             let motion = written_motion(&scene, machine.free(), &starts, end);
             notes.push(format!("the scene has no motion: the study takes this one, and the lines to type need it as the scene's first line: {motion}"));
@@ -139,8 +140,8 @@ impl<S: StudiedScene> Subject<S> {
         let mut workspace = self.machine.workspace();
         let state = self
             .machine
-            .evaluate(0.0, &self.initial_state.y, &mut workspace);
-        let state = state.map_err(|e| self.explain(&e))?;
+            .evaluate(0.0, &self.initial_state.y, &mut workspace)
+            .map_err(|e| self.explain(&e))?;
         // At rest only the current of a motor changes at first, and loads of time may begin later.
         let mut rates = vec![0.0; self.machine.state_count()];
         state.derivative(&mut rates);
@@ -186,14 +187,16 @@ fn written_motion<S: StudiedScene>(
         ("duration", Value::Float(duration)),
         ("initial-coordinate", table(&starts.coordinates)),
         ("initial-velocity", table(&starts.velocities)),
-    ];
-    let motion = motion.map(|(key, value)| (key.to_owned(), value));
+    ]
+    .map(|(key, value)| (key.to_owned(), value));
     format!("motion = {}", Value::Table(motion.into_iter().collect()))
 }
 
 /// The duration of the motion, and the range of its first free coordinate.
 fn bound_duration<S: StudiedScene>(
-    (scene, machine, start): (&S, &Machine<S::Model>, &OdeState),
+    scene: &S,
+    machine: &Machine<S::Model>,
+    start: &OdeState,
     orbit: Option<&Orbit>,
     notes: &mut Vec<String>,
 ) -> Result<(f64, [f64; 2]), StudyError> {

@@ -33,8 +33,9 @@ impl Drive {
         torque_constant: f64,
         resistance: f64,
     ) -> Self {
-        let keys = Keys::new("motor", coordinate).with("voltage", voltage);
-        let keys = keys.with("torque-constant", torque_constant);
+        let keys = Keys::new("motor", coordinate)
+            .with("voltage", voltage)
+            .with("torque-constant", torque_constant);
         Self(keys.with("resistance", resistance))
     }
 
