@@ -169,7 +169,8 @@ pub(crate) fn draw_labels(
         | Mark::Slope { label, .. }
         | Mark::Point { label, .. }
         | Mark::Text { label, .. }) = mark;
-        let label = typeset(label.trim()).as_str();
+        let typeset_label = typeset(label.trim());
+        let label = typeset_label.as_str();
         if label.is_empty() {
             continue;
         }

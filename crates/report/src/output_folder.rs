@@ -117,15 +117,11 @@ impl OutputFolder {
     /// [`ReportError::File`] with the path and the system's reason.
     pub fn write(mut self, files: &Files) -> Result<Vec<PathBuf>, ReportError> {
         let mut staged = Vec::new();
-        let owner = self
-            .owner
-            .take()
-            .map(|(name, scene)| {
-                let text = format!("{}\n", scene.display());
-                (self.owner_file(&name), Content::Bytes(text.into_bytes()))
-            })
-            .iter()
-            .map(|(path, text)| (path.clone(), text));
+        let owner_file = self.owner.take().map(|(name, scene)| {
+            let text = format!("{}\n", scene.display());
+            (self.owner_file(&name), Content::Bytes(text.into_bytes()))
+        });
+        let owner = owner_file.iter().map(|(path, text)| (path.clone(), text));
         let files = files
             .contents()
             .map(|(path, content)| (self.root.join(path), content));
