@@ -126,7 +126,7 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
     };
     // No progress line may follow the results.
     drop(lines);
-    finish(done, (options, name), folder, times)
+    finish(done, options, name, folder, times)
 }
 
 /// The result of a command.

@@ -190,7 +190,8 @@ fn case_in_space(
 ) -> Result<(SpaceScene, Validation), SceneError> {
     let scene = SpaceScene::read(path)?;
     print_warnings(&scene);
-    let reference = path.with_extension("json").is_file().then_some(reference);
+    let reference_path = path.with_extension("json");
+    let reference = reference_path.is_file().then_some(reference_path);
     let done = dwell_validation::validate_in_space(&scene, reference.as_deref(), program);
     Ok((scene, done.map_err(validation_error)?))
 }
