@@ -58,7 +58,10 @@ l|        clear(terms->v, @U@_LOAD_COUNT);
     return status;
 }
 
-@reactions_at@@positions_at@@scene@
+@reactions_at@
+@positions_at@
+@scene@
+
 typedef struct {
     @p@_real m[N * N];
 l|    @p@_real f[@U@_LOAD_COUNT];
