@@ -2,16 +2,20 @@
 
 mod code;
 mod header;
+mod rates;
 mod results;
 mod self_test;
 mod source;
-mod step;
 mod tables;
 
-pub(crate) use code::{CALLED, COMPILE, POTENTIALS, member};
+pub(crate) use code::{CALLED, COMPILE};
+pub(crate) use header::count;
 
+use crate::describe::describe;
 use crate::export::Export;
-use crate::part::Precision;
+use crate::identifiers::comment;
+use crate::part::{Precision, Wrapping};
+use crate::template::lines_for;
 use crate::writer::{Access, Members};
 use std::ops::Deref;
 
@@ -31,13 +35,71 @@ const ARGUMENTS: &str =
 ///
 /// The source has a self-test and a `main` if `NAME_SELF_TEST` is defined, with NAME in capitals.
 pub fn c_files(export: &Export) -> [(String, String); 2] {
+    let machine = &export.machine;
+    let members = Members::new(export);
+    let mut marks = "1".to_owned();
+    for (mark, holds) in [
+        ("o", machine.domain.revolutions > 0),
+        ("e", machine.domain.revolutions == 0),
+        ("v", members.has_potentials()),
+        ("d", members.has_rotors()),
+    ] {
+        marks += if holds { mark } else { "" };
+    }
     let writer = CWriter {
         export,
-        members: Members::new(export),
+        members,
         precision: export.request.precision,
         coordinate: |_| "q".to_owned(),
+        marks,
     };
-    writer.files(&writer.header(), &writer.source())
+    let force = if machine.is_angle { "N m" } else { "N" };
+    let own = [
+        ("q", "@p@_real q".to_owned()),
+        ("q_ddot", "@p@_real q_ddot".to_owned()),
+        ("found_q_ddot", "@p@_real *q_ddot".to_owned()),
+        ("unit", machine.unit().to_owned()),
+        ("inertia_unit", machine.inertia_unit().to_owned()),
+        ("force", force.to_owned()),
+        ("counts", writer.counts()),
+        ("coordinate", comment(&machine.coordinate)),
+    ];
+    let header = writer.header(&description(export), &own);
+    writer.files(&header, &writer.source())
+}
+
+/// What the code of one degree of freedom is, and what it is worth.
+fn description(export: &Export) -> Vec<String> {
+    let mut lines = describe(export);
+    let [motion, all, step] = export.measured.operations;
+    let operations = format!(
+        "Additions, multiplications and divisions, the worst case at any q: {motion} of the terms of motion, {all} with those of the reactions, {step} of a step"
+    );
+    match export.code {
+        None => {
+            let bytes = export.constant_bytes();
+            lines.push(format!("constants: {bytes} bytes. {operations}"));
+            lines.push(
+                "No function allocates, recurses, keeps anything between calls or calls a library."
+                    .to_owned(),
+            );
+        }
+        Some(_) => {
+            let [motion, all] = export.functions();
+            lines.push(operations);
+            lines.push(format!(
+                "Square roots, sines, cosines and angles: {motion} of the terms of motion, {all} with those of the reactions, {} of a step",
+                4 * motion
+            ));
+            lines.push(CALLED.to_owned());
+        }
+    }
+    lines.push(COMPILE.to_owned());
+    let wrapping = Wrapping::new(export.machine.domain, export.request.precision);
+    if let Some(limit) = wrapping.map(|w| w.limit.floor()) {
+        lines.push(format!("q may be any number of revolutions from {} to {limit} rad; a state keeps q in one period and counts the others.", -limit));
+    }
+    lines
 }
 
 /// Writes an export in C: of one degree of freedom, or of several.
@@ -47,6 +109,8 @@ pub(crate) struct CWriter<'a, E> {
     pub(crate) precision: Precision,
     /// A coordinate by its place.
     pub(crate) coordinate: fn(usize) -> String,
+    /// What lines of templates are marked with that belong to this machine, besides what its members say.
+    pub(crate) marks: String,
 }
 
 impl<'a, E> Deref for CWriter<'a, E> {
@@ -58,6 +122,28 @@ impl<'a, E> Deref for CWriter<'a, E> {
 }
 
 impl<E> CWriter<'_, E> {
+    /// A template with the lines of this machine, its numbers, and what stands at each `@name@`.
+    pub(crate) fn fill(&self, template: &str, own: &[(&str, String)]) -> String {
+        let mut marks = self.marks.clone();
+        for (mark, holds) in [
+            ("l", self.has_loads()),
+            ("z", !self.has_loads()),
+            ("r", self.has_reactions()),
+            ("p", self.has_points()),
+        ] {
+            marks += if holds { mark } else { "" };
+        }
+        let numbers = [("zero", 0.0), ("half", 0.5), ("two", 2.0), ("six", 6.0)];
+        let numbers = numbers.map(|(name, value)| (name, self.number(value)));
+        let order = [("order", self.order().to_string())];
+        let all = own.iter().chain(&numbers).chain(&order);
+        all.fold(lines_for(template, &marks), |text, (name, own)| {
+            // What stands alone in a line has lines of its own, or none.
+            let text = text.replace(&format!("\n@{name}@\n"), &format!("\n{own}"));
+            text.replace(&format!("@{name}@"), own)
+        })
+    }
+
     /// Header and source with the names put in: `@p@` for the prefix, `@U@` for it in capitals, `@arguments@` for what most
     /// functions begin with.
     pub(crate) fn files(&self, header: &str, source: &str) -> [(String, String); 2] {

@@ -9,6 +9,7 @@ mod variables;
 use crate::c::c_files;
 use crate::export::Export;
 use crate::identifiers::Identifiers;
+use crate::template::lines_for;
 
 /// A version of the Functional Mock-up Interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,24 +73,13 @@ pub fn fmu_files(export: &Export, version: FmiVersion, scene: &str) -> FmuFiles 
     }
 }
 
-/// The interface of a version, by the template of both: lines that begin with `2|` or `3|` are of that version alone.
+/// The interface of a version, by the template of both.
 fn interface_of(version: FmiVersion) -> String {
-    let (own, other, names) = match version {
-        FmiVersion::Two => (
-            "2|",
-            "3|",
-            ["2", "fmi2Component", "FMUstate", "fmi2Byte", "Real"],
-        ),
-        FmiVersion::Three => (
-            "3|",
-            "2|",
-            ["3", "fmi3Instance", "FMUState", "uint8_t", "Float64"],
-        ),
+    let names = match version {
+        FmiVersion::Two => ["2", "fmi2Component", "FMUstate", "fmi2Byte", "Real"],
+        FmiVersion::Three => ["3", "fmi3Instance", "FMUState", "uint8_t", "Float64"],
     };
-    let lines = include_str!("fmu/interface.c").lines();
-    let lines = lines.filter(|line| !line.starts_with(other));
-    let line = |line: &str| format!("{}\n", line.strip_prefix(own).unwrap_or(line));
-    let template: String = lines.map(line).collect();
+    let template = lines_for(include_str!("fmu/interface.c"), names[0]);
     let places = ["@v@", "@instance@", "@state@", "@byte@", "@double@"];
     let names = places.into_iter().zip(names);
     names.fold(template, |text, (place, name)| text.replace(place, name))

@@ -68,6 +68,7 @@ mod rust;
 mod several_freedoms;
 mod slopes;
 mod straight_line;
+mod template;
 mod writer;
 
 pub use c::c_files;

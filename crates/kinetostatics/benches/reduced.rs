@@ -119,7 +119,7 @@ fn in_space(name: &str, reaction: &str) -> ExactModel<space::Model> {
         env!("CARGO_MANIFEST_DIR")
     );
     let scene = SpaceScene::read(path).unwrap_or_else(|e| stop(name, &e.to_string()));
-    let all = scene.reactions.iter().copied();
+    let all = scene.requests.reactions.iter().copied();
     let wanted: Vec<_> = all
         .filter(|&r| scene.reaction_name(r) == reaction)
         .collect();

@@ -83,7 +83,7 @@ fn an_evaluation_in_space_allocates_nothing() {
     for name in ["rssr", "planar-oblique-rcsr", "planar-oblique-4r"] {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/spatial");
         let scene = SpaceScene::read(folder.join(format!("{name}.toml"))).expect("a scene");
-        let (mechanism, all) = (&scene.mechanism, &scene.reactions);
+        let (mechanism, all) = (&scene.mechanism, &scene.requests.reactions);
         let model = space::Model::new(mechanism, &scene.masses, &scene.assembly, all);
         let model = ExactModel::new(model.expect("it assembles")).expect("one actuator");
         assert!(model.reactions() > 0);

@@ -244,7 +244,7 @@ fn an_evaluation_in_space_allocates_nothing() {
             &scene.mechanism,
             &scene.masses,
             &scene.assembly,
-            &scene.reactions,
+            &scene.requests.reactions,
         );
         let model = model.expect("a model");
         assert!(model.reactions().len() > 0);

@@ -1,36 +1,68 @@
 //! The coordinates at assembly, and the initial guesses that select the assembly mode.
 
-use crate::bodies::Bodies;
-use crate::coordinates::ParsedActuator;
+use crate::coordinates::{CoordinateNotation, ParsedActuator, Parts};
 use crate::diagnostics::Span;
-use crate::joints::Joints;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::wording::shorten;
-use dwell_geometry::{ActuatorId, AssemblyConfiguration, Body, BodyId, BranchHint, Mechanism};
+use dwell_geometry::{ActuatorId, BodyId};
+use std::fmt::Debug;
 
-/// `[assembly]` as read: the coordinate of each actuator, rad or m, the angle of each body, rad, and the travel or
-/// direction of each joint, m or rad.
+/// How `[assembly]` is written in the plane or in space.
+pub(crate) trait AssemblyNotation: CoordinateNotation {
+    /// Approximately where a body is.
+    type Guess: Clone + Debug;
+    /// In messages: what an unknown name is not, and what is known.
+    const NAMED: [&'static str; 2];
+
+    /// Approximately where a body is; `what` is the entry in messages.
+    fn guess(entry: &Entry<'_>, what: String, is_ground: bool) -> Option<Self::Guess>;
+
+    /// The joints that take an initial guess.
+    fn hintable_joints<'j>(_: &'j Self::Joints<'_>) -> Vec<&'j str> {
+        Vec::new()
+    }
+
+    /// The joint that an entry is named by, if there is one, and its approximate travel, m, or direction, rad.
+    fn branch_hint(_: &Entry<'_>, _: &str, _: &Self::Joints<'_>) -> Option<(usize, Option<f64>)> {
+        None
+    }
+
+    /// The lengths, m, of the actuators `missing` where the bodies stand as they are guessed; those that the guesses do not
+    /// give are none.
+    fn guessed_lengths(
+        _: &ParsedAssembly<Self>,
+        _missing: &[usize],
+        _coordinates: &[f64],
+        _: &Parts<'_, '_, Self>,
+        _: &[ParsedActuator<'_, Self>],
+    ) -> Vec<(usize, Option<f64>)> {
+        Vec::new()
+    }
+}
+
+/// `[assembly]` as read: the coordinate of each actuator, rad or m, approximately where each body is, and the travel or
+/// direction of joints, m or rad.
 #[derive(Debug)]
-pub(crate) struct ParsedAssembly {
+pub(crate) struct ParsedAssembly<D: AssemblyNotation> {
     pub(crate) coordinates: Vec<Option<f64>>,
-    pub(crate) initial_guess: Vec<Option<f64>>,
-    pub(crate) branch_hints: Vec<Option<f64>>,
+    pub(crate) guesses: Vec<Option<D::Guess>>,
+    pub(crate) branch_hints: Vec<(usize, Option<f64>)>,
     /// The actuators it names, with a valid value or not.
     mentioned: Vec<usize>,
 }
 
-impl ParsedAssembly {
+impl<D: AssemblyNotation> ParsedAssembly<D> {
     pub(crate) fn read(
         fields: Option<&TableReader<'_>>,
-        bodies: &Bodies<'_>,
-        joints: &Joints<'_>,
-        actuators: &[ParsedActuator<'_>],
+        parts: &Parts<'_, '_, D>,
+        actuators: &[ParsedActuator<'_, D>],
     ) -> Self {
+        let Parts { bodies, joints } = *parts;
         let mut parsed = Self {
             coordinates: vec![None; actuators.len()],
-            initial_guess: vec![None; bodies.list.len()],
-            branch_hints: vec![None; joints.list.len()],
+            guesses: vec![None; bodies.list.len()],
+            branch_hints: Vec::new(),
             mentioned: Vec::new(),
         };
         for entry in fields.iter().flat_map(|f| &f.entries) {
@@ -42,25 +74,17 @@ impl ParsedAssembly {
                 parsed.coordinates[k] = actuators[k].coordinate_value(entry.value, what);
                 place(SceneLocation::AssemblyCoordinate(ActuatorId(k)));
             } else if let Some(k) = bodies.position(name) {
-                let angle = entry.value.angle(what);
-                parsed.initial_guess[k] = angle;
+                parsed.guesses[k] = D::guess(entry, what, bodies.ground == Some(k));
                 place(SceneLocation::InitialGuess(BodyId(k)));
-                if bodies.ground == Some(k) && angle.is_some_and(|si| si != 0.0) {
-                    let message = format!("the ground `{}` cannot be rotated", shorten(name));
-                    let help = "leave it out: its frame is the frame of the plane";
-                    entry.value.reject::<()>(message, "its angle is 0", help);
-                }
-            } else if let Some(k) = joints.list.iter().position(|j| j.name == name) {
-                parsed.branch_hints[k] = branch_hint(entry, &what, joints, k);
+            } else if let Some(hint) = D::branch_hint(entry, &what, joints) {
+                parsed.branch_hints.push(hint);
             } else {
                 let bodies = bodies.list.iter().map(|b| b.name);
                 let names = actuators.iter().map(|a| a.name).chain(bodies);
-                let names = names.chain(hintable_joints(joints));
-                let help = entry
-                    .log()
-                    .choices(name, "actuators, bodies and slides", names);
-                let message = format!("{what} is neither an actuator nor a body nor a joint");
-                entry.reject::<()>(message, "unknown name", help);
+                let names = names.chain(D::hintable_joints(joints));
+                let [unknown, kind] = D::NAMED;
+                let help = entry.log().choices(name, kind, names);
+                entry.reject::<()>(format!("{what} is {unknown}"), "unknown name", help);
             }
         }
         parsed
@@ -72,91 +96,34 @@ impl ParsedAssembly {
     pub(crate) fn coordinates_or(
         &self,
         initial: &[Option<f64>],
-        (bodies, joints): (&Bodies<'_>, &Joints<'_>),
-        actuators: &[ParsedActuator<'_>],
-        section: Option<&Span>,
+        parts: &Parts<'_, '_, D>,
+        actuators: &[ParsedActuator<'_, D>],
+        section: Option<&TableReader<'_>>,
     ) -> Vec<f64> {
         let given = |k: usize| self.coordinates[k].or(initial.get(k).copied().flatten());
         let given = (0..actuators.len()).map(given);
         let mut coordinates: Vec<f64> = given.clone().map(Option::unwrap_or_default).collect();
-        let is_missing =
-            |(k, a): &(usize, &ParsedActuator<'_>)| a.is_distance() && !self.mentioned.contains(k);
+        let is_missing = |(k, a): &(usize, &ParsedActuator<'_, D>)| {
+            a.is_distance() && !self.mentioned.contains(k)
+        };
         let missing = actuators.iter().enumerate().zip(given);
         let missing = missing.filter(|(actuator, given)| given.is_none() && is_missing(actuator));
         let missing: Vec<usize> = missing.map(|((k, _), _)| k).collect();
-        for (k, length) in self.guessed_lengths(&missing, &coordinates, (bodies, joints), actuators)
-        {
+        let lengths = D::guessed_lengths(self, &missing, &coordinates, parts, actuators);
+        for (k, length) in lengths {
             coordinates[k] = length.unwrap_or_default();
             if length.is_none() {
                 let a = &actuators[k];
                 let name = shorten(a.name);
                 let message = format!("the length of `{name}` at the start is not given");
-                let labels = [(section.unwrap_or(&a.key), "no length at assembly")];
+                let at: &Span = section.map_or(&a.key, |fields| &fields.span);
                 let help = format!(
                     "add it to [assembly], such as `{name} = 0.5`, or the approximate angles of the bodies from the ground to its two points"
                 );
-                joints.log.report(message, &labels, help);
+                let labels = [(at, "no length at assembly")];
+                parts.bodies.log.report(message, &labels, help);
             }
         }
         coordinates
     }
-
-    /// The lengths of actuators where the bodies stand at their approximate angles, m.
-    fn guessed_lengths(
-        &self,
-        missing: &[usize],
-        coordinates: &[f64],
-        (bodies, joints): (&Bodies<'_>, &Joints<'_>),
-        actuators: &[ParsedActuator<'_>],
-    ) -> Vec<(usize, Option<f64>)> {
-        let read_joints = joints.list.iter().map(|j| j.joint.clone()).collect();
-        let read_actuators = actuators.iter().map(|a| a.actuator.clone()).collect();
-        let (Some(ground), Some(joints), Some(actuators)) =
-            (bodies.ground, read_joints, read_actuators)
-        else {
-            // What could not be read is reported.
-            return Vec::new();
-        };
-        let mechanism = Mechanism {
-            bodies: bodies.list.iter().map(|b| Body::named(b.name)).collect(),
-            ground,
-            joints,
-            actuators,
-            couplings: Vec::new(),
-        };
-        let assembly = AssemblyConfiguration {
-            q: coordinates.to_vec(),
-            initial_guess: self.initial_guess.clone(),
-            branch_hints: self.branch_hints.clone(),
-        };
-        let length = |&k: &usize| (k, mechanism.guessed_length(&assembly, ActuatorId(k)));
-        missing.iter().map(length).collect()
-    }
-}
-
-/// The joints that take an initial guess.
-fn hintable_joints<'j>(joints: &'j Joints<'_>) -> impl Iterator<Item = &'j str> + Clone {
-    let hintable = joints.list.iter().filter(|j| {
-        let kind = j.joint.as_ref().map(|j| j.kind);
-        kind.is_some_and(|kind| kind.branch_hint().is_some())
-    });
-    hintable.map(|j| j.name.as_str())
-}
-
-/// The approximate travel of a prismatic joint or a slot, m, or direction of a distance, rad.
-fn branch_hint(entry: &Entry<'_>, what: &str, joints: &Joints<'_>, k: usize) -> Option<f64> {
-    // One that could not be read has been reported.
-    let kind = joints.list[k].joint.as_ref()?.kind;
-    if let Some(hint) = kind.branch_hint() {
-        return entry.value.coordinate(hint == BranchHint::Direction, what);
-    }
-    let help = entry
-        .log()
-        .choices("", "joints that can", hintable_joints(joints));
-    let message = format!("joint `{}` takes no initial guess", shorten(entry.name));
-    let label = format!("its kind is {}", kind.name());
-    let help = format!(
-        "a prismatic joint or a slot takes an initial travel, a distance a direction; {help}"
-    );
-    entry.reject(message, &label, help)
 }

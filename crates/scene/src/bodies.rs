@@ -1,8 +1,7 @@
 //! The bodies: their points, their masses, and which of them is the ground.
 
 use crate::diagnostics::{Diagnostics, Span};
-use crate::dimensions::{Dimensions, Plane, mass_or_inertia};
-use crate::keys::table;
+use crate::dimensions::{Dimensions, Notation, Plane, mass_or_inertia};
 use crate::names::check;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
@@ -42,10 +41,10 @@ pub(crate) struct Bodies<'a, D: Dimensions = Plane> {
     pub(crate) list: Vec<ParsedBody<'a, D>>,
     by_name: HashMap<&'a str, usize>,
     pub(crate) ground: Option<usize>,
-    log: &'a Diagnostics,
+    pub(crate) log: &'a Diagnostics,
 }
 
-impl<'a, D: Dimensions> Bodies<'a, D> {
+impl<'a, D: Notation> Bodies<'a, D> {
     pub(crate) fn read(fields: &TableReader<'a>) -> Self {
         let open = |e| TableReader::open(e, format!("body `{}`", shorten(e.name)));
         let tables: Vec<_> = fields.entries.iter().map(open).collect();
@@ -81,6 +80,12 @@ impl<'a, D: Dimensions> Bodies<'a, D> {
             named.collect()
         };
         self.list.iter().map(of_body).collect()
+    }
+
+    /// The moments of inertia that are functions of angles.
+    pub(crate) fn varying_inertias(&self) -> Vec<VaryingInertia> {
+        let varying = self.list.iter().filter_map(|b| b.varying_inertia.clone());
+        varying.collect()
     }
 
     /// Index of the body of that name.
@@ -173,7 +178,7 @@ impl<'a, D: Dimensions> Bodies<'a, D> {
     }
 }
 
-impl<D: Dimensions> ParsedBody<'_, D> {
+impl<D: Notation> ParsedBody<'_, D> {
     /// Reports a point that it does not have; `name` is what it may have been meant to be.
     fn report_unknown_point(
         &self,
@@ -228,7 +233,7 @@ fn ground(fields: &TableReader<'_>, tables: &[Option<TableReader<'_>>]) -> Optio
     fixed.first().map(|(k, ..)| *k)
 }
 
-fn read_body<'a, D: Dimensions>(
+fn read_body<'a, D: Notation>(
     entry: &Entry<'a>,
     fields: Option<&TableReader<'a>>,
     id: BodyId,
@@ -245,13 +250,13 @@ fn read_body<'a, D: Dimensions>(
     };
     entry.place(SceneLocation::Body(id));
     let Some(fields) = fields else { return body };
-    fields.reject_unknown_keys(table(D::BODY));
+    fields.reject_unknown_keys(D::table("body"));
     body.read_points(id, fields);
     fields.place("mass", SceneLocation::Mass(id));
     fields.place("inertia", SceneLocation::Inertia(id));
     fields.place("center", SceneLocation::Center(id));
     let mass = body.read_mass(fields, is_ground);
-    let varying = match table(D::BODY).contains_key("varying-inertia") {
+    let varying = match D::table("body").contains_key("varying-inertia") {
         true => varying_inertia(fields, id, body.name),
         false => None,
     };
@@ -263,7 +268,7 @@ fn read_body<'a, D: Dimensions>(
     body
 }
 
-impl<'a, D: Dimensions> ParsedBody<'a, D> {
+impl<'a, D: Notation> ParsedBody<'a, D> {
     fn read_points(&mut self, id: BodyId, fields: &TableReader<'a>) {
         let name = shorten(self.name);
         let entry = fields.get("points");

@@ -2,57 +2,103 @@
 
 use crate::bodies::{Bodies, TWO_POINTS};
 use crate::diagnostics::{Diagnostics, Span};
-use crate::dimensions::Dimensions;
-use crate::joints::Joints;
-use crate::keys::table;
+use crate::dimensions::Notation;
 use crate::names::check;
-use crate::plane_scene::NamedCoordinate;
+use crate::scene_data::NamedCoordinate;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::{Unit, Units};
 use crate::value::Value;
 use crate::wording::shorten;
-use dwell_geometry::{Actuator, ActuatorId, ActuatorKind, BodyId, Coordinate, Vec2};
+use dwell_geometry::{ActuatorId, BodyId, Coordinate, space};
 use std::collections::HashMap;
-use std::fmt::Display;
-use toml::de::DeValue;
+use std::fmt::{Debug, Display};
 
 /// A coordinate of a mechanism, in the plane or in space.
 pub(crate) trait AnyCoordinate: Copy {
     /// Whether it is an angle.
     fn is_angle(self) -> bool;
+
+    /// Whether an actuator drives it as the distance of two points, which is never zero.
+    fn is_driven_distance(self) -> bool;
+
+    /// Whether another is the same, maybe with the bodies in the other order.
+    fn is_same(self, other: Self) -> bool;
 }
 
 impl AnyCoordinate for Coordinate {
     fn is_angle(self) -> bool {
         self.is_angle()
     }
-}
 
-impl AnyCoordinate for dwell_geometry::space::Coordinate {
-    fn is_angle(self) -> bool {
-        self.is_angle()
+    fn is_driven_distance(self) -> bool {
+        matches!(self, Self::Length { .. })
+    }
+
+    fn is_same(self, other: Self) -> bool {
+        is_same(self, other)
     }
 }
 
-/// An actuator as read, in the plane or in space; nothing in it if it was wrong.
+impl AnyCoordinate for space::Coordinate {
+    fn is_angle(self) -> bool {
+        self.is_angle()
+    }
+
+    fn is_driven_distance(self) -> bool {
+        false
+    }
+
+    fn is_same(self, other: Self) -> bool {
+        self == other
+    }
+}
+
+/// How actuators and coordinates are written in the plane or in space.
+pub(crate) trait CoordinateNotation: Notation<Coordinate: AnyCoordinate> {
+    /// The joints as read.
+    type Joints<'a>;
+    /// What an actuator is in a mechanism.
+    type Actuator: Clone + Debug;
+    /// How a coordinate of `[coordinates]` is written.
+    const COORDINATE: &'static str;
+
+    /// The actuator of an entry, and the coordinate that it drives.
+    fn actuator(
+        entry: &Entry<'_>,
+        parts: &Parts<'_, '_, Self>,
+    ) -> Option<(Self::Actuator, Self::Coordinate)>;
+
+    /// The angle or the travel that an entry of a coordinate names.
+    fn angle_or_travel(
+        entry: &Entry<'_>,
+        fields: &TableReader<'_>,
+        parts: &Parts<'_, '_, Self>,
+    ) -> Option<Self::Coordinate>;
+
+    /// The distance of two points.
+    fn distance(bodies: [BodyId; 2], points: [Self::Point; 2]) -> Self::Coordinate;
+}
+
+/// Bodies and joints as read.
+pub(crate) struct Parts<'r, 'a, D: CoordinateNotation> {
+    pub(crate) bodies: &'r Bodies<'a, D>,
+    pub(crate) joints: &'r D::Joints<'a>,
+}
+
+/// An actuator as read; nothing in it if it was wrong.
 #[derive(Debug)]
-pub(crate) struct ParsedActuator<'a, A = Actuator> {
-    pub(crate) actuator: Option<A>,
+pub(crate) struct ParsedActuator<'a, D: CoordinateNotation> {
+    pub(crate) actuator: Option<D::Actuator>,
+    pub(crate) coordinate: Option<D::Coordinate>,
     pub(crate) named: NamedActuator<'a>,
 }
 
-impl<'a, A> std::ops::Deref for ParsedActuator<'a, A> {
+impl<'a, D: CoordinateNotation> std::ops::Deref for ParsedActuator<'a, D> {
     type Target = NamedActuator<'a>;
 
     fn deref(&self) -> &NamedActuator<'a> {
         &self.named
-    }
-}
-
-impl ParsedActuator<'_> {
-    fn coordinate(&self) -> Option<Coordinate> {
-        self.actuator.as_ref().map(Actuator::coordinate)
     }
 }
 
@@ -66,13 +112,12 @@ pub(crate) struct NamedActuator<'a> {
 }
 
 impl<'a> NamedActuator<'a> {
-    /// Of an entry; `is_angle` where its coordinate is an angle or could not be read.
-    pub(crate) fn new(entry: &Entry<'a>, is_angle: bool, is_distance: bool) -> Self {
+    fn new<C: AnyCoordinate>(entry: &Entry<'a>, coordinate: Option<C>) -> Self {
         Self {
             name: entry.name,
             key: entry.key.clone(),
-            is_angle,
-            is_distance,
+            is_angle: coordinate.is_none_or(C::is_angle),
+            is_distance: coordinate.is_some_and(C::is_driven_distance),
         }
     }
 
@@ -120,34 +165,14 @@ pub(crate) struct ParsedCoordinates<'a, C = Coordinate> {
     log: &'a Diagnostics,
 }
 
-impl<'a> ParsedCoordinates<'a> {
-    /// Those of a scene in the plane.
-    pub(crate) fn read(
-        actuators: &[ParsedActuator<'a>],
-        fields: Option<&TableReader<'a>>,
-        bodies: &Bodies<'_>,
-        joints: &Joints<'a>,
-    ) -> Self {
-        let named = actuators.iter().map(|a| (&a.named, a.coordinate()));
-        let read = |entry: &Entry<'a>| read_coordinate(entry, bodies, joints);
-        Self::read_by(named, fields, bodies, (joints.log, &read))
-    }
-}
-
-/// Reads a coordinate of a section.
-type ReadCoordinate<'r, 'a, C> = &'r dyn Fn(&Entry<'a>) -> Option<C>;
-
 impl<'a, C: AnyCoordinate> ParsedCoordinates<'a, C> {
-    /// Those of actuators, and of a section whose entries `read` reads.
-    pub(crate) fn read_by<'n, D: Dimensions>(
-        actuators: impl ExactSizeIterator<Item = (&'n NamedActuator<'a>, Option<C>)>,
+    /// Those of actuators, and of a section.
+    pub(crate) fn read<D: CoordinateNotation<Coordinate = C>>(
+        actuators: &[ParsedActuator<'a, D>],
         fields: Option<&TableReader<'a>>,
-        bodies: &Bodies<'_, D>,
-        (log, read): (&'a Diagnostics, ReadCoordinate<'_, 'a, C>),
-    ) -> Self
-    where
-        'a: 'n,
-    {
+        parts: &Parts<'_, '_, D>,
+        log: &'a Diagnostics,
+    ) -> Self {
         let count = actuators.len();
         let mut all = Self {
             list: Vec::new(),
@@ -155,13 +180,13 @@ impl<'a, C: AnyCoordinate> ParsedCoordinates<'a, C> {
             by_name: HashMap::new(),
             log,
         };
-        for (actuator, coordinate) in actuators {
-            all.push(actuator.name, &actuator.key, coordinate);
+        for actuator in actuators {
+            all.push(actuator.name, &actuator.key, actuator.coordinate);
         }
         for entry in fields.iter().flat_map(|f| &f.entries) {
             check_coordinate_name(entry, "a coordinate");
-            if let Some(k) = bodies.position(entry.name) {
-                let other = (&bodies.list[k].key, "a body");
+            if let Some(k) = parts.bodies.position(entry.name) {
+                let other = (&parts.bodies.list[k].key, "a body");
                 report_ambiguous_name(entry, other, "a coordinate", "a request");
             }
             if let Some(k) = all.by_name.get(entry.name) {
@@ -170,7 +195,7 @@ impl<'a, C: AnyCoordinate> ParsedCoordinates<'a, C> {
             }
             let location = SceneLocation::Coordinate(all.list.len() - count);
             all.log.place(location, &entry.key);
-            let coordinate = read(entry);
+            let coordinate = read_coordinate(entry, parts);
             all.push(entry.name, &entry.key, coordinate);
         }
         all
@@ -259,31 +284,23 @@ pub(crate) fn report_ambiguous_name(
 }
 
 /// All the actuators. A body of the same name is an error: both are keys of `[assembly]`.
-pub(crate) fn actuators<'a>(
+pub(crate) fn actuators<'a, D: CoordinateNotation>(
     fields: &TableReader<'a>,
-    bodies: &Bodies<'_>,
-    joints: &Joints<'_>,
-) -> Vec<ParsedActuator<'a>> {
-    let mut list: Vec<ParsedActuator<'a>> = Vec::new();
+    parts: &Parts<'_, '_, D>,
+) -> Vec<ParsedActuator<'a, D>> {
+    let mut list: Vec<ParsedActuator<'a, D>> = Vec::new();
     for entry in &fields.entries {
         check_coordinate_name(entry, "an actuator");
-        if let Some(k) = bodies.position(entry.name) {
-            let other = (&bodies.list[k].key, "a body");
+        if let Some(k) = parts.bodies.position(entry.name) {
+            let other = (&parts.bodies.list[k].key, "a body");
             report_ambiguous_name(entry, other, "an actuator", "[assembly]");
         }
         let location = SceneLocation::Actuator(ActuatorId(list.len()));
         entry.place(location);
-        let actuator = read_actuator(entry, bodies, joints);
-        let kind = actuator.as_ref().map(|a| a.kind);
-        let is_angle = matches!(kind, None | Some(ActuatorKind::Angle));
-        let is_distance = matches!(kind, Some(ActuatorKind::Length(_)));
-        let parsed = ParsedActuator {
-            named: NamedActuator::new(entry, is_angle, is_distance),
-            actuator,
-        };
-        let same = |other: &&ParsedActuator<'_>| {
-            let both = other.coordinate().zip(parsed.coordinate());
-            both.is_some_and(|(a, b)| is_same(a, b))
+        let (actuator, coordinate) = D::actuator(entry, parts).unzip();
+        let same = |other: &&ParsedActuator<'_, D>| {
+            let both = other.coordinate.zip(coordinate);
+            both.is_some_and(|(a, b)| a.is_same(b))
         };
         if let Some(other) = list.iter().find(same) {
             let (a, b) = (shorten(other.name), shorten(entry.name));
@@ -292,85 +309,38 @@ pub(crate) fn actuators<'a>(
             let help = "leave one out: each actuator has a coordinate of its own";
             fields.log().report(message, &labels, help);
         }
-        list.push(parsed);
+        list.push(ParsedActuator {
+            named: NamedActuator::new(entry, coordinate),
+            actuator,
+            coordinate,
+        });
     }
     list
 }
 
-/// What the actuator drives.
-fn read_actuator(entry: &Entry<'_>, bodies: &Bodies<'_>, joints: &Joints<'_>) -> Option<Actuator> {
-    let what = format!("actuator `{}`", shorten(entry.name));
-    let fields = TableReader::open(entry, what)?;
-    fields.reject_unknown_keys(table("actuator"));
-    let help = "add `angle = [\"ground\", \"crank\"]`: the angle of the second body from the first; or `length` with the name of a sliding joint or with two points";
-    let lacks = ("has no coordinate", "which angle or length?");
-    let chosen = fields.alternative(table("actuator"), lacks, help)?;
-    let (bodies, kind) = match (chosen.name, chosen.value.get()) {
-        ("angle", _) => {
-            let bodies = angle(chosen, &fields, "drives", bodies)?;
-            (bodies, ActuatorKind::Angle)
-        }
-        (_, DeValue::String(name)) => {
-            let joint = joints.sliding(name, &chosen.value.span())?;
-            let bodies = joints.list.get(joint.0)?.joint.as_ref()?.bodies;
-            (bodies, ActuatorKind::Travel(joint))
-        }
-        _ => {
-            let expected = "a sliding joint, or two points [\"body.point\", \"body.point\"]";
-            let (bodies, points) = length(chosen, &fields, ("drives", expected), bodies)?;
-            (bodies, ActuatorKind::Length(points))
-        }
-    };
-    Some(Actuator::new(entry.name, bodies, kind))
-}
-
 /// What a coordinate of `[coordinates]` measures.
-fn read_coordinate(
+fn read_coordinate<D: CoordinateNotation>(
     entry: &Entry<'_>,
-    bodies: &Bodies<'_>,
-    joints: &Joints<'_>,
-) -> Option<Coordinate> {
-    let what = format!("coordinate `{}`", shorten(entry.name));
-    let fields = TableReader::open(entry, what)?;
-    fields.reject_unknown_keys(table("coordinate"));
-    let help =
-        "add `angle = [\"ground\", \"rod\"]`, `travel = \"slide\"`, or `length` with two points";
+    parts: &Parts<'_, '_, D>,
+) -> Option<D::Coordinate> {
+    let fields = TableReader::open(entry, format!("coordinate `{}`", shorten(entry.name)))?;
+    fields.reject_unknown_keys(D::table("coordinate"));
     let lacks = ("measures nothing", "which angle, travel or length?");
-    let chosen = fields.alternative(table("coordinate"), lacks, help)?;
-    match chosen.name {
-        "angle" => angle(chosen, &fields, "measures", bodies).map(Coordinate::Angle),
-        "travel" => {
-            let name = chosen.value.string(fields.name_of(chosen))?;
-            let joint = joints.sliding(name, &chosen.value.span())?;
-            Some(Coordinate::Travel(joint))
-        }
-        _ => {
-            let (bodies, points) = length(chosen, &fields, ("measures", TWO_POINTS), bodies)?;
-            Some(Coordinate::Length { bodies, points })
-        }
+    let chosen = fields.alternative(D::table("coordinate"), lacks, D::COORDINATE)?;
+    if chosen.name != "length" {
+        return D::angle_or_travel(chosen, &fields, parts);
     }
-}
-
-/// Two different bodies, of which `fields` drives or measures the angle.
-fn angle(
-    entry: &Entry<'_>,
-    fields: &TableReader<'_>,
-    verb: &str,
-    bodies: &Bodies<'_>,
-) -> Option<[BodyId; 2]> {
-    let [a, b] = &bodies.find_two(entry.value, fields.name_of(entry))?;
-    let message = |name: &str| format!("{} {verb} body `{name}` against itself", fields.what);
-    let help = "an angle is between two different bodies";
-    bodies.require_different([(a.0, &a.1), (b.0, &b.1)], message, help)
+    let (bodies, points) = length(chosen, &fields, ("measures", TWO_POINTS), parts.bodies)?;
+    Some(D::distance(bodies, points))
 }
 
 /// Two points of different bodies, of which `fields` drives or measures the distance.
-fn length(
+pub(crate) fn length<D: Notation>(
     entry: &Entry<'_>,
     fields: &TableReader<'_>,
     (verb, expected): (&str, &str),
-    bodies: &Bodies<'_>,
-) -> Option<([BodyId; 2], [Vec2; 2])> {
+    bodies: &Bodies<'_, D>,
+) -> Option<([BodyId; 2], [D::Point; 2])> {
     let [a, b] = bodies.find_two_points(entry.value, expected, fields.name_of(entry))?;
     if a.0 != b.0 {
         return Some(([a.0, b.0], [bodies.at(&a), bodies.at(&b)]));

@@ -1,20 +1,44 @@
-//! What differs between bodies in the plane and in space: how points and inertias are written.
+//! The plane and space: what a scene is made of, and how points and inertias are written.
 
+use crate::keys::{TableSchema, table};
 use crate::table_reader::TableReader;
 use crate::units::Unit;
 use crate::value::Value;
 use dwell_geometry::Vec2;
 use dwell_kinetostatics::Mass;
 use std::fmt::Debug;
+use std::hash::Hash;
 
-/// The plane or space.
-pub(crate) trait Dimensions: Debug + 'static {
+/// The plane or space: what a scene is made of.
+pub trait Dimensions: Clone + Debug + 'static {
     /// A point, m.
-    type Point: Copy + Default + Debug;
+    type Point: Copy + Default + PartialEq + Debug;
     /// Mass, centre of mass and inertia.
     type Mass: Copy + Default + Debug;
-    /// The id of a body's table in the description of the keys.
-    const BODY: &'static str;
+    /// Bodies, joints and actuators.
+    type Mechanism: Clone + Debug;
+    /// Where and how the mechanism is put together at the start.
+    type Assembly: Clone + Debug;
+    /// What is measured of a mechanism.
+    type Coordinate: Copy + PartialEq + Debug;
+    /// A component of the action of a joint's first body on its second.
+    type Reaction: Copy + Eq + Hash + Debug;
+    /// The shape of a load.
+    type LoadKind: Clone + Debug;
+}
+
+/// The plane.
+#[derive(Debug, Clone)]
+pub enum Plane {}
+
+/// Space.
+#[derive(Debug, Clone)]
+pub enum Space {}
+
+/// How points and inertias are written in the plane or in space.
+pub(crate) trait Notation: Dimensions {
+    /// What the ids of tables that differ from those of the plane end with.
+    const SUFFIX: &'static str;
     /// How a point is written.
     const POINT: &'static str;
     /// The origin as it is written.
@@ -25,16 +49,15 @@ pub(crate) trait Dimensions: Debug + 'static {
 
     /// A mass (kg) with its centre and the inertia that a body's table gives.
     fn mass(mass: f64, center: Self::Point, fields: &TableReader<'_>) -> Self::Mass;
+
+    /// The description of a table.
+    fn table(id: &str) -> &'static TableSchema {
+        table(&format!("{id}{}", Self::SUFFIX))
+    }
 }
 
-/// The plane.
-#[derive(Debug)]
-pub(crate) enum Plane {}
-
-impl Dimensions for Plane {
-    type Point = Vec2;
-    type Mass = Mass;
-    const BODY: &'static str = "body";
+impl Notation for Plane {
+    const SUFFIX: &'static str = "";
     const POINT: &'static str = "[x, y]";
     const ORIGIN: &'static str = "[0, 0]";
 

@@ -220,13 +220,12 @@ pub(crate) fn reject_drives_of_prescribed<'a, C: AnyCoordinate>(
     drives: &[(Drive<C>, Span)],
     motion: &ParsedMotion<'_>,
     actuators: impl Iterator<Item = (&'a NamedActuator<'a>, Option<C>)>,
-    is_same: fn(C, C) -> bool,
 ) {
     for ((a, coordinate), law) in actuators.zip(&motion.prescribed) {
         let (Some(law), Some(prescribed)) = (law, coordinate) else {
             continue;
         };
-        let acts_on_it = |(drive, _): &&(Drive<C>, Span)| is_same(drive.coordinate, prescribed);
+        let acts_on_it = |(drive, _): &&(Drive<C>, Span)| drive.coordinate.is_same(prescribed);
         for (drive, at) in drives.iter().filter(acts_on_it) {
             let (drive, name) = (shorten(&drive.name), shorten(a.name));
             let message = format!("drive `{drive}` acts on `{name}`, which is prescribed");

@@ -3,16 +3,13 @@
 use crate::coordinates::{AnyCoordinate, ParsedCoordinates};
 use crate::diagnostics::Span;
 use crate::kind::{kind, reject_unread_kind};
-use crate::magnitude::Names;
 use crate::names::read_each;
-use crate::plane_scene::{EventTrigger, NamedEvent};
-use crate::requests::{components, joint_and_component};
+use crate::scene_data::{EventTrigger, NamedEvent};
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::SI;
 use crate::value::{NumberRule, SignRule};
-use crate::wording::{list, shorten};
-use dwell_geometry::{JointId, Reaction};
+use crate::wording::shorten;
 
 /// The reaction that a text names, at a place in a table.
 type ReadReaction<'r, R> = &'r dyn Fn(&str, &Span, &TableReader<'_>) -> Option<R>;
@@ -61,42 +58,6 @@ impl<C: AnyCoordinate, R> EventReader<'_, C, R> {
         let value = fields.number_or(0.0, "value", &rule);
         let reaction = (self.reaction)(text?, &entry.value.span(), fields)?;
         Some(EventTrigger::Reaction(reaction, value?))
-    }
-}
-
-impl Names<'_> {
-    /// The one component of one joint that `text` names.
-    pub(crate) fn one_reaction(
-        &self,
-        text: &str,
-        at: &Span,
-        fields: &TableReader<'_>,
-    ) -> Option<Reaction> {
-        let (name, component) = joint_and_component(text);
-        let mut all = Vec::new();
-        for k in self.joints.find(name, at)? {
-            let joint = self.joints.list[k].joint.as_ref()?;
-            let found = components(joint, component, self.joints, at);
-            if found.is_empty() {
-                return None;
-            }
-            all.extend(found.into_iter().map(|component| {
-                let reaction = Reaction {
-                    joint: JointId(k),
-                    component,
-                };
-                (reaction, format!("{}.{}", joint.name, component.name()))
-            }));
-        }
-        if let [(reaction, _)] = all.as_slice() {
-            return Some(*reaction);
-        }
-        let names = list(all.iter().map(|(_, name)| name.as_str())).unwrap_or_default();
-        let message = format!("{} names {} reactions", fields.what, all.len());
-        let help = format!("name one of {names}");
-        fields
-            .log()
-            .reject(message, &[(at, "which of them?")], help)
     }
 }
 

@@ -110,23 +110,11 @@ fn read_friction<'a>(
         },
         joint_kind: kind.name(),
         is_angular: is_revolute,
-        has_pin: is_revolute,
+        pin: is_revolute.then_some(|radius, _| FrictionContact::Pin { radius }),
         is_slot: matches!(kind, JointKind::Slot { .. }),
     };
-    let numbers = form.read(&fields)?;
-    let contact = match is_revolute {
-        true => FrictionContact::Pin {
-            radius: numbers.radius,
-        },
-        false => FrictionContact::Guide {
-            length: numbers.length,
-        },
-    };
-    let friction = numbers.friction(joint, contact);
-    if let Some(friction) = friction {
-        check_static_coefficient(&fields, &friction)?;
-    }
-    Some((fields, friction, numbers.viscous))
+    let (friction, viscous) = form.read(joint, &fields)?;
+    Some((fields, friction, viscous))
 }
 
 /// How the friction of a joint is written.
@@ -137,27 +125,19 @@ pub(crate) struct FrictionForm<'k> {
     pub(crate) joint_kind: &'k str,
     /// Whether the speed of its surfaces is that of an angle.
     pub(crate) is_angular: bool,
-    /// Whether it is that of a pin, with a radius.
-    pub(crate) has_pin: bool,
+    /// Of a pin: the contact of its radius and the distance of its bearings, m; of a guide none.
+    pub(crate) pin: Option<fn(f64, f64) -> FrictionContact>,
     /// Whether its pin touches at one point.
     pub(crate) is_slot: bool,
 }
 
-/// The numbers of a friction.
-pub(crate) struct FrictionNumbers {
-    coefficient: Option<f64>,
-    static_coefficient: Option<f64>,
-    speed: Option<f64>,
-    /// Radius of the pin, m; zero if there is none.
-    pub(crate) radius: f64,
-    /// Length of the guide, or distance of the bearings, m; zero if it is not given.
-    pub(crate) length: f64,
-    pub(crate) viscous: Option<f64>,
-}
-
 impl FrictionForm<'_> {
-    /// The numbers of a table; none where something is wrong.
-    pub(crate) fn read(&self, fields: &TableReader<'_>) -> Option<FrictionNumbers> {
+    /// The dry friction of a joint that a table gives, and its viscous friction; none where something is wrong.
+    pub(crate) fn read(
+        &self,
+        joint: JointId,
+        fields: &TableReader<'_>,
+    ) -> Option<(Option<Friction>, Option<f64>)> {
         let before = fields.log().count();
         self.check_keys(fields);
         let number = |key: &str, unit: &Unit, sign: SignRule| {
@@ -176,41 +156,36 @@ impl FrictionForm<'_> {
         let viscous = number("viscous", &SI, SignRule::NotNegative);
         // A guide in its place is one slip, not two.
         let has_guide = fields.get("guide-length").is_some();
-        if self.has_pin && fields.get("coefficient").is_some() && !has_guide {
+        if self.pin.is_some() && fields.get("coefficient").is_some() && !has_guide {
             let unit = &units.length.name;
             let help = format!("add `radius`, the radius of the pin, in {unit}");
             fields.require("radius", &help);
         }
-        (fields.log().count() == before).then(|| FrictionNumbers {
-            coefficient,
-            static_coefficient,
-            speed,
-            radius: radius.unwrap_or(0.0),
-            length: guide.or(bearings).unwrap_or(0.0),
-            viscous,
-        })
-    }
-}
-
-impl FrictionNumbers {
-    /// What they give of dry friction.
-    pub(crate) fn friction(&self, joint: JointId, contact: FrictionContact) -> Option<Friction> {
-        self.coefficient.map(|coefficient| Friction {
+        if fields.log().count() > before {
+            return None;
+        }
+        let length = guide.or(bearings).unwrap_or(0.0);
+        let contact = match self.pin {
+            Some(pin) => pin(radius.unwrap_or(0.0), length),
+            None => FrictionContact::Guide { length },
+        };
+        let friction = coefficient.map(|coefficient| Friction {
             joint,
             coefficient,
-            static_coefficient: self.static_coefficient.unwrap_or(coefficient),
+            static_coefficient: static_coefficient.unwrap_or(coefficient),
             contact,
-            regularization_speed: self.speed,
-        })
+            regularization_speed: speed,
+        });
+        if let Some(friction) = &friction {
+            check_static_coefficient(fields, friction)?;
+        }
+        Some((friction, viscous))
     }
 }
 
 /// Refuses a static coefficient below the coefficient; beside a regularisation speed, which leaves nothing static, it has
 /// no effect.
-pub(crate) fn check_static_coefficient(
-    fields: &TableReader<'_>,
-    friction: &Friction,
-) -> Option<()> {
+fn check_static_coefficient(fields: &TableReader<'_>, friction: &Friction) -> Option<()> {
     let Some(entry) = fields.get("static-coefficient") else {
         return Some(());
     };

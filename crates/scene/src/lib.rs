@@ -84,11 +84,13 @@ mod motion;
 mod names;
 mod number_paths;
 mod numbers;
-mod plane_scene;
+mod plane;
+mod points;
 mod prescribed;
 mod read;
 mod requests;
 mod scene;
+mod scene_data;
 mod schema;
 mod sections;
 mod space;
@@ -105,17 +107,17 @@ mod wording;
 #[cfg(test)]
 mod tests;
 
+pub use dimensions::{Dimensions, Plane, Space};
 pub use error::{SceneError, SceneWarning};
 pub use file::SceneFile;
 pub use key_uses::{KeyUse, PathStep, SceneKey, WrittenAs, key_uses, scene_keys};
-pub use plane_scene::{
+pub use scene::Scene;
+pub use scene_data::{
     Assembly, Calibration, CoordinateSweep, DwellRequest, EventTrigger, FreeMotionSpec,
     MotionDuration, NamedCoordinate, NamedEvent, NamedStop, PathPoint, PlaneScene,
-    PrescribedMotion, Requests, SectionRequest,
+    PrescribedMotion, Requests, SceneIn, SectionRequest, SpacePathPoint, SpaceScene,
 };
-pub use scene::Scene;
 pub use schema::schema;
-pub use space::{SpacePathPoint, SpaceScene};
 pub use spans::SceneLocation;
 pub use value::MAX_ANGLE;
 pub use wording::choices;

@@ -1,8 +1,10 @@
 //! Loads whose magnitude is a function of the program that uses the library: a file cannot hold one.
 
+use crate::build::Sections;
 use crate::coordinates::AnyCoordinate;
 use crate::error::SceneError;
 use crate::file::SceneFile;
+use crate::scene_data::SceneIn;
 use crate::spans::SceneLocation;
 use crate::wording::choices;
 use dwell_kinetostatics::{Load, Magnitude, MagnitudeFunction, Signal};
@@ -16,8 +18,16 @@ pub(crate) struct NamedFunction<'f> {
 }
 
 impl NamedFunction<'_> {
+    /// Gives it to its load in a scene.
+    pub(crate) fn give_to<D: Sections>(self, scene: &mut SceneIn<D>) -> Result<(), SceneError> {
+        let mut loads = std::mem::take(&mut scene.loads);
+        self.set(&scene.file, &scene.all_coordinates(), &mut loads)?;
+        scene.loads = loads;
+        Ok(())
+    }
+
     /// Gives it to its load; `coordinates` have names.
-    pub(crate) fn set<'c, K, C: AnyCoordinate>(
+    fn set<'c, K, C: AnyCoordinate>(
         self,
         file: &SceneFile,
         coordinates: &(impl Iterator<Item = (&'c str, C)> + Clone),

@@ -46,7 +46,7 @@ impl Names<'_> {
             return gravity(entry.value, &fields.name_of(entry));
         }
         let load_kind = || self.load_kind(kind, entry, fields);
-        kind_and_size((kind, entry), (fields, k), &self.magnitudes, load_kind)
+        kind_and_size((kind, entry), (fields, k), self.magnitudes, load_kind)
     }
 
     fn load_kind(

@@ -15,11 +15,11 @@ use dwell_kinetostatics::{Magnitude, Signal};
 use dwell_laws::{Interpolation, Law};
 use toml::de::DeValue;
 
-/// What the loads, the drives and the events of a scene can name.
+/// What the loads of a scene in the plane can name.
 pub(crate) struct Names<'r> {
     pub(crate) bodies: &'r Bodies<'r>,
     pub(crate) joints: &'r Joints<'r>,
-    pub(crate) magnitudes: Magnitudes,
+    pub(crate) magnitudes: &'r Magnitudes,
 }
 
 /// Reads magnitudes.

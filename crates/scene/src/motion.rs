@@ -3,8 +3,8 @@
 use crate::coordinates::NamedActuator;
 use crate::keys::table;
 use crate::number_paths::{SceneNumber, no_number};
-use crate::plane_scene::{Calibration, FreeMotionSpec, MotionDuration, NamedEvent};
 use crate::prescribed::{actuator_named, law_of, positive, require_actuators};
+use crate::scene_data::{Calibration, FreeMotionSpec, MotionDuration, NamedEvent};
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::value::Value;

@@ -1,13 +1,13 @@
 //! The numbers of a scene by their path, such as `crank.inertia`: asking for one, and the same
 //! scene with one of them changed.
 
+use crate::build::Sections;
 use crate::diagnostics::Span;
 use crate::error::{SceneError, Source};
 use crate::file::SceneFile;
 use crate::load_functions::keep_functions;
 use crate::number_paths::{SceneNumber, no_number};
-use crate::plane_scene::PlaneScene;
-use crate::space::SpaceScene;
+use crate::scene_data::SceneIn;
 use crate::spans::SceneLocation;
 use miette::NamedSource;
 use std::fmt::Write as _;
@@ -93,7 +93,8 @@ impl SceneFile {
     }
 }
 
-impl PlaneScene {
+#[expect(private_bounds, reason = "there are two kinds of scene")]
+impl<D: Sections> SceneIn<D> {
     /// The same scene with the number at `path` replaced by `value`, in the scene's own unit.
     ///
     /// The number is replaced in the text and the text read again: whatever follows from the
@@ -106,19 +107,6 @@ impl PlaneScene {
     }
 
     /// The same with several numbers replaced at once; the text is read again but once.
-    ///
-    /// # Errors
-    /// [`SceneError`] when a path leads nowhere or is named twice, a value is not finite, or the scene makes
-    /// no sense with these numbers.
-    pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
-        let mut scene = Self::build(self.name.clone(), &self.source_with(values)?)?;
-        keep_functions(&mut scene.loads, &self.loads);
-        Ok(scene)
-    }
-}
-
-impl SpaceScene {
-    /// The same scene with some numbers replaced, in its own units: as of [`PlaneScene::with_values`].
     ///
     /// # Errors
     /// [`SceneError`] when a path leads nowhere or is named twice, a value is not finite, or the scene makes

@@ -4,7 +4,7 @@ use crate::coordinates::NamedActuator;
 use crate::diagnostics::Span;
 use crate::keys::{TableSchema, table};
 use crate::law::{LawDomain, interpolation, law};
-use crate::plane_scene::{CoordinateSweep, PrescribedMotion};
+use crate::scene_data::{CoordinateSweep, PrescribedMotion};
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::SI;

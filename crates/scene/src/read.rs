@@ -1,7 +1,6 @@
 //! From a file to the TOML tree: everything that can go wrong before the scene is looked at.
 
 use crate::error::{SceneError, Source};
-use crate::plane_scene::PlaneScene;
 use crate::wording::shorten;
 use miette::NamedSource;
 use std::fs::File;
@@ -13,26 +12,6 @@ use toml::de::DeTable;
 
 /// Longest scene, bytes: ten thousand loops take five million.
 const MAX_SCENE_BYTES: u64 = 1 << 26;
-
-impl PlaneScene {
-    /// Reads a scene in the plane from a file.
-    ///
-    /// # Errors
-    /// [`SceneError`] when the file cannot be read, or is not a scene in the plane.
-    pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        let (name, source) = text_of_file(path.as_ref())?;
-        Self::build(name, &source)
-    }
-
-    /// Reads the text of a scene in the plane. `source_name` is the file's name in messages.
-    ///
-    /// # Errors
-    /// [`SceneError`] when it is not a scene in the plane.
-    pub fn parse(source_name: &str, text: &str) -> Result<Self, SceneError> {
-        let (name, source) = named_text(source_name, text);
-        Self::build(name, &source)
-    }
-}
 
 /// The name of a scene in a file, and its text.
 pub(crate) fn text_of_file(path: &Path) -> Result<(String, Source), SceneError> {

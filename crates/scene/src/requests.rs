@@ -1,32 +1,48 @@
 //! The requested results.
 
 use crate::bodies::Bodies;
-use crate::diagnostics::Span;
-use crate::dimensions::Dimensions;
-use crate::joints::Joints;
+use crate::coordinates::{CoordinateNotation, Parts};
+use crate::diagnostics::{Diagnostics, Span};
+use crate::dimensions::Notation;
 use crate::keys::table;
-use crate::plane_scene::{DwellRequest, PathPoint, Requests, SectionRequest};
+use crate::scene_data::{DwellRequest, PathPoint, Requests, SectionRequest};
+use crate::sections::reject_other_keys;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::value::Value;
-use crate::wording::shorten;
-use dwell_geometry::{BodyId, Component, Joint, JointId, Reaction};
+use crate::wording::{list, shorten};
+use dwell_geometry::BodyId;
 use std::collections::HashSet;
 
+/// How reactions are written in the plane or in space.
+pub(crate) trait ReactionNotation: CoordinateNotation {
+    /// A list of reactions in messages.
+    const REACTIONS: &'static str;
+
+    /// The reactions that a text at a place names; what it does not name is reported.
+    fn reactions_named(text: &str, at: &Span, parts: &Parts<'_, '_, Self>) -> Vec<Self::Reaction>;
+
+    /// The name of a reaction of these joints.
+    fn name_of_reaction(reaction: Self::Reaction, joints: &Self::Joints<'_>) -> String;
+}
+
 /// `[requests]`, without reactions where it does not have that key.
-pub(crate) fn requests(
+pub(crate) fn requests<D: ReactionNotation>(
     fields: &TableReader<'_>,
-    bodies: &Bodies<'_>,
-    joints: &Joints<'_>,
-) -> Requests {
-    fields.reject_unknown_keys(table("requests"));
+    parts: &Parts<'_, '_, D>,
+) -> Requests<D::Point, D::Reaction> {
+    reject_other_keys::<D>(fields, "requests", |key| {
+        let help = "leave it out: a dwell is that of an angle, and internal forces are computed in the plane only";
+        (format!("`{key}` in [requests]"), help)
+    });
     fields.place("dwell", SceneLocation::Dwell);
-    let reactions = fields.get("reactions").map(|e| reactions_of(e, joints));
-    let paths = fields.get("paths").map(|e| path_points(e, bodies));
-    let dwell = fields.get("dwell").and_then(|e| dwell_of(e, bodies));
-    let variables = fields.get("variables").map(variables_of);
-    let sections = fields.get("sections");
-    let sections = sections.map(|e| sections_of(e.value, bodies));
+    let known = D::table("requests");
+    let get = |key: &str| fields.get(key).filter(|_| known.contains_key(key));
+    let reactions = get("reactions").map(|e| reactions_of(e, parts));
+    let paths = get("paths").map(|e| path_points(e, parts.bodies));
+    let dwell = get("dwell").and_then(|e| dwell_of(e, parts.bodies));
+    let variables = get("variables").map(variables_of);
+    let sections = get("sections").map(|e| sections_of(e.value, parts.bodies));
     Requests {
         lists_reactions: reactions.is_some(),
         reactions: reactions.unwrap_or_default(),
@@ -38,7 +54,7 @@ pub(crate) fn requests(
 }
 
 /// The strings of an array, those that are none being reported.
-pub(crate) fn strings<'a>(entry: &Entry<'a>, expected: &str) -> Vec<(&'a str, Span)> {
+fn strings<'a>(entry: &Entry<'a>, expected: &str) -> Vec<(&'a str, Span)> {
     let what = format!("{} in [requests]", entry.name);
     let values = entry.value.array(expected, &what).into_iter().flatten();
     let one = |value: Value<'a>| {
@@ -48,34 +64,45 @@ pub(crate) fn strings<'a>(entry: &Entry<'a>, expected: &str) -> Vec<(&'a str, Sp
     values.filter_map(one).collect()
 }
 
-fn reactions_of(entry: &Entry<'_>, joints: &Joints<'_>) -> Vec<Reaction> {
+fn reactions_of<D: ReactionNotation>(
+    entry: &Entry<'_>,
+    parts: &Parts<'_, '_, D>,
+) -> Vec<D::Reaction> {
     let (mut requested, mut reactions) = (HashSet::new(), Vec::new());
-    for (text, at) in strings(entry, "an array such as [\"slide.normal\"]") {
-        let (name, component) = joint_and_component(text);
-        for k in joints.find(name, &at).into_iter().flatten() {
-            // A joint that could not be read has been reported already.
-            let Some(joint) = &joints.list[k].joint else {
-                continue;
-            };
-            let found = components(joint, component, joints, &at);
-            if found.is_empty() {
-                break;
-            }
-            for component in found {
-                let reaction = Reaction {
-                    joint: JointId(k),
-                    component,
-                };
-                // Asked for twice, as `slide` and `slide.normal`, it is still one reaction.
-                if requested.insert(reaction) {
-                    let location = SceneLocation::Reaction(reactions.len());
-                    entry.log().place(location, &at);
-                    reactions.push(reaction);
-                }
+    for (text, at) in strings(entry, D::REACTIONS) {
+        for reaction in D::reactions_named(text, &at, parts) {
+            // Asked for twice, as `slide` and `slide.normal`, it is still one reaction.
+            if requested.insert(reaction) {
+                let location = SceneLocation::Reaction(reactions.len());
+                entry.log().place(location, &at);
+                reactions.push(reaction);
             }
         }
     }
     reactions
+}
+
+/// The one reaction that a text at a place in a table names.
+pub(crate) fn one_reaction<D: ReactionNotation>(
+    text: &str,
+    at: &Span,
+    fields: &TableReader<'_>,
+    parts: &Parts<'_, '_, D>,
+) -> Option<D::Reaction> {
+    let all = D::reactions_named(text, at, parts);
+    if let [] | [_] = all[..] {
+        return all.first().copied();
+    }
+    let message = format!("{} names {} reactions", fields.what, all.len());
+    let names: Vec<_> = all
+        .iter()
+        .map(|r| D::name_of_reaction(*r, parts.joints))
+        .collect();
+    let names = list(names.iter().map(String::as_str)).unwrap_or_default();
+    let help = format!("name one of {names}");
+    fields
+        .log()
+        .reject(message, &[(at, "which of them?")], help)
 }
 
 /// The parts of `joint.component`, of which the second may be absent.
@@ -86,34 +113,27 @@ pub(crate) fn joint_and_component(text: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// The named component of the joint's reaction, or all of them.
-pub(crate) fn components(
-    joint: &Joint,
-    name: Option<&str>,
-    joints: &Joints<'_>,
+/// The component of that name of a joint's reaction, of those that it has.
+pub(crate) fn component_named<C: Copy>(
+    name: &str,
+    joint: &str,
+    all: &[(&str, C)],
     at: &Span,
-) -> Vec<Component> {
-    let mut all = joint.kind.components(&joints.couplings).to_vec();
-    if let Some(name) = name {
-        let names = all.iter().map(|c| c.name());
-        let kind = "components of its reaction";
-        let help = joints.log.choices(name, kind, names);
-        all.retain(|c| c.name() == name);
-        if all.is_empty() {
-            let (joint, name) = (&joint.name, shorten(name));
-            let message = format!("the reaction of joint `{joint}` has no component `{name}`");
-            let labels = [(at, "unknown component")];
-            joints.log.report(message, &labels, help);
-        }
+    log: &Diagnostics,
+) -> Option<C> {
+    let found = all.iter().find(|(known, _)| *known == name);
+    if found.is_none() {
+        let names = all.iter().map(|(known, _)| *known);
+        let help = log.choices(name, "components of its reaction", names);
+        let name = shorten(name);
+        let message = format!("the reaction of joint `{joint}` has no component `{name}`");
+        log.report(message, &[(at, "unknown component")], help);
     }
-    all
+    found.map(|(_, component)| *component)
 }
 
 /// The points of moving bodies in a list, each once.
-pub(crate) fn path_points<D: Dimensions>(
-    entry: &Entry<'_>,
-    bodies: &Bodies<'_, D>,
-) -> Vec<PathPoint<D::Point>> {
+fn path_points<D: Notation>(entry: &Entry<'_>, bodies: &Bodies<'_, D>) -> Vec<PathPoint<D::Point>> {
     let (mut requested, mut paths) = (HashSet::new(), Vec::new());
     for (text, span) in strings(entry, "an array such as [\"coupler.P\"]") {
         let Some((body, k)) = bodies.find_point(text, &span) else {
@@ -137,12 +157,12 @@ pub(crate) fn path_points<D: Dimensions>(
 }
 
 /// The moving body that a value names; of the ground, the message says `lacks`.
-fn moving_body(
+fn moving_body<D: Notation>(
     value: Value<'_>,
     what: &str,
     lacks: &str,
     help: &str,
-    bodies: &Bodies<'_>,
+    bodies: &Bodies<'_, D>,
 ) -> Option<BodyId> {
     let name = value.string(what)?;
     let body = bodies.find(name, &value.span())?;
@@ -153,7 +173,7 @@ fn moving_body(
     Some(body)
 }
 
-fn dwell_of(entry: &Entry<'_>, bodies: &Bodies<'_>) -> Option<DwellRequest> {
+fn dwell_of<D: Notation>(entry: &Entry<'_>, bodies: &Bodies<'_, D>) -> Option<DwellRequest> {
     let fields = TableReader::open(entry, "dwell in [requests]")?;
     fields.reject_unknown_keys(table("dwell"));
     let (Some(body), Some(band)) = (fields.get("body"), fields.get("relative-band")) else {
@@ -175,7 +195,7 @@ fn dwell_of(entry: &Entry<'_>, bodies: &Bodies<'_>) -> Option<DwellRequest> {
 }
 
 /// The names of columns, each once.
-pub(crate) fn variables_of(entry: &Entry<'_>) -> Vec<String> {
+fn variables_of(entry: &Entry<'_>) -> Vec<String> {
     let mut requested = HashSet::new();
     let mut names = strings(entry, "an array such as [\"crank.angle\"]");
     names.retain(|(name, _)| requested.insert(*name));
@@ -187,7 +207,10 @@ pub(crate) fn variables_of(entry: &Entry<'_>) -> Vec<String> {
 }
 
 /// The links, each once.
-fn sections_of(value: Value<'_>, bodies: &Bodies<'_>) -> Vec<SectionRequest> {
+fn sections_of<D: Notation>(
+    value: Value<'_>,
+    bodies: &Bodies<'_, D>,
+) -> Vec<SectionRequest<D::Point>> {
     let expected = "an array such as [{ body = \"rod\", from = \"B\", to = \"P\" }]";
     let values = value.array(expected, "sections in [requests]");
     let mut sections = Vec::new();
@@ -203,7 +226,10 @@ fn sections_of(value: Value<'_>, bodies: &Bodies<'_>) -> Vec<SectionRequest> {
     sections
 }
 
-fn section_of(value: Value<'_>, bodies: &Bodies<'_>) -> Option<SectionRequest> {
+fn section_of<D: Notation>(
+    value: Value<'_>,
+    bodies: &Bodies<'_, D>,
+) -> Option<SectionRequest<D::Point>> {
     let what = "a section in [requests]";
     let fields = TableReader::of_value(value, value.span(), what)?;
     fields.reject_unknown_keys(table("section"));

@@ -3,9 +3,9 @@
 use crate::error::{SceneError, Source};
 use crate::file::SceneFile;
 use crate::load_functions::NamedFunction;
-use crate::plane_scene::PlaneScene;
-use crate::read::{name_of_file, named_text, text_of_file, text_of_stream};
-use crate::space::{SpaceScene, is_in_space};
+use crate::points::three_numbers;
+use crate::read::{name_of_file, named_text, syntax, text_of_file, text_of_stream};
+use crate::scene_data::{PlaneScene, SpaceScene};
 use dwell_kinetostatics::MagnitudeFunction;
 use std::ops::Deref;
 use std::path::Path;
@@ -53,9 +53,11 @@ impl Scene {
     }
 
     fn build(name: String, source: &Source) -> Result<Self, SceneError> {
-        Ok(match is_in_space(source)? {
-            true => SpaceScene::build(name, source)?.into(),
-            false => PlaneScene::build(name, source)?.into(),
+        let root = syntax(source)?;
+        let root = root.get_ref();
+        Ok(match three_numbers(root) {
+            Some(_) => SpaceScene::of_root(name, source, root)?.into(),
+            None => PlaneScene::of_root(name, source, root)?.into(),
         })
     }
 
@@ -106,16 +108,8 @@ impl Scene {
             breakpoints,
         };
         match &mut self {
-            Self::Plane(scene) => {
-                let mut loads = std::mem::take(&mut scene.loads);
-                named.set(&scene.file, &scene.all_coordinates(), &mut loads)?;
-                scene.loads = loads;
-            }
-            Self::Space(scene) => {
-                let mut loads = std::mem::take(&mut scene.loads);
-                named.set(&scene.file, &scene.all_coordinates(), &mut loads)?;
-                scene.loads = loads;
-            }
+            Self::Plane(scene) => named.give_to(scene)?,
+            Self::Space(scene) => named.give_to(scene)?,
         }
         Ok(self)
     }

@@ -1,9 +1,10 @@
-//! Sections, titles and bodies without joints: what scenes in the plane and in space have in common.
+//! Sections, titles and bodies without joints.
 
 use crate::bodies::Bodies;
 use crate::diagnostics::{Diagnostics, Span};
-use crate::dimensions::Dimensions;
+use crate::dimensions::{Dimensions, Notation};
 use crate::error::SceneError;
+use crate::keys::table;
 use crate::spans::SceneLocation;
 use crate::table_reader::TableReader;
 use crate::units::Units;
@@ -35,6 +36,23 @@ pub(crate) fn read_root<S>(
     // Parts are missing only where something was found wrong.
     let incomplete = || SceneError::without_labels("the scene is incomplete".to_owned(), None);
     scene.ok_or_else(incomplete)
+}
+
+/// Reports the keys that a table does not have. Those that it has in the plane alone are called, and explained, as `planar` says.
+pub(crate) fn reject_other_keys<D: Notation>(
+    fields: &TableReader<'_>,
+    id: &str,
+    planar: impl Fn(&str) -> (String, &'static str),
+) {
+    for entry in fields.unknown_entries(D::table(id)) {
+        if table(id).contains_key(entry.name) {
+            let (what, help) = planar(entry.name);
+            let message = format!("a scene in space has no {what}");
+            entry.reject::<()>(message, "for scenes in the plane", help);
+        } else {
+            fields.report_unknown_key(entry, "keys here", D::table(id).names());
+        }
+    }
 }
 
 /// Notes where the sections are that messages of the levels above point at.

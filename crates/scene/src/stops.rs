@@ -4,7 +4,7 @@ use crate::coordinates::NamedActuator;
 use crate::keys::table;
 use crate::motion::ParsedMotion;
 use crate::names::read_each;
-use crate::plane_scene::NamedStop;
+use crate::scene_data::NamedStop;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::{SI, Unit};

@@ -1,10 +1,10 @@
 //! Numbers that look like slips of units: what no machine has by a factor that no machine explains. Each sign leaves several
 //! powers of ten to anything real, so that it is silent about every case. They are warnings of the scene, which every command shows.
 
+use crate::dimensions::{Dimensions, Plane, Space};
 use crate::error::SceneWarning;
 use crate::file::SceneFile;
-use crate::plane_scene::PlaneScene;
-use crate::space::SpaceScene;
+use crate::scene_data::{PlaneScene, SceneIn, SpaceScene};
 use crate::spans::SceneLocation;
 use crate::wording::{list, short, shorten};
 use dwell_geometry::{ActuatorId, BodyId};
@@ -37,7 +37,7 @@ const INERTIAS: [(&str, f64); 4] = [
 ];
 
 /// What is looked at of a scene, in the plane or in space.
-struct Figures<'s> {
+pub(crate) struct Figures<'s> {
     file: &'s SceneFile,
     /// Largest distance of two joints on a body, m.
     size: f64,
@@ -60,58 +60,66 @@ struct BodyFigures<'s> {
     is_held: bool,
 }
 
-impl PlaneScene {
+/// Scenes whose numbers are looked at.
+pub(crate) trait Doubtful: Dimensions {
+    /// What is looked at of a scene.
+    fn figures(scene: &SceneIn<Self>) -> Figures<'_>;
+
     /// The scene with a warning for each number that looks like a slip of units.
-    pub(crate) fn with_doubts(mut self) -> Self {
-        let mechanism = &self.mechanism;
+    fn with_doubts(mut scene: SceneIn<Self>) -> SceneIn<Self> {
+        let warnings = Self::figures(&scene).warnings();
+        scene.file.warnings.extend(warnings);
+        scene
+    }
+}
+
+impl Doubtful for Plane {
+    fn figures(scene: &PlaneScene) -> Figures<'_> {
+        let mechanism = &scene.mechanism;
         let names = mechanism.bodies.iter().map(|body| body.name.as_str());
         let joints = mechanism.joints.iter().map(|joint| joint.bodies);
         let body = |b: usize| {
-            let (mass, points) = (&self.masses[b], self.points[b].iter());
+            let (mass, points) = (&scene.masses[b], scene.points[b].iter());
             let [x, y] = [mass.center.x, mass.center.y];
             let points = points.map(|(_, p)| [p.x, p.y, 0.0]).collect();
             ([mass.mass, mass.inertia], [x, y, 0.0], points)
         };
-        let gravities = self.loads.iter().map(|load| {
+        let gravities = scene.loads.iter().map(|load| {
             let is_gravity = matches!(load.kind, LoadKind::Gravity { .. });
             (is_gravity, &load.magnitude)
         });
-        let guesses = self.assembly.initial_guess.iter().enumerate();
+        let guesses = scene.assembly.initial_guess.iter().enumerate();
         let of_bodies = guesses.filter_map(|(b, angle)| {
             let location = SceneLocation::InitialGuess(BodyId(b));
             Some((location, mechanism.bodies[b].name.as_str(), (*angle)?))
         });
         let actuators = mechanism.actuators.iter();
         let actuators = actuators.map(|a| (a.name.as_str(), a.coordinate().is_angle()));
-        let figures = Figures {
-            file: &self.file,
+        Figures {
+            file: &scene.file,
             size: mechanism.size(),
             bodies: body_figures(names, (BodyId(mechanism.ground), joints), body),
             gravities: constant(gravities),
             angles: of_bodies
-                .chain(starting_angles(actuators, &self.assembly.coordinates))
+                .chain(starting_angles(actuators, &scene.assembly.coordinates))
                 .collect(),
-        };
-        let warnings = figures.warnings();
-        self.file.warnings.extend(warnings);
-        self
+        }
     }
 }
 
-impl SpaceScene {
-    /// The scene with a warning for each number that looks like a slip of units.
-    pub(crate) fn with_doubts(mut self) -> Self {
-        let mechanism = &self.mechanism;
+impl Doubtful for Space {
+    fn figures(scene: &SpaceScene) -> Figures<'_> {
+        let mechanism = &scene.mechanism;
         let names = mechanism.bodies.iter().map(|body| body.name.as_str());
         let joints = mechanism.joints.iter().map(|joint| joint.bodies);
         let body = |b: usize| {
-            let (mass, points) = (&self.masses[b], self.points[b].iter());
+            let (mass, points) = (&scene.masses[b], scene.points[b].iter());
             let largest = mass.inertia[..3].iter().copied().fold(0.0, f64::max);
             let points = points.map(|(_, p)| [p.x, p.y, p.z]).collect();
             let center = [mass.center.x, mass.center.y, mass.center.z];
             ([mass.mass, largest], center, points)
         };
-        let gravities = self.loads.iter().map(|load| {
+        let gravities = scene.loads.iter().map(|load| {
             let is_gravity = matches!(load.kind, space::LoadKind::Gravity(_));
             (is_gravity, &load.magnitude)
         });
@@ -120,16 +128,13 @@ impl SpaceScene {
             let is_angle = actuator.kind.coordinate(joint).is_angle();
             (actuator.name.as_str(), is_angle)
         });
-        let figures = Figures {
-            file: &self.file,
+        Figures {
+            file: &scene.file,
             size: mechanism.size(),
             bodies: body_figures(names, (BodyId(mechanism.ground), joints), body),
             gravities: constant(gravities),
-            angles: starting_angles(actuators, &self.assembly.q).collect(),
-        };
-        let warnings = figures.warnings();
-        self.file.warnings.extend(warnings);
-        self
+            angles: starting_angles(actuators, &scene.assembly.q).collect(),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Operations as statements in C, and what headers and sources of one and of several degrees of freedom share.
 
-use super::CWriter;
+use super::{ACCESS, CWriter};
 use crate::identifiers::comment;
 use crate::part::Precision;
 use crate::straight_line::{Operand, Operation, OperationKind, StraightLine};
@@ -8,8 +8,6 @@ use std::fmt::Write as _;
 
 /// What the operations of a model need.
 pub(crate) const CALLED: &str = "No function allocates, recurses or keeps anything between calls. Of the library they call sqrt, sin, cos and atan2 of math.h, each only if it is needed.";
-/// A member of the terms of motion.
-pub(crate) const POTENTIALS: &str = "    @p@_real v[@U@_LOAD_COUNT]; /* potential of one unit of each conservative load; 0 of others */\n";
 /// What a compiler must not do.
 pub(crate) const COMPILE: &str = "Compile without -ffast-math and with doubles that stay doubles: the sums of a step carry their rounding.";
 
@@ -97,43 +95,6 @@ impl<E> CWriter<'_, E> {
         format!("/*\n{lines} */\n")
     }
 
-    /// The indices of what there are several of, and how many there are.
-    pub(crate) fn count(&self, what: &str, list: &[[String; 2]], text: &mut String) {
-        for (k, [name, meaning]) in list.iter().enumerate() {
-            _ = writeln!(text, "#define @U@_{what}_{name} {k} /* {meaning} */");
-        }
-        _ = writeln!(text, "#define @U@_{what}_COUNT {}", list.len());
-    }
-
-    /// The types of parameters and inputs; `first` is a parameter before the others.
-    pub(crate) fn constant_types(&self, first: Option<(&str, &str)>, text: &mut String) {
-        *text += "/* Constants of the machine that may be changed. */\ntypedef struct {\n";
-        if let Some((name, meaning)) = first {
-            member(text, name, meaning);
-        }
-        for (name, _, meaning) in self.parameters() {
-            member(text, &name, &meaning);
-        }
-        *text += "} @p@_parameters;\n\n/* What acts on it from outside; constant during a step. */\ntypedef struct {\n";
-        let inputs = self.inputs();
-        for (name, _, meaning) in &inputs {
-            member(text, name, meaning);
-        }
-        if inputs.is_empty() {
-            member(text, "none", "there is no input");
-        }
-        *text += "} @p@_inputs;\n\n";
-    }
-
-    /// The last members of a state: currents, and what its sums have lost.
-    pub(crate) fn state_end(&self, text: &mut String) {
-        for (_, name, _) in self.currents() {
-            member(text, &name, "A: current of the motor");
-        }
-        let carry = format!("carry[{}]", self.order());
-        member(text, &carry, "what the sums have lost by rounding");
-    }
-
     /// Assigns what the scene has to parameters and inputs.
     pub(crate) fn assign_constants(&self, text: &mut String) {
         for (name, value, _) in self.parameters() {
@@ -154,15 +115,41 @@ impl<E> CWriter<'_, E> {
         self.conservative().map(line).collect()
     }
 
+    /// A line for each current: `@c@` is its member, `@k@` its place.
+    pub(crate) fn each_current(&self, line: &str) -> String {
+        let lines = self.currents().into_iter();
+        let lines = lines.map(|(_, member, place)| {
+            let line = line.replace("@c@", &member);
+            line.replace("@k@", &place.to_string())
+        });
+        lines.collect()
+    }
+
+    /// The rates of currents; `velocity` is that of a load.
+    pub(crate) fn current_rates(&self, velocity: impl Fn(usize) -> String) -> String {
+        let lines = self.currents().into_iter().map(|(load, _, place)| {
+            let rate = ACCESS.current_rate(&self.names.loads[load], &velocity(load));
+            format!("    rates[{place}] = {rate};\n")
+        });
+        lines.collect()
+    }
+
+    /// The classical Runge–Kutta method of fourth order; `rates` is how many rates there are.
+    pub(crate) fn step(&self, rates: &str) -> String {
+        let move_current = "    to->@c@ = from->@c@ + h * rates[@k@];\n";
+        let add_current = "    add(&s.@c@, &s.carry[@k@], k1[@k@]);\n";
+        let own = [
+            ("rates", rates.to_owned()),
+            ("move_currents", self.each_current(move_current)),
+            ("add_currents", self.each_current(add_current)),
+        ];
+        self.fill(include_str!("step.c"), &own)
+    }
+
     /// Says to compilers which arguments of [`ACCESS`](super::ACCESS) lines do not use.
     pub(crate) fn unused_arguments(&self, lines: &str) -> String {
         let unused = ["in", "s"].into_iter();
         let unused = unused.filter(|name| !lines.contains(&format!("{name}->")));
         unused.map(|name| format!("    (void){name};\n")).collect()
     }
-}
-
-/// A member of a structure.
-pub(crate) fn member(text: &mut String, name: &str, meaning: &str) {
-    _ = writeln!(text, "    @p@_real {name}; /* {} */", comment(meaning));
 }

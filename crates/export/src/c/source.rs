@@ -65,7 +65,7 @@ impl CWriter<'_, Export> {
         self.forces(&mut text);
         self.results(&mut text);
         self.rates(&mut text);
-        self.step(&mut text);
+        text += &self.step(&self.order().to_string());
         self.self_test(&mut text);
         text
     }

@@ -70,10 +70,7 @@ pub(super) fn model_description(
     }
     units(variables, &mut text);
     text += "  <DefaultExperiment startTime=\"0\" stopTime=\"10\" stepSize=\"0.01\"/>\n";
-    match version {
-        FmiVersion::Three => three(variables, &mut text),
-        FmiVersion::Two => two(variables, &mut text),
-    }
+    variables_and_structure(version, variables, &mut text);
     text += "</fmiModelDescription>\n";
     text
 }
@@ -143,76 +140,70 @@ fn is_initial_unknown(variable: &Variable) -> bool {
     matches!(variable.role, Role::Rate(_) | Role::Output | Role::Periods)
 }
 
-fn three(variables: &[Variable], text: &mut String) {
-    *text += "  <ModelVariables>\n";
-    for (k, variable) in variables.iter().enumerate() {
-        let kind = if variable.role == Role::Periods {
-            "Int32"
-        } else {
-            "Float64"
-        };
-        let derivative = state_of(variables, variable.role);
-        let derivative = derivative.map_or_else(String::new, |s| format!(" derivative=\"{s}\""));
-        let unit = match variable.unit.as_str() {
-            "" => String::new(),
-            unit => format!(" unit=\"{}\"", attribute(unit)),
-        };
-        let (properties, start) = properties(variable);
-        _ = writeln!(
-            text,
-            "    <{kind} name=\"{}\" valueReference=\"{k}\" description=\"{}\" {properties}{start}{unit}{derivative}/>",
-            attribute(&variable.name),
-            attribute(&variable.meaning)
-        );
-    }
-    *text += "  </ModelVariables>\n  <ModelStructure>\n";
-    let mut list = |element: &str, is: &dyn Fn(&Variable) -> bool| {
-        for (k, _) in variables.iter().enumerate().filter(|(_, v)| is(v)) {
-            _ = writeln!(text, "    <{element} valueReference=\"{k}\"/>");
-        }
-    };
-    list("Output", &is_output);
-    list("ContinuousStateDerivative", &|v| {
+/// The elements of the structure in 3.0 and in 2.0, which has no list of indicators, and what they are of.
+type Listed = (&'static str, &'static str, fn(&Variable) -> bool);
+const STRUCTURE: [Listed; 4] = [
+    ("Output", "Outputs", is_output),
+    ("ContinuousStateDerivative", "Derivatives", |v| {
         matches!(v.role, Role::Rate(_))
-    });
-    list("InitialUnknown", &is_initial_unknown);
-    list("EventIndicator", &|v| v.role == Role::Indicator);
-    *text += "  </ModelStructure>\n";
-}
+    }),
+    ("InitialUnknown", "InitialUnknowns", is_initial_unknown),
+    ("EventIndicator", "", |v| v.role == Role::Indicator),
+];
 
-fn two(variables: &[Variable], text: &mut String) {
+/// The variables, and how they depend on each other.
+fn variables_and_structure(version: FmiVersion, variables: &[Variable], text: &mut String) {
+    // Indices count from one in 2.0.
+    let first = usize::from(version == FmiVersion::Two);
     *text += "  <ModelVariables>\n";
     for (k, variable) in variables.iter().enumerate() {
-        // In 2.0 the start belongs to the type, and indices count from one.
-        let (outer, start) = properties(variable);
+        let (properties, start) = properties(variable);
+        let [name, meaning, unit] =
+            [&variable.name, &variable.meaning, &variable.unit].map(|t| attribute(t));
+        let own = format!(
+            "name=\"{name}\" valueReference=\"{k}\" description=\"{meaning}\" {properties}"
+        );
         let derivative = state_of(variables, variable.role);
         let derivative =
-            derivative.map_or_else(String::new, |s| format!(" derivative=\"{}\"", s + 1));
-        let inner = match variable.role {
-            Role::Periods => "<Integer/>".to_owned(),
-            _ => format!(
-                "<Real unit=\"{}\"{derivative}{start}/>",
-                attribute(&variable.unit)
+            derivative.map_or_else(String::new, |s| format!(" derivative=\"{}\"", s + first));
+        let is_count = variable.role == Role::Periods;
+        let unit = match is_count {
+            true => String::new(),
+            false => format!(" unit=\"{unit}\""),
+        };
+        _ = match (version, is_count) {
+            (FmiVersion::Three, true) => writeln!(text, "    <Int32 {own}/>"),
+            (FmiVersion::Three, false) => {
+                writeln!(text, "    <Float64 {own}{start}{unit}{derivative}/>")
+            }
+            // In 2.0 the start belongs to the type.
+            (FmiVersion::Two, true) => writeln!(
+                text,
+                "    <ScalarVariable {own}><Integer/></ScalarVariable>"
+            ),
+            (FmiVersion::Two, false) => writeln!(
+                text,
+                "    <ScalarVariable {own}><Real{unit}{derivative}{start}/></ScalarVariable>"
             ),
         };
-        _ = writeln!(
-            text,
-            "    <ScalarVariable name=\"{}\" valueReference=\"{k}\" description=\"{}\" {outer}>{inner}</ScalarVariable>",
-            attribute(&variable.name),
-            attribute(&variable.meaning)
-        );
     }
     *text += "  </ModelVariables>\n  <ModelStructure>\n";
-    let mut list = |element: &str, is: &dyn Fn(&Variable) -> bool| {
-        _ = writeln!(text, "    <{element}>");
-        for (k, _) in variables.iter().enumerate().filter(|(_, v)| is(v)) {
-            _ = writeln!(text, "      <Unknown index=\"{}\"/>", k + 1);
+    for (element, list, is) in STRUCTURE {
+        let listed = variables.iter().enumerate().filter(|(_, v)| is(v));
+        let lines = |open: &str| -> String {
+            listed
+                .map(|(k, _)| format!("{open}{}\"/>\n", k + first))
+                .collect()
+        };
+        match version {
+            FmiVersion::Three => *text += &lines(&format!("    <{element} valueReference=\"")),
+            FmiVersion::Two if list.is_empty() => {}
+            FmiVersion::Two => {
+                let unknowns = lines("      <Unknown index=\"");
+                _ = write!(text, "    <{list}>\n{unknowns}    </{list}>\n");
+            }
         }
-        _ = writeln!(text, "    </{element}>");
-    };
-    list("Outputs", &is_output);
-    list("Derivatives", &|v| matches!(v.role, Role::Rate(_)));
-    list("InitialUnknowns", &is_initial_unknown);
+    }
     *text += "  </ModelStructure>\n";
 }
 

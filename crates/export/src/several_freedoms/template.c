@@ -44,20 +44,27 @@ static void motion_at(const @p@_real *q, @p@_motion_terms *terms)
     @p@_status status = all_finite(q, N) ? @U@_OK : @U@_NOT_FINITE;
     if (status == @U@_OK) {
         motion_at(q, terms);
-        if (!(all_finite(terms->m, N * N) && all_finite(terms->h, PAIRS * N)@loads_finite@)) {
+l|        if (!(all_finite(terms->m, N * N) && all_finite(terms->h, PAIRS * N) && all_finite(terms->w, @U@_LOAD_COUNT * N) && all_finite(terms->v, @U@_LOAD_COUNT))) {
+z|        if (!(all_finite(terms->m, N * N) && all_finite(terms->h, PAIRS * N))) {
             status = @U@_OUT_OF_RANGE;
         }
     }
     if (status != @U@_OK) {
         clear(terms->m, N * N);
         clear(terms->h, PAIRS * N);
-@loads_clear@    }
+l|        clear(terms->w, @U@_LOAD_COUNT * N);
+l|        clear(terms->v, @U@_LOAD_COUNT);
+    }
     return status;
 }
 
-@reactions_at@@positions_at@@scene@
+@reactions_at@
+@positions_at@
+@scene@
+
 typedef struct {
-    @p@_real m[N * N];@f_member@
+    @p@_real m[N * N];
+l|    @p@_real f[@U@_LOAD_COUNT];
 } forces;
 
 /* F of every load, and the mass matrix with what is added. */
@@ -86,7 +93,13 @@ static void resistance_of(const @p@_motion_terms *t, const forces *f, const @p@_
             pair++;
         }
     }
-@resistance@}
+l|    for (k = 0; k < @U@_LOAD_COUNT; k++) {
+l|        for (i = 0; i < N; i++) {
+l|            sum[i] = sum[i] - f->f[k] * t->w[k * N + i];
+l|        }
+l|    }
+z|    (void)f;
+}
 
 /* Solves m x = b by m = L D L^T; b becomes x. */
 static @p@_status solve(@p@_real *m, @p@_real *b)
@@ -142,7 +155,7 @@ static @p@_status rates_of(const @p@_parameters *p, const @p@_inputs *in, const 
     return status;
 }
 
-@p@_status @p@_acceleration(const @p@_parameters *parameters, const @p@_inputs *inputs, const @p@_state *state, @p@_real q_ddot[@U@_COORDINATE_COUNT])
+@p@_status @p@_acceleration(@arguments@, @p@_real q_ddot[@U@_COORDINATE_COUNT])
 {
     @p@_real rates[ORDER];
     const @p@_status status = rates_of(parameters, inputs, state, rates);
@@ -153,7 +166,7 @@ static @p@_status rates_of(const @p@_parameters *p, const @p@_inputs *in, const 
     return status;
 }
 
-@reactions@@p@_status @p@_energies(const @p@_parameters *parameters, const @p@_inputs *inputs, const @p@_state *state, @p@_real energies[2])
+@reactions@@p@_status @p@_energies(@arguments@, @p@_real energies[2])
 {
     @p@_motion_terms terms;
     forces f;
@@ -175,7 +188,7 @@ static @p@_status rates_of(const @p@_parameters *p, const @p@_inputs *in, const 
     return status;
 }
 
-@p@_status @p@_required_forces(const @p@_parameters *parameters, const @p@_inputs *inputs, const @p@_state *state, const @p@_real q_ddot[@U@_COORDINATE_COUNT], @p@_real required[@U@_COORDINATE_COUNT])
+@p@_status @p@_required_forces(@arguments@, const @p@_real q_ddot[@U@_COORDINATE_COUNT], @p@_real required[@U@_COORDINATE_COUNT])
 {
     @p@_motion_terms terms;
     forces f;
@@ -195,60 +208,5 @@ static @p@_status rates_of(const @p@_parameters *p, const @p@_inputs *in, const 
         clear(required, N);
     }
     return status;
-}
-
-static void move_state(const @p@_state *from, @p@_real h, const @p@_real *rates, @p@_state *to)
-{
-    int k;
-    for (k = 0; k < N; k++) {
-        to->q[k] = from->q[k] + h * rates[k];
-        to->q_dot[k] = from->q_dot[k] + h * rates[N + k];
-    }
-@move_currents@}
-
-/* Adds to a sum and to what it has lost by rounding. */
-static void add(@p@_real *sum, @p@_real *carry, @p@_real change)
-{
-    const @p@_real corrected = change - *carry;
-    const @p@_real next = *sum + corrected;
-    *carry = (next - *sum) - corrected;
-    *sum = next;
-}
-
-@p@_status @p@_step(const @p@_parameters *parameters, const @p@_inputs *inputs, @p@_real h, @p@_state *state)
-{
-    @p@_real k1[ORDER], k2[ORDER], k3[ORDER], k4[ORDER];
-    const @p@_real half = @half@ * h, sixth = h / @six@;
-    @p@_state s = *state;
-    int k;
-    @p@_status status = is_finite(h) ? rates_of(parameters, inputs, state, k1) : @U@_NOT_FINITE;
-    if (status == @U@_OK) {
-        move_state(state, half, k1, &s);
-        status = rates_of(parameters, inputs, &s, k2);
-    }
-    if (status == @U@_OK) {
-        move_state(state, half, k2, &s);
-        status = rates_of(parameters, inputs, &s, k3);
-    }
-    if (status == @U@_OK) {
-        move_state(state, h, k3, &s);
-        status = rates_of(parameters, inputs, &s, k4);
-    }
-    if (status != @U@_OK) {
-        return status;
-    }
-    for (k = 0; k < ORDER; k++) {
-        k1[k] = sixth * (k1[k] + @two@ * (k2[k] + k3[k]) + k4[k]);
-    }
-    s = *state;
-    for (k = 0; k < N; k++) {
-        add(&s.q[k], &s.carry[k], k1[k]);
-        add(&s.q_dot[k], &s.carry[N + k], k1[N + k]);
-    }
-@add_currents@    if (!(all_finite(s.q, N) && all_finite(s.q_dot, N))) {
-        return @U@_NOT_FINITE;
-    }
-    *state = s;
-    return @U@_OK;
 }
 

@@ -19,7 +19,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 /// Axes in which a component is given.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Axes {
     /// Those of the ground.
     Ground,
@@ -28,7 +28,7 @@ pub enum Axes {
 }
 
 /// A component of a reaction, by its number: 0, 1, 2 for x, y, z. The moment is about the joint's point on the second body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Component {
     /// Of the force, N.
     Force(Axes, usize),
@@ -37,7 +37,7 @@ pub enum Component {
 }
 
 /// A component of the action of a joint's first body on the second.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Reaction {
     /// The joint.
     pub joint: JointId,

@@ -1,59 +1,53 @@
-//! The independent coordinates: angles, travels and lengths of joints.
+//! The coordinates of joints: angles, travels and lengths.
 
-use super::bodies::Space;
 use super::joints::{Joints, ParsedJoint};
-use crate::bodies::Bodies;
-use crate::coordinates::{NamedActuator, ParsedActuator as AnyActuator, check_coordinate_name};
+use crate::coordinates::{CoordinateNotation, ParsedActuator, Parts};
 use crate::diagnostics::Span;
-use crate::keys::table;
-use crate::spans::SceneLocation;
+use crate::dimensions::{Notation, Space};
 use crate::table_reader::{Entry, TableReader};
 use crate::wording::shorten;
-use dwell_geometry::space::{Actuator, ActuatorKind, JointKind};
-use dwell_geometry::{ActuatorId, JointId};
+use dwell_geometry::space::{Actuator, ActuatorKind, Coordinate, JointKind, Vec3};
+use dwell_geometry::{BodyId, JointId};
 use toml::de::DeValue;
 
-/// An actuator as read; nothing in it if it was wrong.
-pub(super) type ParsedActuator<'a> = AnyActuator<'a, Actuator>;
+impl CoordinateNotation for Space {
+    type Joints<'a> = Joints<'a>;
+    type Actuator = Actuator;
+    const COORDINATE: &'static str =
+        "add `angle = \"A\"` or `travel = \"slide\"` of a joint, or `length` with two points";
 
-pub(super) fn actuators<'a>(
-    fields: &TableReader<'a>,
-    bodies: &Bodies<'_, Space>,
-    joints: &Joints<'_>,
-) -> Vec<ParsedActuator<'a>> {
-    let mut found: Vec<ParsedActuator<'a>> = Vec::new();
-    for (k, entry) in fields.entries.iter().enumerate() {
-        check_coordinate_name(entry, "an actuator");
-        entry.place(SceneLocation::Actuator(ActuatorId(k)));
-        if bodies.position(entry.name).is_some() {
-            let message = format!(
-                "`{}` is the name of a body and of an actuator",
-                shorten(entry.name)
-            );
-            entry.reject::<()>(
-                message,
-                "and of an actuator",
-                "rename one: both are keys of [assembly]",
-            );
-        }
-        let actuator = read_actuator(entry, joints);
-        let kind = actuator.as_ref().map(|a| a.kind);
-        let is_length = |kind| matches!(kind, ActuatorKind::Travel(_) | ActuatorKind::Length(_));
-        let is_angle = !kind.is_some_and(is_length);
-        found.push(ParsedActuator {
-            named: NamedActuator::new(entry, is_angle, false),
-            actuator,
-        });
+    fn actuator(entry: &Entry<'_>, parts: &Parts<'_, '_, Self>) -> Option<(Actuator, Coordinate)> {
+        let joints = parts.joints;
+        let actuator = read_actuator(entry, joints)?;
+        let joint = joints.list[actuator.kind.joint().0].joint.as_ref()?;
+        let coordinate = actuator.kind.coordinate(joint);
+        Some((actuator, coordinate))
     }
-    found
+
+    fn angle_or_travel(
+        entry: &Entry<'_>,
+        fields: &TableReader<'_>,
+        parts: &Parts<'_, '_, Self>,
+    ) -> Option<Coordinate> {
+        let is_angle = entry.name == "angle";
+        let joint = joint_with_freedom(is_angle, entry, fields, parts.joints)?;
+        Some(match is_angle {
+            true => Coordinate::Angle(joint),
+            false => Coordinate::Travel(joint),
+        })
+    }
+
+    fn distance(bodies: [BodyId; 2], points: [Vec3; 2]) -> Coordinate {
+        Coordinate::Distance { bodies, points }
+    }
 }
 
 fn read_actuator(entry: &Entry<'_>, joints: &Joints<'_>) -> Option<Actuator> {
     let fields = TableReader::open(entry, format!("actuator `{}`", shorten(entry.name)))?;
     let help = "write it as `{ angle = \"A\" }`, `{ travel = \"slide\" }` or `{ length = \"link\" }`, with the name of a joint";
-    fields.reject_unknown_keys(table("actuator-in-space"));
+    fields.reject_unknown_keys(Space::table("actuator"));
     let lacks = ("drives nothing", "no `angle`, `travel` or `length`");
-    let coordinate = fields.alternative(table("actuator-in-space"), lacks, help)?;
+    let coordinate = fields.alternative(Space::table("actuator"), lacks, help)?;
     if matches!(coordinate.value.get(), DeValue::Array(_)) {
         let message = format!(
             "{} names two things, and not a joint",
@@ -143,12 +137,12 @@ fn require_freedom(kind: ActuatorKind, parsed: &ParsedJoint<'_>, at: &Span) -> O
 }
 
 /// Reports distances whose length neither a number nor an actuator gives.
-pub(super) fn require_lengths(joints: &Joints<'_>, actuators: &[ParsedActuator<'_>]) {
+pub(super) fn require_lengths(joints: &Joints<'_>, actuators: &[ParsedActuator<'_, Space>]) {
     for (j, parsed) in joints.list.iter().enumerate() {
         let kind = parsed.joint.as_ref().map(|joint| joint.kind);
         let driven = ActuatorKind::Length(JointId(j));
         let is_driven =
-            |a: &ParsedActuator<'_>| a.actuator.as_ref().is_none_or(|a| a.kind == driven);
+            |a: &ParsedActuator<'_, Space>| a.actuator.as_ref().is_none_or(|a| a.kind == driven);
         if kind == Some(JointKind::Distance { length: 0.0 }) && !actuators.iter().any(is_driven) {
             let message = format!("joint `{}` has no length", shorten(parsed.name));
             let help = "add `length = 200`: the distance the two points keep; or drive it: `[actuators]` with `{ length = \"…\" }`";

@@ -1,7 +1,7 @@
 //! Masses and tensors of inertia.
 
 use super::values::{direction, point};
-use crate::dimensions::Dimensions;
+use crate::dimensions::{Notation, Space};
 use crate::table_reader::{Entry, TableReader};
 use crate::value::Value;
 use crate::wording::short;
@@ -14,14 +14,8 @@ const SQUARE: f64 = 1e-6;
 /// How much the largest principal moment may exceed the sum of the others, as a part of the sum of all: the rounding of decimals.
 const EXCESS: f64 = 1e-9;
 
-/// Space.
-#[derive(Debug)]
-pub(crate) enum Space {}
-
-impl Dimensions for Space {
-    type Point = Vec3;
-    type Mass = Mass;
-    const BODY: &'static str = "body-in-space";
+impl Notation for Space {
+    const SUFFIX: &'static str = "-in-space";
     const POINT: &'static str = "[x, y, z]";
     const ORIGIN: &'static str = "[0, 0, 0]";
 

@@ -1,7 +1,7 @@
 //! Friction in joints: loads that depend on the joints' own reactions and velocities.
 
 use super::joints::Joints;
-use crate::friction::{FrictionForm, check_static_coefficient, push_loads};
+use crate::friction::{FrictionForm, push_loads};
 use crate::keys::table;
 use crate::table_reader::{Entry, TableReader};
 use crate::wording::shorten;
@@ -31,22 +31,9 @@ fn add_loads(
 ) -> Option<()> {
     let name = shorten(entry.name);
     let fields = TableReader::open(entry, format!("friction of `{name}`"))?;
-    let numbers = form(entry, kind)?.read(&fields)?;
-    let contact = match kind {
-        JointKind::Prismatic => FrictionContact::Guide {
-            length: numbers.length,
-        },
-        _ => FrictionContact::Bearing {
-            radius: numbers.radius,
-            distance: numbers.length,
-        },
-    };
-    let friction = numbers.friction(id, contact);
-    if let Some(friction) = friction {
-        check_static_coefficient(&fields, &friction)?;
-    }
+    let (friction, viscous) = form(entry, kind)?.read(id, &fields)?;
     let dry = friction.map(Magnitude::Friction);
-    let viscous = numbers.viscous.map(Magnitude::Constant);
+    let viscous = viscous.map(Magnitude::Constant);
     let (force, couple) = (LoadKind::SlideForce(id), LoadKind::JointTorque(id));
     let [slide_damper, damper] = [LoadKind::SlideDamper(id), LoadKind::RotationalDamper(id)];
     let all = match kind {
@@ -89,7 +76,8 @@ fn form(entry: &Entry<'_>, kind: JointKind) -> Option<FrictionForm<'static>> {
         table: table(table_id),
         joint_kind: kind.name(),
         is_angular,
-        has_pin: kind != JointKind::Prismatic,
+        pin: (kind != JointKind::Prismatic)
+            .then_some(|radius, distance| FrictionContact::Bearing { radius, distance }),
         is_slot: false,
     })
 }

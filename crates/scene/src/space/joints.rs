@@ -1,9 +1,9 @@
 //! The joints: which points of which bodies they connect, along which axes.
 
-use super::bodies::Space;
 use super::values::{direction, two_directions};
 use crate::bodies::{Bodies, TWO_POINTS};
 use crate::diagnostics::{Diagnostics, Span};
+use crate::dimensions::Space;
 use crate::keys::kinds;
 use crate::kind::{kind_among, reject_unread_kind};
 use crate::names::check;
@@ -28,7 +28,7 @@ pub(super) struct ParsedJoint<'a> {
 
 /// All the joints as read.
 #[derive(Debug)]
-pub(super) struct Joints<'a> {
+pub(crate) struct Joints<'a> {
     pub(super) list: Vec<ParsedJoint<'a>>,
     pub(super) log: &'a Diagnostics,
 }

@@ -1,10 +1,10 @@
 //! The loads.
 
 use super::actuators::joint_with_freedom;
-use super::bodies::Space;
 use super::joints::Joints;
 use super::values::{direction, numbers};
 use crate::bodies::{Bodies, TWO_POINTS};
+use crate::dimensions::Space;
 use crate::keys::kinds;
 use crate::kind::{kind_among, reject_unread_kind};
 use crate::loads::{kind_and_size, read_loads};

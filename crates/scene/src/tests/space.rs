@@ -88,7 +88,11 @@ fn assembly_loads_and_requests_are_read_in_si() {
     };
     assert_eq!(of(twist.kind), [BodyId(0), BodyId(1)]);
     assert_eq!(of(drag.kind), [BodyId(0), BodyId(2)]);
-    let names = scene.reactions.iter().map(|&r| scene.reaction_name(r));
+    let names = scene
+        .requests
+        .reactions
+        .iter()
+        .map(|&r| scene.reaction_name(r));
     let names: Vec<_> = names.collect();
     assert_eq!(
         names,
@@ -217,7 +221,11 @@ fn gear_pairs_and_driven_lengths_are_read() {
     assert_eq!(pair.bodies, [BodyId(1), BodyId(2)]);
     assert!(close(pair.sides[1].axis, vec3(0.0, 1.0, 0.0)));
     assert!(close(pair.sides[1].point, vec3(1.0, 0.0, 0.0)));
-    let names = scene.reactions.iter().map(|&r| scene.reaction_name(r));
+    let names = scene
+        .requests
+        .reactions
+        .iter()
+        .map(|&r| scene.reaction_name(r));
     let of_pair: Vec<_> = names.filter(|n| n.starts_with('T')).collect();
     assert_eq!(of_pair, ["T.y"]);
     let scene = with(rod, "actuators.q = { length = \"rod\" }").expect("a scene");

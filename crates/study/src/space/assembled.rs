@@ -19,11 +19,16 @@ impl AskedScene for SpaceScene {
     const DIMENSION: usize = 3;
 
     fn assembled(&self) -> Result<AssembledModel<Self>, StudyError> {
-        let all = with_loads(self, compile(self, &self.reactions)?)?;
+        let all = with_loads(self, compile(self, &self.requests.reactions)?)?;
         let [determined, _] = sort_reactions(self, &all)?;
         let model = with_loads(self, compile(self, &determined)?)?;
         let place = |reaction: &Reaction| determined.iter().position(|known| known == reaction);
-        let reactions = self.reactions.iter().map(|r| (*r, place(r))).collect();
+        let reactions = self
+            .requests
+            .reactions
+            .iter()
+            .map(|r| (*r, place(r)))
+            .collect();
         Ok(AssembledModel { model, reactions })
     }
 

@@ -18,7 +18,7 @@ use dwell_scene::SpaceScene;
 /// Describes a scene in space; the numbers are recorded.
 pub(super) fn description(scene: &SpaceScene, record: &mut Record) -> Result<String, StudyError> {
     let mechanism = &scene.mechanism;
-    let model = compile(scene, &scene.reactions)?;
+    let model = compile(scene, &scene.requests.reactions)?;
     // What forces refuse is said before anything moves.
     with_loads(scene, model.clone())?;
     let sorted = sort_reactions(scene, &model)?;
@@ -187,7 +187,7 @@ fn describe_reactions(
     };
     record.add_count("reactions.determined", determined.len());
     record.add_count("reactions.indeterminate", others.len());
-    let requested = if scene.lists_reactions {
+    let requested = if scene.requests.lists_reactions {
         "requested"
     } else {
         "in the axes of the ground, all of them requested"

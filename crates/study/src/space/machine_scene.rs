@@ -30,7 +30,7 @@ impl MachineScene for SpaceScene {
 
     fn sorted_reactions(&self, _: &Model) -> Result<[Vec<Reaction>; 2], StudyError> {
         // The model of the machine has no reactions.
-        sort_reactions(self, &compile(self, &self.reactions)?)
+        sort_reactions(self, &compile(self, &self.requests.reactions)?)
     }
 
     fn reaction_units(&self, model: &Model) -> Vec<(String, &'static str)> {

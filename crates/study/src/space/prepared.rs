@@ -43,7 +43,7 @@ impl<'a> PreparedSpaceScene<'a> {
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be assembled, or does not have one actuator.
     pub fn new(scene: &'a SpaceScene) -> Result<Self, StudyError> {
-        let model = compile(scene, &scene.reactions)?;
+        let model = compile(scene, &scene.requests.reactions)?;
         let [determined, indeterminate] = sort_reactions(scene, &model)?;
         let model = match indeterminate.is_empty() {
             true => model,
@@ -203,7 +203,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
     }
 
     fn lists_reactions(&self) -> bool {
-        self.scene.lists_reactions
+        self.scene.requests.lists_reactions
     }
 
     fn range(&self) -> Range {

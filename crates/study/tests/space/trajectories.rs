@@ -250,7 +250,7 @@ fn compare_forces(scene: &SpaceScene, row: &Row<'_>, dense: &DenseSpace, found: 
             }
         }
     }
-    for reaction in &scene.reactions {
+    for reaction in &scene.requests.reactions {
         let Some(value) = row.get(&scene.reaction_name(*reaction)) else {
             continue;
         };

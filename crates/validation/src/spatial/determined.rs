@@ -24,7 +24,7 @@ pub(super) fn finding(
     scene: &SpaceScene,
     program: &Path,
 ) -> Result<Option<Finding>, ValidationError> {
-    if scene.lists_reactions {
+    if scene.requests.lists_reactions {
         return Ok(None);
     }
     let claims = SpaceClaims::new(scene)?;

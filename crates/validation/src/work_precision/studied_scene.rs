@@ -269,7 +269,7 @@ impl StudiedScene for SpaceScene {
             })
         };
         let mut scene = self.clone();
-        scene.reactions = joints.flat_map(of_joint).collect();
+        scene.requests.reactions = joints.flat_map(of_joint).collect();
         let [determined, _] = scene.sorted_reactions(model)?;
         Ok(determined)
     }
@@ -316,7 +316,7 @@ impl StudiedScene for SpaceScene {
         if let Some(motion) = &mut scene.motion {
             motion.duration = MotionDuration::Seconds(duration);
         }
-        scene.variables = with_states(self, self.variables.as_deref());
+        scene.requests.variables = with_states(self, self.requests.variables.as_deref());
         scene
     }
 }

@@ -10,56 +10,23 @@ use std::fmt::Write as _;
 const SOURCE: &str = include_str!("../template.c");
 const REACTION_TERMS: &str = include_str!("../reactions.c");
 const SELF_TEST: &str = include_str!("../self_test.c");
-const LOADS_FINITE: &str =
-    " && all_finite(terms->w, @U@_LOAD_COUNT * N) && all_finite(terms->v, @U@_LOAD_COUNT)";
-const LOADS_CLEAR: &str =
-    "        clear(terms->w, @U@_LOAD_COUNT * N);\n        clear(terms->v, @U@_LOAD_COUNT);\n";
-const MOVE_CURRENT: &str = "    to->@c@ = from->@c@ + h * rates[@k@];\n";
-const ADD_CURRENT: &str = "    add(&s.@c@, &s.carry[@k@], k1[@k@]);\n";
 
 impl CWriter<'_, SeveralFreedomsExport> {
     pub(super) fn source(&self) -> String {
-        // What is there only with loads.
-        let with_loads = |text: &str| match self.has_loads() {
-            true => text.to_owned(),
-            false => String::new(),
-        };
         let own = [
-            ("order", self.order().to_string()),
-            ("zero", self.number(0.0)),
-            ("half", self.number(0.5)),
-            ("two", self.number(2.0)),
-            ("six", self.number(6.0)),
             ("motion", self.motion()),
-            ("loads_finite", with_loads(LOADS_FINITE)),
-            ("loads_clear", with_loads(LOADS_CLEAR)),
             ("reactions_at", self.reaction_terms()),
             ("positions_at", self.positions()),
             ("scene", self.scene()),
-            ("f_member", with_loads("\n    @p@_real f[@U@_LOAD_COUNT];")),
             ("forces", self.forces()),
-            ("resistance", self.resistance()),
-            ("current_rates", self.current_rates()),
+            (
+                "current_rates",
+                self.current_rates(|k| self.velocity(k, "terms.", "s->q_dot")),
+            ),
             ("reactions", self.reactions()),
             ("potentials", self.potentials()),
-            ("move_currents", self.each_current(MOVE_CURRENT)),
-            ("add_currents", self.each_current(ADD_CURRENT)),
         ];
-        let mut text = SOURCE.to_owned();
-        for (name, own) in own {
-            text = text.replace(&format!("@{name}@"), &own);
-        }
-        text + &self.self_test()
-    }
-
-    /// A line for each current: `@c@` is its member, `@k@` its place.
-    fn each_current(&self, line: &str) -> String {
-        let lines = self.currents().into_iter();
-        let lines = lines.map(|(_, member, place)| {
-            let line = line.replace("@c@", &member);
-            line.replace("@k@", &place.to_string())
-        });
-        lines.collect()
+        self.fill(SOURCE, &own) + &self.step("ORDER") + &self.self_test()
     }
 
     fn motion(&self) -> String {
@@ -87,17 +54,7 @@ impl CWriter<'_, SeveralFreedomsExport> {
         let (a, b) = (array("a", self.freedoms), array("b", machine.pairs().len()));
         let targets = a.chain(b).chain(array("c", machine.loads.len()));
         let terms = self.assignments(&self.export.code[1], targets);
-        let [finite, clear] = match self.has_loads() {
-            true => [
-                " && all_finite(terms->c, @U@_LOAD_COUNT * @U@_REACTION_COUNT)",
-                "        clear(terms->c, @U@_LOAD_COUNT * @U@_REACTION_COUNT);\n",
-            ],
-            false => ["", ""],
-        };
-        REACTION_TERMS
-            .replace("@reaction_terms@", &terms)
-            .replace("@c_finite@", finite)
-            .replace("@c_clear@", clear)
+        self.fill(REACTION_TERMS, &[("reaction_terms", terms)])
     }
 
     fn positions(&self) -> String {
@@ -153,22 +110,6 @@ impl CWriter<'_, SeveralFreedomsExport> {
         }
         let unused = self.unused_arguments(&text);
         text + &unused
-    }
-
-    fn resistance(&self) -> String {
-        match self.has_loads() {
-            true => "    for (k = 0; k < @U@_LOAD_COUNT; k++) {\n        for (i = 0; i < N; i++) {\n            sum[i] = sum[i] - f->f[k] * t->w[k * N + i];\n        }\n    }\n".to_owned(),
-            false => "    (void)f;\n".to_owned(),
-        }
-    }
-
-    fn current_rates(&self) -> String {
-        let lines = self.currents().into_iter().map(|(load, _, place)| {
-            let velocity = self.velocity(load, "terms.", "s->q_dot");
-            let rate = ACCESS.current_rate(&self.names.loads[load], &velocity);
-            format!("    rates[{place}] = {rate};\n")
-        });
-        lines.collect()
     }
 
     fn reactions(&self) -> String {
@@ -233,11 +174,13 @@ impl CWriter<'_, SeveralFreedomsExport> {
             Precision::Double => 1e300,
             Precision::Float => 1e30,
         };
-        SELF_TEST
-            .replace("@most@", &most.to_string())
-            .replace("@no_inertia@", &self.number(-1e30))
-            .replace("@huge@", &self.number(huge))
-            .replace("@checks@", &checks)
+        let own = [
+            ("most", most.to_string()),
+            ("no_inertia", self.number(-1e30)),
+            ("huge", self.number(huge)),
+            ("checks", checks),
+        ];
+        self.fill(SELF_TEST, &own)
     }
 
     /// Accelerations, reactions, energies and required forces at a state.

@@ -50,10 +50,13 @@ impl SpaceRows {
     pub(crate) fn new(scene: &SpaceScene) -> Result<Self, StudyError> {
         let joints = &scene.mechanism.joints;
         let whole = components_of_all(joints.len());
-        let model = compile(scene, &[&scene.reactions[..], &whole].concat())?;
+        let model = compile(scene, &[&scene.requests.reactions[..], &whole].concat())?;
         let [_, open] = sort_reactions(scene, &model)?;
-        let (indeterminate, requested): (Vec<_>, Vec<_>) =
-            scene.reactions.iter().partition(|&r| open.contains(r));
+        let (indeterminate, requested): (Vec<_>, Vec<_>) = scene
+            .requests
+            .reactions
+            .iter()
+            .partition(|&r| open.contains(r));
         let has_magnitude = joints.iter().enumerate().map(|(j, joint)| {
             let of_joint = &whole[6 * j..6 * j + 6];
             let is_determined = |some: &[Reaction]| !some.iter().any(|r| open.contains(r));

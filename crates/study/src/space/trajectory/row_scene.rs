@@ -108,10 +108,10 @@ impl RowScene for SpaceScene {
 
     fn requests(&self) -> ColumnRequests<'_> {
         let at = |Vec3 { x, y, z }: Vec3| [x, y, z];
-        let paths = self.paths.iter();
+        let paths = self.requests.paths.iter();
         ColumnRequests {
-            variables: self.variables.as_deref(),
-            lists_reactions: self.lists_reactions,
+            variables: self.requests.variables.as_deref(),
+            lists_reactions: self.requests.lists_reactions,
             paths: paths.map(|path| (path.body, at(path.at))).collect(),
             dwell: None,
         }

@@ -1,56 +1,85 @@
 //! The scene as plain data.
 
+use crate::dimensions::{Dimensions, Plane, Space};
 use crate::file::SceneFile;
+use dwell_geometry::space::Vec3;
 use dwell_geometry::{
-    ActuatorId, AssemblyConfiguration, BodyId, Coordinate, Mechanism, Reaction, Vec2,
+    ActuatorId, AssemblyConfiguration, BodyId, Coordinate, Mechanism, Reaction, Vec2, space,
 };
-use dwell_kinetostatics::{Drive, Load, Mass, VaryingInertia};
+use dwell_kinetostatics::space as kinetostatics_in_space;
+use dwell_kinetostatics::{Drive, Load, LoadKind, Mass, VaryingInertia};
 use dwell_laws::Law;
 use std::ops::Deref;
 
-/// A scene: a mechanism, its masses, where it starts and what is asked of it. SI throughout; the
+/// A scene in the plane or in space: a mechanism, its masses, where it starts and what is asked of it. SI throughout; the
 /// bodies, joints and actuators are in the order of the file.
 #[derive(Debug, Clone)]
-pub struct PlaneScene {
+pub struct SceneIn<D: Dimensions> {
     /// Its file, with its name and title.
     pub file: SceneFile,
     /// Bodies, joints and actuators.
-    pub mechanism: Mechanism,
+    pub mechanism: D::Mechanism,
     /// Of each body. The ground has none, whatever the file says.
-    pub masses: Vec<Mass>,
-    /// The bodies whose moment of inertia is a function of their angle, besides their constant one.
+    pub masses: Vec<D::Mass>,
+    /// The bodies whose moment of inertia is a function of their angle, besides their constant one; none in space.
     pub varying_inertias: Vec<VaryingInertia>,
     /// The named points of each body, in its frame, m.
-    pub points: Vec<Vec<(String, Vec2)>>,
+    pub points: Vec<Vec<(String, D::Point)>>,
     /// The named coordinates of `[coordinates]`. Every actuator's is one besides: see
     /// [`coordinate`](Self::coordinate).
-    pub coordinates: Vec<NamedCoordinate>,
+    pub coordinates: Vec<NamedCoordinate<D::Coordinate>>,
     /// Where and how the mechanism is put together.
-    pub assembly: Assembly,
+    pub assembly: D::Assembly,
     /// The prescribed motion.
     pub prescribed: Option<PrescribedMotion>,
     /// The positions of kinematics, statics and kinetostatics without a prescribed motion.
     pub sweep: Option<CoordinateSweep>,
     /// The loads on the mechanism, and the friction in its joints.
-    pub loads: Vec<Load>,
+    pub loads: Vec<Load<D::LoadKind, D::Coordinate>>,
     /// What drives it in a free motion.
-    pub drives: Vec<Drive>,
+    pub drives: Vec<Drive<D::Coordinate>>,
     /// The end stops of free coordinates.
     pub stops: Vec<NamedStop>,
     /// What is asked for.
-    pub requests: Requests,
+    pub requests: Requests<D::Point, D::Reaction>,
     /// The free motion.
-    pub motion: Option<FreeMotionSpec>,
-    /// The one fitted number.
+    pub motion: Option<FreeMotionSpec<D::Coordinate, D::Reaction>>,
+    /// The one fitted number; none in space.
     pub calibration: Option<Calibration>,
 }
 
-impl Deref for PlaneScene {
+/// A scene in the plane.
+pub type PlaneScene = SceneIn<Plane>;
+
+/// A scene in space.
+pub type SpaceScene = SceneIn<Space>;
+
+impl<D: Dimensions> Deref for SceneIn<D> {
     type Target = SceneFile;
 
     fn deref(&self) -> &SceneFile {
         &self.file
     }
+}
+
+impl Dimensions for Plane {
+    type Point = Vec2;
+    type Mass = Mass;
+    type Mechanism = Mechanism;
+    type Assembly = Assembly;
+    type Coordinate = Coordinate;
+    type Reaction = Reaction;
+    type LoadKind = LoadKind;
+}
+
+impl Dimensions for Space {
+    type Point = Vec3;
+    type Mass = kinetostatics_in_space::Mass;
+    type Mechanism = space::Mechanism;
+    type Assembly = space::Assembly;
+    type Coordinate = space::Coordinate;
+    type Reaction = kinetostatics_in_space::Reaction;
+    type LoadKind = kinetostatics_in_space::LoadKind;
 }
 
 /// An end stop of an actuator's coordinate.
@@ -93,21 +122,34 @@ impl Assembly {
 }
 
 /// What the scene asks for.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Requests {
-    /// Reactions: those named, in that order and each once, or else all of the mechanism's.
-    pub reactions: Vec<Reaction>,
+#[derive(Debug, Clone, PartialEq)]
+pub struct Requests<V = Vec2, R = Reaction> {
+    /// Reactions: those named, in that order and each once, or else all of the mechanism's, in space in the axes of the ground.
+    pub reactions: Vec<R>,
     /// Whether the scene names reactions: an analysis of forces then yields these, and no column that is not requested.
     pub lists_reactions: bool,
-    /// Points whose paths are drawn.
-    pub paths: Vec<PathPoint>,
-    /// A body whose dwell is marked.
+    /// Points whose paths are drawn; in space all where there are none.
+    pub paths: Vec<PathPoint<V>>,
+    /// A body whose dwell is marked; none in space.
     pub dwell: Option<DwellRequest>,
     /// Names of the columns of the tables, each once; none: all of them. Whether they exist is for
     /// the level above to find out ([`SceneLocation::Variable`](crate::SceneLocation::Variable)).
     pub variables: Option<Vec<String>>,
-    /// Links whose internal forces are requested.
-    pub sections: Vec<SectionRequest>,
+    /// Links whose internal forces are requested; none in space.
+    pub sections: Vec<SectionRequest<V>>,
+}
+
+impl<V, R> Default for Requests<V, R> {
+    fn default() -> Self {
+        Self {
+            reactions: Vec::new(),
+            lists_reactions: false,
+            paths: Vec::new(),
+            dwell: None,
+            variables: None,
+            sections: Vec::new(),
+        }
+    }
 }
 
 /// A point of a moving body whose path is drawn.
@@ -121,6 +163,9 @@ pub struct PathPoint<V = Vec2> {
     pub at: V,
 }
 
+/// A point of a moving body in space whose path is drawn.
+pub type SpacePathPoint = PathPoint<Vec3>;
+
 /// A dwell to be marked: where the body's angle stays within a fraction of its swing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DwellRequest {
@@ -132,13 +177,13 @@ pub struct DwellRequest {
 
 /// A line along a body, whose axial force, shear and bending moment are requested.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SectionRequest {
+pub struct SectionRequest<V = Vec2> {
     /// The body, not the ground.
     pub body: BodyId,
     /// Names of the points it runs from and to.
     pub names: [String; 2],
     /// The points in the body's frame, m. They differ.
-    pub points: [Vec2; 2],
+    pub points: [V; 2],
 }
 
 /// A coordinate with a name.
@@ -231,31 +276,4 @@ pub struct Calibration {
     pub path: String,
     /// The period, s.
     pub period: f64,
-}
-
-impl PlaneScene {
-    /// The coordinate of that name: an actuator's, or one of `[coordinates]`.
-    pub fn coordinate(&self, name: &str) -> Option<Coordinate> {
-        let mut named = self.all_coordinates();
-        named.find(|(n, _)| *n == name).map(|(_, c)| c)
-    }
-
-    /// The name of a coordinate: an actuator's, or one of `[coordinates]`; empty if it has none.
-    pub fn name_of(&self, coordinate: Coordinate) -> String {
-        let mut named = self.all_coordinates();
-        let found = named.find(|(_, c)| *c == coordinate);
-        found.map_or_else(String::new, |(name, _)| name.to_owned())
-    }
-
-    /// Every coordinate that has a name, those of the actuators first.
-    pub fn all_coordinates(&self) -> impl Iterator<Item = (&str, Coordinate)> + Clone {
-        let actuators = self.mechanism.actuators.iter();
-        let named = self
-            .coordinates
-            .iter()
-            .map(|c| (c.name.as_str(), c.coordinate));
-        actuators
-            .map(|a| (a.name.as_str(), a.coordinate()))
-            .chain(named)
-    }
 }

@@ -2,14 +2,10 @@
 
 use crate::diagnostics::Span;
 use crate::error::{SceneError, Source};
+use crate::read::syntax;
+use crate::scene_data::SpaceScene;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-
-/// Whether a scene is one in space.
-pub(crate) fn is_in_space(source: &Source) -> Result<bool, SceneError> {
-    let root = crate::read::syntax(source)?;
-    Ok(three_numbers(root.get_ref()).is_some())
-}
 
 /// Where the first point or centre of three numbers is, in a scene in space: one in which more of them have three numbers than two.
 pub(crate) fn three_numbers(root: &DeTable<'_>) -> Option<Span> {
@@ -47,6 +43,15 @@ fn points_and_center<'v>(body: &'v DeValue<'v>) -> Vec<&'v Spanned<DeValue<'v>>>
         _ => Vec::new(),
     };
     points.into_iter().chain(body.get("center")).collect()
+}
+
+impl SpaceScene {
+    /// The error of what takes only scenes in the plane.
+    pub fn planar_only(&self) -> SceneError {
+        let root = syntax(&self.source).ok();
+        let point = root.and_then(|root| three_numbers(root.get_ref()));
+        planar_only(&self.source, point.unwrap_or_default())
+    }
 }
 
 /// A scene in space where one in the plane is needed.
