@@ -11,7 +11,7 @@ use dwell_study::model_with_loads;
 use dwell_verify::space::DenseSpace;
 
 fn model(scene: &SpaceScene) -> Model {
-    model_with_loads(scene, &scene.reactions).unwrap_or_else(|e| panic!("{e}"))
+    model_with_loads(scene, &scene.requests.reactions).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Part of a vector across a unit vector.
@@ -385,7 +385,7 @@ fn a_planar_mechanism_with_friction_is_the_same_in_an_oblique_plane() {
 }
 
 fn refusal(scene: &SpaceScene) -> String {
-    let error = model_with_loads(scene, &scene.reactions).expect_err("a refusal");
+    let error = model_with_loads(scene, &scene.requests.reactions).expect_err("a refusal");
     let dwell_study::StudyError::Scene(error) = error else {
         panic!("{error}")
     };

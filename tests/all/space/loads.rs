@@ -48,7 +48,7 @@ fn scene(name: &str, loads: &str) -> SpaceScene {
 }
 
 fn model(scene: &SpaceScene) -> Model {
-    let reactions = &scene.reactions;
+    let reactions = &scene.requests.reactions;
     let model = Model::new(&scene.mechanism, &scene.masses, &scene.assembly, reactions);
     let model = model.expect("a model");
     model.with_loads(scene.loads.clone()).expect("loads")

@@ -23,12 +23,8 @@ impl AskedScene for SpaceScene {
         let [determined, _] = sort_reactions(self, &all)?;
         let model = with_loads(self, compile(self, &determined)?)?;
         let place = |reaction: &Reaction| determined.iter().position(|known| known == reaction);
-        let reactions = self
-            .requests
-            .reactions
-            .iter()
-            .map(|r| (*r, place(r)))
-            .collect();
+        let requested = self.requests.reactions.iter();
+        let reactions = requested.map(|r| (*r, place(r))).collect();
         Ok(AssembledModel { model, reactions })
     }
 

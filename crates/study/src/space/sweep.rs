@@ -85,10 +85,8 @@ impl SweptScene for SpaceScene {
     fn varied(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
         let mut scene = self.with_values(values)?;
         // Without a list, the components that are requested depend on the directions of the axes.
-        scene
-            .requests
-            .reactions
-            .clone_from(&self.requests.reactions);
+        let reactions = &self.requests.reactions;
+        scene.requests.reactions.clone_from(reactions);
         Ok(scene)
     }
 

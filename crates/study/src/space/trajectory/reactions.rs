@@ -52,11 +52,8 @@ impl SpaceRows {
         let whole = components_of_all(joints.len());
         let model = compile(scene, &[&scene.requests.reactions[..], &whole].concat())?;
         let [_, open] = sort_reactions(scene, &model)?;
-        let (indeterminate, requested): (Vec<_>, Vec<_>) = scene
-            .requests
-            .reactions
-            .iter()
-            .partition(|&r| open.contains(r));
+        let all = scene.requests.reactions.iter();
+        let (indeterminate, requested): (Vec<_>, Vec<_>) = all.partition(|&r| open.contains(r));
         let has_magnitude = joints.iter().enumerate().map(|(j, joint)| {
             let of_joint = &whole[6 * j..6 * j + 6];
             let is_determined = |some: &[Reaction]| !some.iter().any(|r| open.contains(r));

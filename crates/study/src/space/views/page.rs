@@ -73,22 +73,15 @@ fn placements(
 
 /// All named points of moving bodies.
 fn paths(scene: &SpaceScene) -> Vec<DrawnPath> {
-    let (bodies, all) = (
-        scene.points.iter().enumerate(),
-        scene.requests.paths.is_empty(),
-    );
+    let (bodies, listed) = (scene.points.iter().enumerate(), &scene.requests.paths);
+    let all = listed.is_empty();
     let moving = bodies.filter(|(b, _)| *b != scene.mechanism.ground);
     let path = |(b, points): (usize, &Vec<(String, Vec3)>)| -> Vec<DrawnPath> {
         let body = &scene.mechanism.bodies[b].name;
         let one = |(name, p): &(String, Vec3)| DrawnPath {
             at: anchor(BodyId(b), *p),
             name: format!("{body}.{name}"),
-            requested: all
-                || scene
-                    .requests
-                    .paths
-                    .iter()
-                    .any(|of| of.body.0 == b && of.at == *p),
+            requested: all || listed.iter().any(|of| of.body.0 == b && of.at == *p),
         };
         points.iter().map(one).collect()
     };

@@ -19,13 +19,9 @@ pub(super) fn paths(
     let mut known: Vec<Vec<Vec3>> = Vec::new();
     let mut shapes = Vec::new();
     let same = drawing.same;
-    let requested = drawing
-        .scene
-        .requests
-        .paths
-        .iter()
-        .map(|path| (path.body, path.at));
-    let points = match drawing.scene.requests.paths.is_empty() {
+    let listed = &drawing.scene.requests.paths;
+    let requested = listed.iter().map(|path| (path.body, path.at));
+    let points = match listed.is_empty() {
         true => local_points(drawing.scene),
         false => requested.collect(),
     };
