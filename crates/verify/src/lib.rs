@@ -70,7 +70,7 @@ mod wrenches;
 
 pub use case::{Case, CheckedMechanism, spread};
 pub use checks::verify_all;
-pub use comparison::FindingSpec;
+pub use comparison::{Comparison, FindingSpec, LargestDifference};
 pub use constraint_closing::Configuration;
 pub use context::{CheckContext, CheckedPosition, Scales};
 pub use curves::{ErrorCurve, half_dm_curve, reaction_curve};
