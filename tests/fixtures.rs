@@ -2,7 +2,7 @@
 
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::{ExactModel, Model};
-use dwell_scene::PlaneScene;
+use dwell_scene::{PlaneScene, SpaceScene};
 use std::path::{Path, PathBuf};
 
 /// The repository's folder.
@@ -42,6 +42,12 @@ pub fn scene(case: &str) -> PlaneScene {
         .join(case)
         .join("scene.toml");
     PlaneScene::read(path).unwrap_or_else(|e| panic!("{case}: {e:?}"))
+}
+
+/// The scene of a case in space.
+pub fn space_scene(case: &str) -> SpaceScene {
+    let file = format!("validation/spatial/{case}.toml");
+    SpaceScene::read(repository_root().join(file)).unwrap_or_else(|e| panic!("{case}: {e:?}"))
 }
 
 /// A scene's model with every reaction.

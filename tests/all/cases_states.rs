@@ -7,7 +7,7 @@ use dwell_scene::PlaneScene;
 use dwell_study::no_progress;
 use dwell_tests::fixtures::{case_names, repository_root, scene};
 use dwell_validation::{CheckedStates, Validation, check_case, validate};
-use dwell_verify::{ClaimedState, check_states};
+use dwell_verify::{AssembledMechanism, CheckedMechanism, ClaimedState, check_states};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -144,7 +144,7 @@ fn assert_all_checks(case: &str, validation: &Validation) {
 #[test]
 fn regress_reports() {
     for case in case_names() {
-        let done = validate(&scene(&case), &folder(&case), &no_progress);
+        let done = validate(&scene(&case).into(), &folder(&case), None, &no_progress);
         let done = done.unwrap_or_else(|e| panic!("{case}: {e}"));
         assert_all_checks(&case, &done);
         let text = done.snapshot;
@@ -166,17 +166,14 @@ fn regress_reports() {
 fn an_inertia_off_by_a_millionth_is_found_in_every_case() {
     for case in case_names() {
         let scene = scene(&case);
-        let CheckedStates {
-            assembly_poses: start,
-            states,
-            ..
-        } = checked_states(&scene, &folder(&case));
+        let checked = checked_states(&scene, &folder(&case));
+        let states = &checked.states;
         let largest = |of: &dyn Fn(usize, usize) -> f64, bodies: usize| {
             let all = (0..states.len()).flat_map(|s| (0..bodies).map(move |b| (s, b)));
             all.map(|(s, b)| of(s, b).abs()).fold(0.0, f64::max)
         };
         let couple = |b: usize| {
-            let alpha = |s: usize, _: usize| states[s].accelerations[b][2];
+            let alpha = |s: usize, _: usize| states[s].accelerations[b].angular.z;
             scene.masses[b].inertia * largest(&alpha, 1)
         };
         let bodies: Vec<usize> = (0..scene.masses.len())
@@ -186,7 +183,12 @@ fn an_inertia_off_by_a_millionth_is_found_in_every_case() {
         for b in bodies {
             let mut masses = scene.masses.clone();
             masses[b].inertia *= 1.0 + 1e-6;
-            let findings = check_states(&scene.mechanism, &masses, &start, &states);
+            let mechanism = CheckedMechanism::Plane(&scene.mechanism, (&masses).into());
+            let assembled = AssembledMechanism {
+                mechanism,
+                ..checked.assembled(&scene)
+            };
+            let findings = check_states(&assembled, states, 0);
             let failed = failed(&findings);
             // A body that hardly turns shows it where all forces are small, or not at all.
             let shows = couple(b) > 1e-2 * strongest;
@@ -209,7 +211,11 @@ fn what_repeats_is_judged_too() {
     let scene = scene(REDUNDANT);
     let case = checked_states(&scene, &folder(REDUNDANT));
     let check_without = |mechanism: &Mechanism, states: &[ClaimedState]| {
-        check_states(mechanism, &scene.masses, &case.assembly_poses, states)
+        let assembled = AssembledMechanism {
+            mechanism: CheckedMechanism::Plane(mechanism, (&scene.masses).into()),
+            ..case.assembled(&scene)
+        };
+        check_states(&assembled, states, 0)
     };
     let mut states = case.states.clone();
     for state in &mut states {
@@ -350,7 +356,7 @@ fn a_published_motion_that_is_put_off_is_found() {
             let altered = number(&values[name]) * (1.0 + altered);
             values[name] = Value::from(format!("{altered:e}"));
         });
-        let done = validate(&scene(case), &changed.0, &no_progress).expect("findings");
+        let done = validate(&scene(case).into(), &changed.0, None, &no_progress).expect("findings");
         let findings = done.outcome.findings;
         assert_eq!(failed(&findings), ["published-motion"], "{case}, {name}");
         let finding = findings.iter().find(|f| !f.pass).expect("it");
@@ -359,7 +365,8 @@ fn a_published_motion_that_is_put_off_is_found() {
     let changed = Changed::new("andrews", |reference| {
         reference["free_motion"]["states"][0]["values"]["gamma"] = Value::from("1.0");
     });
-    let error = validate(&scene("andrews"), &changed.0, &no_progress).expect_err("no such name");
+    let done = validate(&scene("andrews").into(), &changed.0, None, &no_progress);
+    let error = done.expect_err("no such name");
     assert!(error.to_string().contains("`gamma`"), "{error}");
 }
 

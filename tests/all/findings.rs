@@ -1,17 +1,22 @@
 //! The findings of `dwell validate` on every case: verdicts and digits, and how far within them the numbers are.
 
 use dwell_findings::{Finding, all_pass};
-use dwell_scene::{PlaneScene, SpaceScene};
+use dwell_scene::Scene;
 use dwell_study::no_progress;
-use dwell_tests::fixtures::{case_names, repository_root, scene, space_case_names};
-use dwell_validation::{Validation, validate, validate_in_space};
+use dwell_tests::fixtures::{case_names, repository_root, scene, space_case_names, space_scene};
+use dwell_validation::{Validation, validate};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-fn validated(scene: &PlaneScene, case: &str) -> Validation {
-    let folder = repository_root().join("validation").join(case);
-    validate(scene, &folder, &no_progress).unwrap_or_else(|e| panic!("{case}: {e}"))
+/// The validation of a scene with the reference of a case.
+fn validated(scene: impl Into<Scene>, case: &str) -> Validation {
+    let scene = scene.into();
+    let folder = repository_root().join("validation").join(match scene {
+        Scene::Plane(_) => case,
+        Scene::Space(_) => "spatial",
+    });
+    validate(&scene, &folder, None, &no_progress).unwrap_or_else(|e| panic!("{case}: {e}"))
 }
 
 /// Digits that every machine reproduces, in steps of three: the difference, four times as large (its last bits are a machine's
@@ -37,17 +42,6 @@ fn describe(findings: &[Finding]) -> String {
         );
         text
     })
-}
-
-fn validated_in_space(case: &str) -> Validation {
-    let path = repository_root().join("validation/spatial").join(case);
-    let scene = SpaceScene::read(path.with_extension("toml"));
-    let scene = scene.unwrap_or_else(|e| panic!("{case}: {e:?}"));
-    assert!(scene.warnings.is_empty(), "{case}: {:?}", scene.warnings);
-    let reference = path.with_extension("json");
-    let reference = reference.is_file().then_some(reference);
-    let done = validate_in_space(&scene, reference.as_deref(), None);
-    done.unwrap_or_else(|e| panic!("{case}: {e}"))
 }
 
 /// A case against its snapshot, and its values against the committed report.
@@ -77,8 +71,8 @@ fn val_every_case_has_the_verdicts_digits_and_values_it_had() {
     // All of them, so that one run tells everything that changed.
     let of_case = |case: &String| {
         let done = || match in_space.contains(case) {
-            true => validated_in_space(case),
-            false => validated(&scene(case), case),
+            true => validated(space_scene(case), case),
+            false => validated(scene(case), case),
         };
         catch_unwind(AssertUnwindSafe(|| assert_snapshot(case, &done()))).is_err()
     };
@@ -89,15 +83,24 @@ fn val_every_case_has_the_verdicts_digits_and_values_it_had() {
 
 #[test]
 fn scenes_of_the_project_warn_of_nothing() {
-    for case in case_names() {
-        let scene = scene(&case);
-        assert!(scene.warnings.is_empty(), "{case}: {:?}", scene.warnings);
+    let planar = case_names()
+        .into_iter()
+        .map(|case| Scene::from(scene(&case)));
+    let in_space = space_case_names().into_iter();
+    let in_space = in_space.map(|case| Scene::from(space_scene(&case)));
+    for scene in planar.chain(in_space) {
+        assert!(
+            scene.warnings.is_empty(),
+            "{}: {:?}",
+            scene.name,
+            scene.warnings
+        );
     }
 }
 
 #[test]
 fn digits_are_rounded_down_with_room_and_never_more_than_asked() {
-    let done = validated(&scene("pendulum-a01"), "pendulum-a01");
+    let done = validated(scene("pendulum-a01"), "pendulum-a01");
     let finding = |relative: f64, tolerance: f64| {
         let some = done.outcome.findings[0].clone();
         digits(&Finding {
@@ -117,7 +120,7 @@ fn digits_are_rounded_down_with_room_and_never_more_than_asked() {
 /// The single-dwell reaches what the project promises of it, whatever tolerance its findings have.
 #[test]
 fn val_single_dwell_reaches_what_is_promised() {
-    let done = validated(&scene("single-dwell"), "single-dwell");
+    let done = validated(scene("single-dwell"), "single-dwell");
     let findings = &done.outcome.findings;
     let docs = repository_root().join("docs/first-study.md");
     let docs = std::fs::read_to_string(docs).expect("the study");
@@ -164,7 +167,7 @@ fn assert_detected(path: &str) {
     let scene = scene("single-dwell");
     let value = scene.value(path).expect("a number");
     let other = scene.with_value(path, value * (1.0 + 1e-9));
-    let validation = validated(&other.expect("a scene"), "single-dwell");
+    let validation = validated(other.expect("a scene"), "single-dwell");
     assert!(!all_pass(&validation.outcome.findings));
     let failed = validation.outcome.findings.iter().filter(|f| !f.pass);
     let keys: Vec<&str> = failed.map(|f| f.key.as_str()).collect();

@@ -5,7 +5,8 @@ use dwell_kinetostatics::{Mass, Model};
 use dwell_laws::{Law, Polynomial};
 use dwell_tests::changes::Setup;
 use dwell_tests::sketch::{FourBar, Sketch};
-use dwell_verify::{ClaimedState, check_states};
+use dwell_validation::claimed_motion;
+use dwell_verify::{AssembledMechanism, CheckedMechanism, ClaimedState, check_states};
 
 const GROUND: BodyId = Sketch::GROUND;
 
@@ -54,7 +55,12 @@ fn check(setup: &Setup, steps: &[f64]) {
         .collect();
     let rest = || vec![0.0; start.q.len()];
     let home = state(&model, mechanism, start.q.clone(), [rest(), rest()]);
-    for finding in check_states(mechanism, masses, &home.poses, &states) {
+    let assembled = AssembledMechanism {
+        mechanism: CheckedMechanism::Plane(mechanism, masses.into()),
+        q: &start.q,
+        poses: &home.poses,
+    };
+    for finding in check_states(&assembled, &states, 0) {
         assert!(finding.pass, "{finding:?}");
     }
 }
@@ -66,27 +72,14 @@ fn state(model: &Model, mechanism: &Mechanism, q: Vec<f64>, rates: [Vec<f64>; 2]
     let state = model.kinetostatics(0.0, &q, &q_dot, &q_ddot, &mut workspace, &mut result);
     let state = state.unwrap_or_else(|error| panic!("{q:?}: {error}"));
     let bodies = model.plan().body_frames(mechanism, state.pose());
-    let rates = |b: usize| {
-        let origin = state.bodies().point(BodyId(b), Vec2::ZERO);
-        let body = state.bodies().body(BodyId(b));
-        let (v, a) = (origin.velocity, origin.acceleration);
-        (
-            [v.x, v.y, body.angular_velocity],
-            [a.x, a.y, body.angular_acceleration],
-        )
-    };
-    let (velocity, acceleration) = (0..bodies.len()).map(rates).unzip();
+    let motion = claimed_motion(&bodies, state.bodies());
     ClaimedState {
-        t: 0.0,
         q,
         q_dot,
         q_ddot,
-        poses: bodies,
-        velocities: velocity,
-        accelerations: acceleration,
         reactions: result.reactions,
         tau: result.tau,
-        load_wrenches: Vec::new(),
+        ..motion
     }
 }
 

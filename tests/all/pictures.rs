@@ -95,7 +95,7 @@ fn the_pictures_of_the_validation_are_legible() {
     let cases = case_names();
     let of_case = |case: &String| {
         let folder = repository_root().join("validation").join(case);
-        validate(&scene(case), &folder, &no_progress).expect("a validation")
+        validate(&scene(case).into(), &folder, None, &no_progress).expect("a validation")
     };
     let done: Vec<_> = cases.par_iter().map(of_case).collect();
     let scenes: Vec<PlaneScene> = cases.iter().map(|case| scene(case)).collect();

@@ -7,9 +7,13 @@ mod placed_mechanism;
 mod tilted;
 
 use crate::batches::compare_batch;
-use dwell_geometry::{BodyId, JointKind, Vec2};
+use dwell_geometry::{JointKind, Vec2};
 use dwell_kinetostatics::{ExactModel, Load, LoadKind, Magnitude, Model, ModelError};
-use dwell_verify::{ClaimedState, check_states, load_wrenches, rank};
+use dwell_validation::claimed_motion;
+use dwell_verify::{
+    AssembledMechanism, CheckedMechanism, ClaimedState, Pose, Twist, check_states, load_wrenches,
+    rank,
+};
 use grow::{GrowthStep, step};
 use placed_mechanism::{DescribedMechanism, Description, PlacedMechanism};
 use proptest::prelude::*;
@@ -163,17 +167,10 @@ impl BuiltMechanism {
                 .kinetostatics(0.0, &q, &q_dot, &q_ddot, &mut workspace, &mut result)
                 .map_err(|e| format!("{e} at {step:?}"))?;
             let bodies = self.model.plan().body_frames(mechanism, state.pose());
-            let states = state.bodies();
-            let rates = |b: usize| {
-                let origin = states.point(BodyId(b), Vec2::ZERO);
-                let body = states.body(BodyId(b));
-                let (v, a) = (origin.velocity, origin.acceleration);
-                (
-                    [v.x, v.y, body.angular_velocity],
-                    [a.x, a.y, body.angular_acceleration],
-                )
-            };
-            let (velocity, acceleration): (Vec<_>, Vec<_>) = (0..bodies.len()).map(rates).unzip();
+            let motion = claimed_motion(&bodies, state.bodies());
+            let twists = [&motion.velocities, &motion.accelerations];
+            let [velocity, acceleration] = twists
+                .map(|twists| -> Vec<[f64; 3]> { twists.iter().map(Twist::in_plane).collect() });
             let gravity = LoadKind::Gravity { direction: *down };
             let loads = load_wrenches(
                 &gravity,
@@ -194,16 +191,14 @@ impl BuiltMechanism {
                 travels: self.travels(&bodies),
                 bits: numbers.into_iter().map(f64::to_bits).collect(),
                 state: ClaimedState {
-                    t: all.len() as f64,
+                    name: format!("state {}", all.len()),
                     q,
                     q_dot,
                     q_ddot,
-                    poses: bodies,
-                    velocities: velocity,
-                    accelerations: acceleration,
                     reactions: result.reactions.clone(),
                     tau: result.tau.clone(),
                     load_wrenches: loads.expect("bodies"),
+                    ..motion
                 },
             });
         }
@@ -295,14 +290,14 @@ fn check(seed: &Seed, tally: &mut Tally) -> Result<(), String> {
     let outputs = one.evaluate(&placed, &views[0], &steps)?;
     let other = two.evaluate(&placed, &views[1], &steps)?;
     for (compiled, outputs) in [(one, &outputs), (two, &other)] {
-        let found = &outputs[0].state.poses;
-        let difference = pose_difference(found, &compiled.described.start_poses);
+        let found: Vec<[f64; 3]> = outputs[0].state.poses.iter().map(Pose::in_plane).collect();
+        let difference = pose_difference(&found, &compiled.described.start_poses);
         if tally.worst("branch", difference / condition, 1e-14).is_ok() {
             continue;
         }
         // Of two ways closer than the rough angles are wrong, these may mean the other.
         check_dense(compiled, outputs, condition, tally)?;
-        let [here, built] = [found, &compiled.described.start_poses]
+        let [here, built] = [&found, &compiled.described.start_poses]
             .map(|poses| distance_to_guess(&compiled.described, poses));
         if here >= built {
             return Err(format!("on another branch, {difference:.1e} away"));
@@ -419,7 +414,13 @@ fn check_dense(
     let DescribedMechanism {
         mechanism, masses, ..
     } = &built.described;
-    for finding in check_states(mechanism, masses, &outputs[0].state.poses, &states) {
+    let first = &outputs[0].state;
+    let assembled = AssembledMechanism {
+        mechanism: CheckedMechanism::Plane(mechanism, masses.into()),
+        q: &first.q,
+        poses: &first.poses,
+    };
+    for finding in check_states(&assembled, &states, 0) {
         if finding.relative_difference.is_nan() {
             return Err(format!("{}: {}", finding.key, finding.worst_at));
         }

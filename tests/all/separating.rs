@@ -80,12 +80,7 @@ fn a_wrong_separating_force_is_found() {
                 let first = state.load_wrenches.len() - 2 * count;
                 state.load_wrenches[first..].iter_mut().for_each(fault);
             }
-            let findings = check_states(
-                &scene.mechanism,
-                &scene.masses,
-                &checked.assembly_poses,
-                &states,
-            );
+            let findings = check_states(&checked.assembled(&scene), &states, 0);
             failed(&findings).join(" ")
         };
         for fault in [

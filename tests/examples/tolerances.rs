@@ -4,7 +4,7 @@
 #![allow(clippy::print_stdout, reason = "a study, run by hand")]
 
 use dwell_findings::{Check, Finding};
-use dwell_scene::PlaneScene;
+use dwell_scene::Scene;
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Measures a case and writes its tolerances; how many.
 fn rewrite(case: &Path) -> Result<usize, Box<dyn Error>> {
-    let scene = PlaneScene::read(case.join("scene.toml"))?;
+    let scene = Scene::read(case.join("scene.toml"))?;
     let file = case.join("case.toml");
     let old = std::fs::read_to_string(&file).unwrap_or_default();
     let rest = without_tolerances(&old);
@@ -42,7 +42,7 @@ fn rewrite(case: &Path) -> Result<usize, Box<dyn Error>> {
     let bare = std::env::temp_dir().join(format!("dwell-tolerances-{}", std::process::id()));
     std::fs::create_dir_all(&bare)?;
     std::fs::write(bare.join("case.toml"), &rest)?;
-    let validation = dwell_validation::validate(&scene, &bare, &dwell_study::no_progress)?;
+    let validation = dwell_validation::validate(&scene, &bare, None, &dwell_study::no_progress)?;
     std::fs::remove_dir_all(&bare)?;
     let mut tolerances: BTreeMap<&str, f64> = BTreeMap::new();
     // Of the integrated ones only check 6 has a bound by case: the others are factors of an integrator's tolerance.

@@ -2,11 +2,11 @@
 //! its results, and is checked by the right one.
 
 use super::detection::Detection;
-use super::tested_mechanism::{CheckMode, ClaimedStates, TestedMechanism};
+use super::tested_mechanism::{CheckMode, TestedMechanism};
 use dwell_geometry::{BodyId, JointKind, Vec2, vec2};
 use dwell_kinetostatics::{LoadKind, Magnitude};
 use dwell_scene::PlaneScene;
-use dwell_verify::ClaimedState;
+use dwell_verify::{ClaimedState, Twist};
 
 /// A fault in states under loads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -228,8 +228,8 @@ impl Mutation {
     }
 
     /// Alters what is claimed, if that is the fault.
-    fn alter_claims(self, machine: &TestedMechanism, claimed: &mut ClaimedStates) -> bool {
-        let states = claimed.0.iter_mut();
+    fn alter_claims(self, machine: &TestedMechanism, claimed: &mut [ClaimedState]) -> bool {
+        let states = claimed.iter_mut();
         match self {
             Self::ActionReversed => states.for_each(|s| s.tau.iter_mut().for_each(|t| *t = -*t)),
             Self::ActionForgotten => states.for_each(|s| s.tau[0] = 0.0),
@@ -239,7 +239,7 @@ impl Mutation {
             Self::NoTransport => states.for_each(|s| remove_carrier_velocity(machine.scene(), s)),
             Self::NoCurvature => {
                 let straight = machine.accelerations_without_velocity(claimed);
-                let states = claimed.0.iter_mut().zip(straight);
+                let states = claimed.iter_mut().zip(straight);
                 states.for_each(|(state, straight)| state.accelerations = straight);
             }
             Self::FrictionReversed => return reverse_friction(machine, claimed),
@@ -250,17 +250,17 @@ impl Mutation {
 }
 
 /// Actions and reactions with the part of friction reversed; whether there is any.
-fn reverse_friction(machine: &TestedMechanism, claimed: &mut ClaimedStates) -> bool {
+fn reverse_friction(machine: &TestedMechanism, claimed: &mut [ClaimedState]) -> bool {
     let mut frictionless = machine.scene().clone();
     if !Mutation::FrictionForgotten.alter_scene(&mut frictionless) {
         return false;
     }
     let without =
         TestedMechanism::from_scene(frictionless, CheckMode::States).and_then(|m| m.claims());
-    let Some((without, _)) = without else {
+    let Some(without) = without else {
         return false;
     };
-    for (state, without) in claimed.0.iter_mut().zip(without) {
+    for (state, without) in claimed.iter_mut().zip(without) {
         let actual = state.tau.iter_mut().chain(&mut state.reactions);
         let without_friction = without.tau.iter().chain(&without.reactions);
         actual
@@ -277,10 +277,8 @@ fn remove_carrier_velocity(scene: &PlaneScene, state: &mut ClaimedState) {
         if !matches!(joint.kind, JointKind::Prismatic { .. }) || body == scene.mechanism.ground {
             continue;
         }
-        let [x, y, angular_velocity] = state.velocities[carrier];
-        let [from, to] = [carrier, body].map(|b| vec2(state.poses[b][0], state.poses[b][1]));
-        let carried = vec2(x, y) + (to - from).perp() * angular_velocity;
-        state.velocities[body][0] -= carried.x;
-        state.velocities[body][1] -= carried.y;
+        let Twist { linear, angular } = state.velocities[carrier];
+        let arm = state.poses[body].position - state.poses[carrier].position;
+        state.velocities[body].linear -= linear + angular.cross(arm);
     }
 }

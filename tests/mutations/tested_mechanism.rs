@@ -6,16 +6,16 @@ use super::mutating_scalar::{
     MutatingScalar, MutationKind, SourceOperation, recording_operations, with_mutation,
 };
 use super::positions::{POSITIONS, poses_along, positions};
-use super::to_f64::{accelerations, pose_to_f64, result_to_f64};
+use super::to_f64::{pose_to_f64, result_to_f64};
 use dwell_findings::Finding;
-use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::{
     EvaluatedState, InverseDynamics as Kinetostatic, KinematicState, MachineModel as _, Model,
 };
 use dwell_scene::PlaneScene;
+use dwell_validation::{claimed_motion, solved};
 use dwell_verify::{
-    Case, CheckedMechanism, ClaimedState, Subject, check_energies, check_states, load_wrenches,
-    verify_all,
+    AssembledMechanism, Case, CheckedMechanism, ClaimedState, Pose, Subject, Twist, check_energies,
+    check_states, load_wrenches, verify_all,
 };
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -50,7 +50,7 @@ pub struct TestedMechanism {
     positions: Vec<Vec<f64>>,
     /// By position, the frames of all bodies, revolutions counted from the start.
     body_poses: Vec<Vec<[f64; 3]>>,
-    start_poses: Vec<[f64; 3]>,
+    start_poses: Vec<Pose>,
     /// The results without a mutation.
     clean: ComparedValues,
     clean_states: Vec<ClaimedState>,
@@ -61,8 +61,6 @@ pub struct TestedMechanism {
 
 /// Everything that is checked, by kind.
 pub type ComparedValues = Vec<Vec<f64>>;
-/// States, and by state the generalised inertias, row by row.
-pub type ClaimedStates = (Vec<ClaimedState>, Vec<Vec<f64>>);
 
 /// A result that changes by less than this, relative to the largest of its kind, is the same result:
 /// three digits above what the checks distinguish from rounding.
@@ -74,7 +72,7 @@ impl TestedMechanism {
         let name = scene.name.clone();
         let mut tested = Self::from_scene(scene, mode).unwrap_or_else(|| panic!("{name} is none"));
         if mode == CheckMode::States {
-            tested.clean_states = tested.states(None).expect("states").0;
+            tested.clean_states = tested.states(None).expect("states");
         }
         tested.clean = tested.compared_values(None).expect("answers");
         let findings = tested.findings(None, usize::MAX);
@@ -105,7 +103,7 @@ impl TestedMechanism {
             model,
             positions,
             body_poses,
-            start_poses: at_start,
+            start_poses: Pose::all_in_plane(&at_start),
             clean: Vec::new(),
             clean_states: Vec::new(),
             ignored_findings: Vec::new(),
@@ -145,8 +143,8 @@ impl TestedMechanism {
     }
 
     /// What the checks detect in states that are claimed of this mechanism; nothing where they are its own.
-    pub fn check_claims(&self, mut claimed_states: ClaimedStates) -> Option<Detection> {
-        for (claimed, actual) in claimed_states.0.iter_mut().zip(&self.clean_states) {
+    pub fn check_claims(&self, mut claimed_states: Vec<ClaimedState>) -> Option<Detection> {
+        for (claimed, actual) in claimed_states.iter_mut().zip(&self.clean_states) {
             claimed.load_wrenches.clone_from(&actual.load_wrenches);
         }
         if max_difference(&self.clean, &self.values_of(&claimed_states)) <= UNCHANGED_TOLERANCE {
@@ -157,12 +155,12 @@ impl TestedMechanism {
     }
 
     /// The states that this mechanism claims.
-    pub fn claims(&self) -> Option<ClaimedStates> {
+    pub fn claims(&self) -> Option<Vec<ClaimedState>> {
         self.states(None)
     }
 
     /// The accelerations of its states, without their velocity-product terms.
-    pub fn accelerations_without_velocity(&self, claimed: &ClaimedStates) -> Vec<Vec<[f64; 3]>> {
+    pub fn accelerations_without_velocity(&self, claimed: &[ClaimedState]) -> Vec<Vec<Twist>> {
         let mut workspace = self.model.workspace::<MutatingScalar>();
         let zero_velocities = vec![MutatingScalar::default(); self.model.plan().actuators()];
         let lifted = |values: &[f64]| {
@@ -177,9 +175,10 @@ impl TestedMechanism {
                 .model
                 .kinematic_state(&q, &zero_velocities, &mut workspace);
             let mut entered = entered.expect("a pose");
-            accelerations(entered.bodies_at(&lifted(&state.q_ddot)), state.poses.len())
+            let states = entered.bodies_at(&lifted(&state.q_ddot));
+            claimed_motion(&vec![[0.0; 3]; state.poses.len()], states).accelerations
         };
-        claimed.0.iter().map(of).collect()
+        claimed.iter().map(of).collect()
     }
 
     /// Where it is checked: to be the same for claims of a wrong description.
@@ -214,17 +213,16 @@ impl TestedMechanism {
         }
     }
 
-    fn check_states(&self, (states, inertias): &ClaimedStates, enough: usize) -> Vec<Finding> {
+    fn check_states(&self, states: &[ClaimedState], enough: usize) -> Vec<Finding> {
         let (mechanism, masses) = (&self.scene.mechanism, &self.scene.masses);
-        let mut findings = check_states(mechanism, masses, &self.start_poses, states);
+        let assembled = AssembledMechanism {
+            mechanism: CheckedMechanism::Plane(mechanism, masses.into()),
+            q: &self.scene.assembly.coordinates,
+            poses: &self.start_poses,
+        };
+        let mut findings = check_states(&assembled, states, 0);
         if self.detection(&findings).check_count() < enough {
-            findings.extend(check_energies(
-                mechanism,
-                masses,
-                &self.start_poses,
-                states,
-                inertias,
-            ));
+            findings.extend(check_energies(&assembled, states));
         }
         findings
     }
@@ -260,21 +258,22 @@ impl TestedMechanism {
         }
     }
 
-    fn values_of(&self, (states, inertias): &ClaimedStates) -> ComparedValues {
-        let all = |of: fn(&ClaimedState) -> &Vec<[f64; 3]>| {
-            let each = states.iter().flat_map(|s| of(s).iter().flatten().copied());
-            each.collect()
+    fn values_of(&self, states: &[ClaimedState]) -> ComparedValues {
+        let twists = |of: fn(&ClaimedState) -> &Vec<Twist>| {
+            let all = states.iter().flat_map(of);
+            all.flat_map(Twist::in_plane).collect()
         };
+        let poses = states.iter().flat_map(|s| &s.poses);
         let forces = states.iter().flat_map(|s| {
             let reactions = self.determinate(s.reactions.clone());
             reactions.into_iter().chain(s.tau.clone())
         });
         vec![
-            all(|s| &s.poses),
-            all(|s| &s.velocities),
-            all(|s| &s.accelerations),
+            poses.flat_map(Pose::in_plane).collect(),
+            twists(|s| &s.velocities),
+            twists(|s| &s.accelerations),
             forces.collect(),
-            inertias.concat(),
+            states.iter().flat_map(|s| s.inertias.clone()).collect(),
         ]
     }
 
@@ -290,11 +289,11 @@ impl TestedMechanism {
     }
 
     /// The states under the loads. The forces of the loads follow from the unmutated poses and magnitudes.
-    fn states(&self, mutation: OperationMutation) -> Option<ClaimedStates> {
+    fn states(&self, mutation: OperationMutation) -> Option<Vec<ClaimedState>> {
         let mut workspace = self.model.workspace::<MutatingScalar>();
         let (mut result, mut unit) = (self.model.result_buffer(), self.model.result_buffer());
         let n = self.model.plan().actuators();
-        let (mut states, mut inertias) = (Vec::new(), Vec::<Vec<f64>>::new());
+        let mut states = Vec::<ClaimedState>::new();
         for (k, q) in self.positions.iter().enumerate() {
             let t = 0.3 + 0.4 * k as f64;
             let [q_dot, q_ddot] = [first(n, &VELOCITIES[k]), first(n, &ACCELERATIONS[k])];
@@ -310,7 +309,7 @@ impl TestedMechanism {
                     .kinetostatics(t, &q, &v, &a, &mut workspace, &mut result)
             });
             let evaluated = done.ok()?;
-            let state = with_mutation(mutation, || self.state(t, k, &evaluated));
+            let mut state = with_mutation(mutation, || self.state(t, k, &evaluated));
             let mut evaluated = evaluated.into_kinematic_state();
             let mut runs = Vec::new();
             for i in 0..n {
@@ -319,16 +318,13 @@ impl TestedMechanism {
             }
             // M_ij is the actuator force i at q̈ⱼ = 1 alone.
             let at = |i: usize, j: usize| runs[j].tau[i];
-            inertias.push((0..n * n).map(|k| at(k / n, k % n)).collect());
+            state.inertias = (0..n * n).map(|k| at(k / n, k % n)).collect();
             states.push(state);
             if k + 1 == self.positions.len() && self.model.frictions().len() == 0 {
-                let mut free = self.free_state(mutation, states.last()?, &runs, evaluated)?;
-                free.t += 1e-3;
-                inertias.push(inertias.last()?.clone());
-                states.push(free);
+                states.push(self.free_state(mutation, states.last()?, &runs, evaluated)?);
             }
         }
-        Some((states, inertias))
+        Some(states)
     }
 
     /// The same state in free motion: its accelerations from the inertias, and every reaction as a
@@ -349,7 +345,10 @@ impl TestedMechanism {
         })
         .ok()?;
         let without = result_to_f64(&without);
-        let q_ddot = solve_accelerations(runs, &without.tau)?;
+        let columns: Vec<Vec<f64>> = runs.iter().map(|run| run.tau.clone()).collect();
+        let right: Vec<f64> = without.tau.iter().map(|tau| -tau).collect();
+        // Without inertia no number is right.
+        let q_ddot = solved(&columns, &right).unwrap_or_else(|| vec![f64::NAN; n]);
         let lifted: Vec<_> = q_ddot.iter().map(|&a| MutatingScalar::new(a)).collect();
         let bodies = with_mutation(mutation, || free_forces.bodies_at(&lifted));
         let mut free = state.clone();
@@ -359,7 +358,9 @@ impl TestedMechanism {
                 *sum += one * a;
             }
         }
-        free.accelerations = with_mutation(mutation, || accelerations(bodies, free.poses.len()));
+        let frames = vec![[0.0; 3]; free.poses.len()];
+        free.accelerations =
+            with_mutation(mutation, || claimed_motion(&frames, bodies).accelerations);
         free.tau = vec![0.0; n];
         free.q_ddot = q_ddot;
         Some(free)
@@ -378,15 +379,11 @@ impl TestedMechanism {
         for (pose, right) in bodies.iter_mut().zip(&self.body_poses[k]) {
             pose[2] += ((right[2] - pose[2]) / TAU).round() * TAU;
         }
-        let of = |b: usize| (states.body(BodyId(b)), states.point(BodyId(b), Vec2::ZERO));
-        let velocity = |b: usize| {
-            let (body, origin) = of(b);
-            [origin.velocity.x, origin.velocity.y, body.angular_velocity].map(|v| v.0)
-        };
-        let velocity: Vec<[f64; 3]> = (0..bodies.len()).map(velocity).collect();
+        let motion = claimed_motion(&bodies, states);
         let loads = match self.clean_states.get(k) {
             Some(clean) => clean.load_wrenches.clone(),
             None => {
+                let velocities: Vec<_> = motion.velocities.iter().map(Twist::in_plane).collect();
                 let loads = self.scene.loads.iter().zip(&evaluated.loads().magnitude);
                 let wrenches = loads.filter_map(|(load, magnitude)| {
                     let masses = &self.scene.masses;
@@ -396,7 +393,7 @@ impl TestedMechanism {
                         mechanism.ground,
                         masses,
                         &bodies,
-                        &velocity,
+                        &velocities,
                     )
                 });
                 wrenches.flatten().collect()
@@ -407,39 +404,12 @@ impl TestedMechanism {
             q: self.positions[k].clone(),
             q_dot: first(n, &VELOCITIES[k]),
             q_ddot: first(n, &ACCELERATIONS[k]),
-            accelerations: accelerations(states, bodies.len()),
-            poses: bodies,
-            velocities: velocity,
             reactions: result.reactions.iter().map(|r| r.0).collect(),
             tau: result.tau.iter().map(|r| r.0).collect(),
             load_wrenches: loads,
+            ..motion
         }
     }
-}
-
-/// q̈ of Σ runs q̈ + rest = 0, by elimination with the largest pivot.
-fn solve_accelerations(runs: &[Kinetostatic<f64>], rest: &[f64]) -> Option<Vec<f64>> {
-    let n = runs.len();
-    let row = |i: usize| {
-        runs.iter()
-            .map(|run| run.tau[i])
-            .chain([-rest[i]])
-            .collect()
-    };
-    let mut rows: Vec<Vec<f64>> = (0..n).map(row).collect();
-    for c in 0..n {
-        let pivot = (c..n).max_by(|&i, &j| rows[i][c].abs().total_cmp(&rows[j][c].abs()))?;
-        rows.swap(c, pivot);
-        let pivot_row = rows[c].clone();
-        for (_, other) in rows.iter_mut().enumerate().filter(|(i, _)| *i != c) {
-            let factor = other[c] / pivot_row[c];
-            other
-                .iter_mut()
-                .zip(&pivot_row)
-                .for_each(|(a, b)| *a -= factor * b);
-        }
-    }
-    (0..n).map(|i| Some(rows[i][n] / rows[i][i])).collect()
 }
 
 /// The difference of results, relative to the largest of each kind; infinite where one is not a number.

@@ -1,8 +1,7 @@
 //! Watched results as plain numbers.
 
 use super::mutating_scalar::MutatingScalar;
-use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{BodyId, Plan, Pose, Vec2};
+use dwell_geometry::{Plan, Pose, Vec2};
 use dwell_kinetostatics::InverseDynamics;
 
 /// A pose in plain numbers, for what only reads positions.
@@ -23,20 +22,6 @@ pub(super) fn pose_to_f64(plan: &Plan, pose: &Pose<MutatingScalar>) -> Pose<f64>
     numbers(&mut out.slide_travel, &pose.slide_travel);
     numbers(&mut out.closure_travel, &pose.closure_travel);
     out
-}
-
-/// The second derivatives of the frames of all bodies.
-pub(super) fn accelerations(states: &BodyStates<MutatingScalar>, bodies: usize) -> Vec<[f64; 3]> {
-    let of = |b: usize| {
-        let origin = states.point(BodyId(b), Vec2::ZERO).acceleration;
-        [
-            origin.x,
-            origin.y,
-            states.body(BodyId(b)).angular_acceleration,
-        ]
-        .map(|v| v.0)
-    };
-    (0..bodies).map(of).collect()
 }
 
 /// Actions and reactions.

@@ -1,12 +1,21 @@
-//! The folders of the cases to validate.
+//! The scenes of the cases to validate.
 
+use dwell_scene::Scene;
 use miette::{Report, miette};
 use std::path::{Path, PathBuf};
 
-/// The file that every case has.
+/// The file that a case in a folder of its own has.
 const SCENE: &str = "scene.toml";
+/// The folder of scenes in space among the cases, each with its reference beside it.
+const IN_SPACE: &str = "spatial";
 
-/// The folders of the named cases, each once, or of all cases in `folder`, ordered by name.
+/// How a case is called that has no name, because its scene cannot be used.
+pub(crate) fn shown(scene: &Path) -> String {
+    let folder = scene.parent().filter(|_| scene.ends_with(SCENE));
+    folder.unwrap_or(scene).display().to_string()
+}
+
+/// The scenes of the named cases, each once, or of all cases in `folder`, ordered by name, those in space last.
 pub(crate) fn find(names: &[String], folder: &Path) -> Result<Vec<PathBuf>, Report> {
     let all = list(folder);
     if names.is_empty() {
@@ -39,27 +48,6 @@ pub(crate) fn find(names: &[String], folder: &Path) -> Result<Vec<PathBuf>, Repo
     Ok(found)
 }
 
-/// The scenes in space in a folder of cases (all if no names are given, otherwise the named ones), and the remaining names.
-pub(crate) fn find_in_space(names: &[String], folder: &Path) -> (Vec<PathBuf>, Vec<String>) {
-    let below = folder.join("spatial");
-    let (named, others): (Vec<_>, Vec<_>) = names.iter().cloned().partition(|name| {
-        let is_case = folder.join(name).join(SCENE).is_file();
-        !is_case && below.join(format!("{name}.toml")).is_file()
-    });
-    if !names.is_empty() {
-        let path = |name: &String| below.join(format!("{name}.toml"));
-        return (named.iter().map(path).collect(), others);
-    }
-    let Ok(entries) = std::fs::read_dir(&below) else {
-        return (Vec::new(), others);
-    };
-    let paths = entries.flatten().map(|entry| entry.path());
-    let is_case = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "toml");
-    let mut found: Vec<PathBuf> = paths.filter(is_case).collect();
-    found.sort();
-    (found, others)
-}
-
 fn find_one(name: &str, folder: &Path, all: &[PathBuf]) -> Result<PathBuf, Report> {
     let given = Path::new(name);
     // The scene file may be given instead of its folder.
@@ -69,12 +57,16 @@ fn find_one(name: &str, folder: &Path, all: &[PathBuf]) -> Result<PathBuf, Repor
         Some(_) if is_scene => Path::new("."),
         _ => given,
     };
-    let candidates = [folder.join(name), of_scene.to_owned(), given.to_owned()];
-    if let Some(case) = candidates.into_iter().find(|p| p.join(SCENE).is_file()) {
+    let candidates = [
+        folder.join(name).join(SCENE),
+        folder.join(IN_SPACE).join(format!("{name}.toml")),
+        of_scene.join(SCENE),
+        given.join(SCENE),
+    ];
+    if let Some(case) = candidates.into_iter().find(|path| path.is_file()) {
         return Ok(case);
     }
-    let names = all.iter().filter_map(|p| p.file_name());
-    let known: Vec<_> = names.map(|name| name.to_string_lossy()).collect();
+    let known: Vec<String> = all.iter().map(|path| Scene::name_of_file(path)).collect();
     let help = if given.is_file() {
         format!("`{name}` is a file: a case is a folder with a {SCENE}")
     } else if given.is_dir() {
@@ -88,9 +80,16 @@ fn find_one(name: &str, folder: &Path, all: &[PathBuf]) -> Result<PathBuf, Repor
 }
 
 fn list(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
-    let paths = std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path()));
-    let mut cases = paths.collect::<std::io::Result<Vec<PathBuf>>>()?;
-    cases.retain(|path| path.join(SCENE).is_file());
-    cases.sort();
+    let sorted = |folder: &Path| {
+        let paths = std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path()));
+        let mut all = paths.collect::<std::io::Result<Vec<PathBuf>>>()?;
+        all.sort();
+        Ok(all)
+    };
+    let folders = sorted(folder)?.into_iter().map(|path| path.join(SCENE));
+    let mut cases: Vec<PathBuf> = folders.filter(|path| path.is_file()).collect();
+    let in_space: std::io::Result<Vec<PathBuf>> = sorted(&folder.join(IN_SPACE));
+    let is_scene = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "toml");
+    cases.extend(in_space.unwrap_or_default().into_iter().filter(is_scene));
     Ok(cases)
 }

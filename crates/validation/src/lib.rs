@@ -16,11 +16,12 @@
 //! ```
 //!
 //! ```text
-//! cases ── checked ── case_report ── overview      extremes      work_precision
+//! cases ── checked ── case_report ─┬─ overview      extremes      work_precision
+//! spatial ─────────────────────────┘
 //! ```
 //!
-//! `cases` reads the references of a case and evaluates its states, `checked` makes all findings, `case_report` writes
-//! them, and `overview` is the verdict over all of them.
+//! `cases` reads the references of a case in the plane and evaluates its states, `checked` makes all findings, `case_report` writes
+//! them; `spatial` does the same for cases in space, and `overview` is the verdict over all of them.
 
 pub mod audit;
 mod case_report;
@@ -37,11 +38,36 @@ mod spatial;
 pub mod work_precision;
 mod written;
 
-pub use case_report::validate::{Validation, validate, validate_program};
+pub use case_report::validate::Validation;
+pub use cases::model_states::claimed_motion;
 pub use cases::subject::PlanSubject;
 pub use checked::multibody::{FreeMotionRun, free_motion_run};
 pub use checked::states::{CheckedStates, check_case};
 pub use error::ValidationError;
-pub use overview::{CaseResult, ValidatedCase, ValidationRun, index};
-pub use spatial::{ClaimsIn, ReferencePoses, SpaceClaims, SpaceSubject, validate_in_space};
+pub use overview::{ValidatedCase, ValidationRun, index};
+pub use spatial::{ClaimedAt, ReferencePoses, SpaceClaims, solved};
 pub use work_precision::work_precision;
+
+use case_report::validate::validate_in_plane;
+use dwell_scene::Scene;
+use dwell_study::Progress;
+use spatial::validate_in_space;
+use std::path::Path;
+
+/// Validates the case whose scene is `scene` and whose reference, if any, is in `folder`, and what the program at a path writes of it when it
+/// runs as a process. The files are `NAME.html`, `NAME.md`, `NAME.txt` and the folder `NAME/` with figures; in the plane also `NAME.json`
+/// and tables.
+///
+/// # Errors
+/// [`ValidationError`] when the scene or the reference cannot be used. A failed check is no error.
+pub fn validate(
+    scene: &Scene,
+    folder: &Path,
+    program: Option<&Path>,
+    progress: Progress<'_>,
+) -> Result<Validation, ValidationError> {
+    match scene {
+        Scene::Plane(scene) => validate_in_plane(scene, folder, program, progress),
+        Scene::Space(scene) => validate_in_space(scene, folder, program),
+    }
+}

@@ -10,19 +10,23 @@ const MAX_WIDENED_TOLERANCE: f64 = 1e-6;
 
 /// The largest of several differences.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct LargestDifference {
+pub struct LargestDifference {
     absolute_difference: f64,
-    relative_difference: f64,
+    /// The largest difference, relative to its scale.
+    pub relative_difference: f64,
     unit: &'static str,
     worst_at: String,
     reference_error: f64,
     condition_number: f64,
-    count: usize,
-    failure: Option<String>,
+    /// How many were compared.
+    pub count: usize,
+    /// Why something could not be compared.
+    pub failure: Option<String>,
 }
 
 /// One comparison.
-pub(crate) struct Comparison {
+#[derive(Debug, Clone, Copy)]
+pub struct Comparison {
     /// The difference of the subject from the reference, its scale, and the reference's own estimated error.
     pub(crate) numbers: [f64; 3],
     /// The unit of all three.
@@ -33,7 +37,7 @@ pub(crate) struct Comparison {
 
 impl Comparison {
     /// A difference with its scale and the reference's own error, all in `unit`.
-    pub(crate) fn new(numbers: [f64; 3], unit: &'static str, condition_number: f64) -> Self {
+    pub fn new(numbers: [f64; 3], unit: &'static str, condition_number: f64) -> Self {
         Self {
             numbers,
             unit,
@@ -52,7 +56,7 @@ impl LargestDifference {
     }
 
     /// Adds a comparison; its location is only composed if it is the worst.
-    pub(crate) fn record(&mut self, comparison: &Comparison, location: impl FnOnce() -> String) {
+    pub fn record(&mut self, comparison: &Comparison, location: impl FnOnce() -> String) {
         let [difference, scale, reference_error] = comparison.numbers;
         let over_scale = |value: f64| match value.abs() {
             // Zero agrees with zero even where nothing gives a scale.
@@ -72,7 +76,7 @@ impl LargestDifference {
     }
 
     /// Records that something could not be compared at all, which fails the finding.
-    pub(crate) fn record_failure(&mut self, message: String) {
+    pub fn record_failure(&mut self, message: String) {
         self.failure.get_or_insert(message);
     }
 
@@ -88,7 +92,8 @@ impl LargestDifference {
     }
 
     /// The worse of two.
-    pub(crate) fn merge(mut self, other: Self) -> Self {
+    #[must_use]
+    pub fn merge(mut self, other: Self) -> Self {
         let count = self.count + other.count;
         let reference_error = self.reference_error.max(other.reference_error);
         let failure = self.failure.take().or(other.failure.clone());
@@ -167,7 +172,7 @@ impl FindingSpec<'_> {
     /// The finding over a domain. Ten times the reference's own estimated error replaces the tolerance
     /// where it is larger, up to a limit: next to a dead point every difference is inaccurate, and a
     /// finding must check the subject, not the reference. The reason of the tolerance says so.
-    pub(crate) fn finding(&self, domain: String, worst: LargestDifference) -> Finding {
+    pub fn finding(&self, domain: String, worst: LargestDifference) -> Finding {
         let widened = (REFERENCE_ERROR_FACTOR * worst.reference_error).min(MAX_WIDENED_TOLERANCE);
         let tolerance = self.tolerance.max(widened);
         let mut reason = self.tolerance_reason.to_owned();

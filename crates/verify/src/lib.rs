@@ -31,7 +31,7 @@
 //!                └── checks::… → Finding
 //! ```
 //!
-//! [`check_states`] and [`check_energies`] check kinetostatic states of any number of actuators under loads,
+//! [`check_states`], [`check_energies`] and [`check_branch`] check kinetostatic states of any number of actuators under loads,
 //! [`check_motion`] a motion against the multibody equations ([`MultibodySystem`]), [`check_free_motion`] a free motion
 //! against the quadrature of its period, and [`rank()`] finds the degrees of freedom and the redundant constraints.
 //! Tests wrap a subject to introduce an error: production code holds none.
@@ -52,6 +52,7 @@ mod differences;
 mod error;
 mod forces;
 mod free_motion;
+mod friction;
 mod inertias;
 mod loads;
 mod lu;
@@ -69,7 +70,7 @@ mod wrenches;
 
 pub use case::{Case, CheckedMechanism, spread};
 pub use checks::verify_all;
-pub use comparison::FindingSpec;
+pub use comparison::{Comparison, FindingSpec, LargestDifference};
 pub use constraint_closing::Configuration;
 pub use context::{CheckContext, CheckedPosition, Scales};
 pub use curves::{ErrorCurve, half_dm_curve, reaction_curve};
@@ -84,6 +85,6 @@ pub use loads::{load_wrenches, magnitude_by_reactions};
 pub use multibody::{MotionSample, MultibodyError, MultibodySystem, check_motion};
 pub use pose::{Pose, Twist};
 pub use rank::{Rank, Ranks, rank};
-pub use state::{ClaimedState, check_energies, check_states};
+pub use state::{AssembledMechanism, ClaimedState, check_branch, check_energies, check_states};
 pub use subject::{InverseDynamics, Subject, SubjectError};
 pub use wrenches::BodyWrench;

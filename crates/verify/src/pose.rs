@@ -53,6 +53,11 @@ impl Pose {
         frames.iter().map(|frame| Self::from(*frame)).collect()
     }
 
+    /// The poses of bodies in space.
+    pub fn all_in_space(placements: &[Placement]) -> Vec<Self> {
+        placements.iter().map(|at| Self::from(*at)).collect()
+    }
+
     /// The frame [x, y, θ] of a body that moves in the plane.
     pub fn in_plane(&self) -> [f64; 3] {
         [self.position.x, self.position.y, self.angle]
@@ -86,6 +91,18 @@ impl From<[f64; 3]> for Twist {
             linear: vec3(x, y, 0.0),
             angular: vec3(0.0, 0.0, angle),
         }
+    }
+}
+
+impl Twist {
+    /// The rates of frames [x, y, θ] in the plane.
+    pub fn all_in_plane(rates: &[[f64; 3]]) -> Vec<Self> {
+        rates.iter().map(|rates| Self::from(*rates)).collect()
+    }
+
+    /// The rates of a frame [x, y, θ] in the plane.
+    pub fn in_plane(&self) -> [f64; 3] {
+        [self.linear.x, self.linear.y, self.angular.z]
     }
 }
 

@@ -3,9 +3,7 @@
 use crate::dense::DenseMechanism;
 use crate::description::DescribedJoint;
 use crate::error::{DenseError, Result};
-use crate::inertias::Inertias;
 use crate::pose::Pose;
-use dwell_geometry::Mechanism;
 use dwell_geometry::space::Wrench;
 use std::sync::Arc;
 
@@ -13,19 +11,8 @@ use std::sync::Arc;
 const INDEPENDENCE_TOLERANCE: f64 = 1e-9;
 
 impl DenseMechanism {
-    /// The same with its gears meshed as they stand in the configuration with the frames `poses` of all bodies. Where
-    /// joints repeat each other, a largest set of independent rows is solved, found there.
-    pub(crate) fn with_meshed_gears<'m>(
-        mechanism: &Mechanism,
-        inertias: impl Into<Inertias<'m>>,
-        poses: &[[f64; 3]],
-    ) -> Result<Self> {
-        let dense = Self::without_rank_check(mechanism, inertias)?;
-        let start = dense.frames(poses)?;
-        dense.assembled(&start)
-    }
-
-    /// The same as it is assembled with the moved frames in these poses.
+    /// The same as it is assembled with the moved frames in these poses, its gears meshed as they stand there. Where joints repeat each
+    /// other, a largest set of independent rows is solved, found there.
     pub(crate) fn assembled(mut self, start: &[Pose]) -> Result<Self> {
         if self.rows.len() != self.rows.columns() {
             self.assembly_rows = self.rows_at(start)?;

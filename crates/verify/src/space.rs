@@ -1,4 +1,4 @@
-//! A mechanism in space: its states, claimed or solved by the dense equations in body coordinates,
+//! A mechanism in space: its states, solved by the dense equations in body coordinates,
 //!
 //! ```text
 //! J ẋ = D q̇,     J ẍ = D q̈ − J̇ẋ,     Jᵀ [λ; τ] = M ẍ + h − f,     x = [r; θ] of each body              (1)
@@ -6,18 +6,13 @@
 //!
 //! by singular values of the whole, so that redundant constraints and idle rotations are seen as what they are.
 
-mod branch;
 mod energy;
 mod forces;
 mod friction;
 mod joints;
-mod state;
 
-pub use branch::check_branch_in_space;
-pub use energy::{kinetic_energy, potential_energy};
-pub use friction::{sliding_in_space, with_friction_in_space};
+pub use forces::load_wrenches;
 pub use joints::{closure_error, mesh_error};
-pub use state::{SpaceCase, SpaceState, check_states_in_space};
 
 use crate::dense::DenseMechanism;
 use crate::error::{DenseError, Result};
@@ -90,7 +85,7 @@ impl<'a> DensePose<'a> {
         placements: &'a [Placement],
     ) -> Result<Self> {
         let dense = DenseMechanism::in_space(mechanism, masses, &[])?;
-        let poses = dense.moved_frames(&state::poses(placements))?;
+        let poses = dense.moved_frames(&Pose::all_in_space(placements))?;
         Ok(Self {
             system: System::new(&dense, &poses)?,
             mechanism,
@@ -194,14 +189,6 @@ fn wrench([x, y, z, a, b, c]: [f64; 6]) -> Wrench {
         force: vec3(x, y, z),
         moment: vec3(a, b, c),
     }
-}
-
-fn parts(wrench: &Wrench) -> [f64; 6] {
-    let Wrench {
-        force: f,
-        moment: m,
-    } = wrench;
-    [f.x, f.y, f.z, m.x, m.y, m.z]
 }
 
 /// By joint: what its first body does to the second, the actuators' actions included, as a point of the ground with force and couple there.

@@ -6,11 +6,11 @@ use crate::mutations::mutating_scalar::{MutationKind, Operation, SourceOperation
 use crate::mutations::operations::MutatedSubject as _;
 use crate::mutations::source::SourceFiles;
 use crate::mutations::tested_mechanism::UNCHANGED_TOLERANCE;
-use dwell_geometry::space::{JointKind, Vec3, Wrench};
+use dwell_geometry::space::{JointKind, Vec3, vec3};
 use dwell_kinetostatics::space::{Direction, LoadKind};
 use dwell_scene::SpaceScene;
 use dwell_validation::SpaceClaims;
-use dwell_verify::space::SpaceState;
+use dwell_verify::ClaimedState;
 
 /// What goes wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -145,11 +145,11 @@ impl Mutation {
             // A loop that no longer closes is refused.
             let other = SpaceClaims::new(&scene).ok()?;
             let states = tested.states_of_another(&other)?;
-            return tested.check_claims(&other.in_numbers::<f64>(), &states);
+            return tested.check_claims(&|q| other.at_rest::<f64>(q), &states);
         }
         let mut states = tested.states(None).ok()?;
         self.corrupt(tested, &mut states)?;
-        tested.check_claims(&tested.claims().in_numbers::<f64>(), &states)
+        tested.check_claims(&|q| tested.claims().at_rest::<f64>(q), &states)
     }
 
     /// The wrong description; none where the mechanism has no such thing.
@@ -262,40 +262,32 @@ impl Mutation {
     }
 
     /// Wrong results of right states; none where the mechanism has no such result.
-    fn corrupt(self, tested: &TestedSpace<'_>, states: &mut [SpaceState]) -> Option<()> {
+    fn corrupt(self, tested: &TestedSpace<'_>, states: &mut [ClaimedState]) -> Option<()> {
         let mechanism = &tested.scene().mechanism;
         for state in states {
             match self {
-                ReactionsReversed => state.reactions.iter_mut().for_each(|w| {
-                    *w = Wrench {
-                        force: -w.force,
-                        moment: -w.moment,
-                    };
-                }),
+                ReactionsReversed => state.reactions.iter_mut().for_each(|r| *r = -*r),
                 MomentsForgotten => {
-                    state
-                        .reactions
-                        .iter_mut()
-                        .for_each(|w| w.moment = Vec3::ZERO);
+                    let joints = state.reactions.chunks_mut(6);
+                    joints.for_each(|wrench| wrench[3..].fill(0.0));
                 }
                 MomentsAboutOrigin => {
-                    for (joint, wrench) in mechanism.joints.iter().zip(&mut state.reactions) {
-                        let placement = &state.placements[joint.side_body(1).0];
-                        let arm = placement.rotation.apply(joint.sides[1].point);
-                        wrench.moment += arm.cross(wrench.force);
+                    let wrenches = state.reactions.chunks_mut(6);
+                    for (joint, wrench) in mechanism.joints.iter().zip(wrenches) {
+                        let pose = &state.poses[joint.side_body(1).0];
+                        let arm = pose.rotation.apply(joint.sides[1].point);
+                        let moment = arm.cross(vec3(wrench[0], wrench[1], wrench[2]));
+                        let parts = [moment.x, moment.y, moment.z];
+                        wrench[3..].iter_mut().zip(parts).for_each(|(m, p)| *m += p);
                     }
                 }
                 ActionsReversed => state.tau.iter_mut().for_each(|tau| *tau = -*tau),
                 InertiasHalved => state.inertias.iter_mut().for_each(|m| *m *= 0.5),
-                LoadPowerForgotten => state.load_power = 0.0,
+                LoadPowerForgotten => state.load_power = Some(0.0),
                 VelocityTermsForgotten => {
                     let zero = vec![0.0; state.q.len()];
                     let rates = [&state.q[..], &zero, &state.q_ddot];
-                    let at_rest = tested.claims().motions(rates).ok()?;
-                    for (motion, at_rest) in state.motions.iter_mut().zip(at_rest) {
-                        motion.acceleration = at_rest.acceleration;
-                        motion.angular_acceleration = at_rest.angular_acceleration;
-                    }
+                    state.accelerations = tested.claims().accelerations(rates).ok()?;
                 }
                 StaticsForDynamics => {
                     let zero = vec![0.0; state.q.len()];

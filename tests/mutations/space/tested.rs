@@ -10,12 +10,11 @@ use crate::mutations::tested_mechanism::{
     CheckMode, ComparedValues, OperationMutation, max_difference,
 };
 use dwell_findings::Finding;
-use dwell_geometry::space::{Placement, Vec3};
+use dwell_geometry::space::Vec3;
 use dwell_kinetostatics::space::Axes;
 use dwell_scene::SpaceScene;
-use dwell_validation::{ReferencePoses, SpaceClaims, SpaceSubject};
-use dwell_verify::SubjectError;
-use dwell_verify::space::{SpaceState, check_branch_in_space, check_states_in_space};
+use dwell_validation::{ClaimedAt, ReferencePoses, SpaceClaims};
+use dwell_verify::{ClaimedState, SubjectError, check_branch, check_states};
 use std::collections::BTreeSet;
 
 /// Speeds and accelerations of the states, by state and actuator.
@@ -40,24 +39,6 @@ pub struct TestedSpace<'a> {
 
 /// So many states are checked by kinetic energy alone.
 const BY_ENERGIES: usize = 1;
-
-/// Answers with a mutation.
-struct Mutated<'a> {
-    claims: &'a SpaceClaims<'a>,
-    mutation: OperationMutation,
-}
-
-impl SpaceSubject for Mutated<'_> {
-    fn placements(&self, q: &[f64]) -> Result<Vec<Placement>, SubjectError> {
-        with_mutation(self.mutation, || {
-            self.claims.placements::<MutatingScalar>(q)
-        })
-    }
-
-    fn inertias(&self, q: &[f64]) -> Result<Vec<f64>, SubjectError> {
-        with_mutation(self.mutation, || self.claims.inertias::<MutatingScalar>(q))
-    }
-}
 
 /// Some positions inside the range, or near the start where there are several actuators.
 pub(super) fn positions(claims: &SpaceClaims<'_>, scene: &SpaceScene) -> [Vec<f64>; 2] {
@@ -134,19 +115,19 @@ impl<'a> TestedSpace<'a> {
     pub(super) fn states(
         &self,
         mutation: OperationMutation,
-    ) -> Result<Vec<SpaceState>, SubjectError> {
+    ) -> Result<Vec<ClaimedState>, SubjectError> {
         with_mutation(mutation, || {
             states_of::<MutatingScalar>(&self.claims, &self.positions)
         })
     }
 
     /// The states that another description has at the same positions.
-    pub(super) fn states_of_another(&self, other: &SpaceClaims<'_>) -> Option<Vec<SpaceState>> {
+    pub(super) fn states_of_another(&self, other: &SpaceClaims<'_>) -> Option<Vec<ClaimedState>> {
         let mut states = states_of::<f64>(other, &self.positions).ok()?;
         // What acts is what the right description says.
         let own = self.states(None).ok()?;
         for (state, own) in states.iter_mut().zip(own) {
-            state.loads = own.loads;
+            state.load_wrenches = own.load_wrenches;
         }
         Some(states)
     }
@@ -154,14 +135,14 @@ impl<'a> TestedSpace<'a> {
     /// What the checks detect in states that are claimed of this mechanism; nothing where they are its own.
     pub(super) fn check_claims(
         &self,
-        subject: &dyn SpaceSubject,
-        states: &[SpaceState],
+        claimed: ClaimedAt<'_>,
+        states: &[ClaimedState],
     ) -> Option<Detection> {
         let change = max_difference(&self.clean, &self.values_of(states));
         if change <= crate::mutations::tested_mechanism::UNCHANGED_TOLERANCE {
             return None;
         }
-        Some(self.detection(&self.findings_of(subject, states)))
+        Some(self.detection(&self.findings_of(claimed, states)))
     }
 
     pub(super) fn claims(&self) -> &SpaceClaims<'a> {
@@ -175,56 +156,54 @@ impl<'a> TestedSpace<'a> {
         Detection::from_findings(applicable)
     }
 
-    fn findings(&self, mutation: OperationMutation, states: &[SpaceState]) -> Vec<Finding> {
-        let claims = &self.claims;
-        let subject = Mutated { claims, mutation };
-        self.findings_of(&subject, states)
+    fn findings(&self, mutation: OperationMutation, states: &[ClaimedState]) -> Vec<Finding> {
+        let at_rest =
+            |q: &[f64]| with_mutation(mutation, || self.claims.at_rest::<MutatingScalar>(q));
+        self.findings_of(&at_rest, states)
     }
 
     /// The costly finding on the branch only where fewer checks detect a fault than must.
-    fn findings_of(&self, subject: &dyn SpaceSubject, states: &[SpaceState]) -> Vec<Finding> {
-        let case = self.claims.case();
-        let mut findings = check_states_in_space(&case, states, BY_ENERGIES);
+    fn findings_of(&self, claimed: ClaimedAt<'_>, states: &[ClaimedState]) -> Vec<Finding> {
+        let assembled = self.claims.assembled();
+        let mut findings = check_states(&assembled, states, BY_ENERGIES);
         if let Some(reference) = &self.reference {
-            findings.extend(reference.placements(&case, subject));
-            findings.extend(reference.inertias(subject));
+            findings.extend(reference.placements(&self.claims, claimed));
+            findings.extend(reference.inertias(claimed));
         }
         if self.detection(&findings).check_count() < REQUIRED_CHECKS {
-            findings.push(check_branch_in_space(&case, states));
+            findings.push(check_branch(&assembled, states));
         }
         findings
     }
 
     /// All results by kind. What is nobody's is left out: reactions that redundant constraints leave open, and how a body stands about
     /// the line of its two balls.
-    fn values_of(&self, states: &[SpaceState]) -> ComparedValues {
+    fn values_of(&self, states: &[ClaimedState]) -> ComparedValues {
         let mut values: ComparedValues = vec![Vec::new(); 9];
         let parts = |v: Vec3| [v.x, v.y, v.z];
         let idle = &self.claims.model().plan().mobility().idle;
         for state in states {
-            for (body, placement) in state.placements.iter().enumerate() {
-                values[0].extend(parts(placement.position));
+            for (body, pose) in state.poses.iter().enumerate() {
+                values[0].extend(parts(pose.position));
                 let line = idle.iter().find(|idle| idle.body.0 == body);
                 match line {
-                    Some(idle) => values[1].extend(parts(placement.rotation.apply(idle.axis))),
+                    Some(idle) => values[1].extend(parts(pose.rotation.apply(idle.axis))),
                     None => {
-                        values[1].extend(placement.rotation.columns.iter().flat_map(|v| parts(*v)));
+                        values[1].extend(pose.rotation.columns.iter().flat_map(|v| parts(*v)));
                     }
                 }
             }
-            for motion in &state.motions {
-                values[2].extend(parts(motion.velocity));
-                values[3].extend(parts(motion.angular_velocity));
-                values[4].extend(parts(motion.acceleration));
-                values[5].extend(parts(motion.angular_acceleration));
+            for (k, twists) in [(2, &state.velocities), (4, &state.accelerations)] {
+                for twist in twists {
+                    values[k].extend(parts(twist.linear));
+                    values[k + 1].extend(parts(twist.angular));
+                }
             }
-            let reactions = state.reactions.iter();
-            let all = reactions.flat_map(|w| parts(w.force).into_iter().chain(parts(w.moment)));
-            let determined = all.zip(&self.determined).filter(|(_, is)| **is);
-            values[6].extend(determined.map(|(value, _)| value));
+            let reactions = state.reactions.iter().zip(&self.determined);
+            values[6].extend(reactions.filter(|(_, is)| **is).map(|(value, _)| value));
             values[6].extend(&state.tau);
             values[7].extend(&state.inertias);
-            values[8].push(state.load_power);
+            values[8].extend(state.load_power);
             // Of a size that tells a power from the rounding of none.
             values[8].extend(state.tau.iter().zip(&state.q_dot).map(|(tau, v)| tau * v));
         }
@@ -236,7 +215,7 @@ impl<'a> TestedSpace<'a> {
 fn states_of<T: dwell_numerics::Scalar>(
     claims: &SpaceClaims<'_>,
     positions: &[Vec<f64>; 2],
-) -> Result<Vec<SpaceState>, SubjectError> {
+) -> Result<Vec<ClaimedState>, SubjectError> {
     let n = positions[0].len();
     let first = |row: &[f64; 3]| -> Vec<f64> { row.iter().copied().cycle().take(n).collect() };
     let mut states = Vec::new();

@@ -8,5 +8,5 @@ mod family_page;
 mod figures;
 mod numbers;
 mod page;
-mod snapshot;
+pub(crate) mod snapshot;
 pub(crate) mod validate;

@@ -19,15 +19,20 @@ pub(super) fn snapshot(scene: &PlaneScene, analysis: &CaseAnalysis<'_>) -> Strin
         Some(reduced) => reduced_values(reduced),
         None => state_values(scene, &analysis.states, analysis.free_motion.as_ref()),
     };
-    let mut text = format!("{}\n\n{values}\n", scene.title);
+    let verdicts = verdicts(&analysis.findings);
+    format!("{}\n\n{values}\n{verdicts}", scene.title)
+}
+
+/// Which findings pass.
+pub(crate) fn verdicts(findings: &[Finding]) -> String {
     // Differences are rounding errors of one machine; which findings pass is the same on all.
     // Those over written files need the program, which the library has not: they are on the page of the case.
     let of_library = |f: &&Finding| !f.key.starts_with(WRITTEN_PREFIX);
-    for f in analysis.findings.iter().filter(of_library) {
+    let all = findings.iter().filter(of_library).map(|f| {
         let result = if f.pass { "pass" } else { "FAIL" };
-        text += &format!("{result}  {}  [{}]\n", f.key, f.check);
-    }
-    text
+        format!("{result}  {}  [{}]\n", f.key, f.check)
+    });
+    all.collect()
 }
 
 /// The reduced model at eight positions, the period and the fitted value.
@@ -134,7 +139,7 @@ fn to_seven_decimals(value: f64) -> String {
 }
 
 /// To seven digits after the first digit of `max_abs`, without a sign on zero.
-fn rounded_to(value: f64, max_abs: f64) -> String {
+pub(crate) fn rounded_to(value: f64, max_abs: f64) -> String {
     let is_scale = max_abs > 0.0 && max_abs.is_finite();
     let magnitude = if is_scale {
         max_abs.log10().floor()

@@ -13,7 +13,7 @@ use crate::error::ValidationError;
 use crate::report_parts::findings_text;
 use dwell_findings::{Check, Finding, Record};
 use dwell_report::{Figure, Files, TableExport as _};
-use dwell_scene::PlaneScene;
+use dwell_scene::{PlaneScene, SceneFile};
 use dwell_study::output::Picture;
 use dwell_study::{Outcome, Progress, Step, reduce};
 use std::path::Path;
@@ -43,33 +43,8 @@ impl Validation {
     }
 }
 
-/// Validates the case whose scene is `scene` and whose reference, if any, is in `folder`. The
-/// files are `NAME.html`, `NAME.md`, `NAME.json`, `NAME.txt` and the folder `NAME/` with figures and tables.
-///
-/// # Errors
-/// [`ValidationError`] when the scene or the reference cannot be used. A failed check is no error.
-pub fn validate(
-    scene: &PlaneScene,
-    folder: &Path,
-    progress: Progress<'_>,
-) -> Result<Validation, ValidationError> {
-    validate_case(scene, folder, None, progress)
-}
-
-/// Validates a case, and what the program at a path writes of it when it runs as a process.
-///
-/// # Errors
-/// As [`validate`].
-pub fn validate_program(
-    scene: &PlaneScene,
-    folder: &Path,
-    program: &Path,
-    progress: Progress<'_>,
-) -> Result<Validation, ValidationError> {
-    validate_case(scene, folder, Some(program), progress)
-}
-
-fn validate_case(
+/// Validates a case in the plane: as [`validate`](crate::validate()).
+pub(crate) fn validate_in_plane(
     scene: &PlaneScene,
     folder: &Path,
     program: Option<&Path>,
@@ -101,10 +76,6 @@ fn validate_case(
     let html = page::page(scene, &analysis, &figures, &tables)?;
     files.add(format!("{name}.html"), html);
     done("report");
-    let picture = |figure: Figure| {
-        let path = format!("{name}/{}.png", figure.name);
-        Picture::figure(scene, path, true, figure)
-    };
     let mut record = Record::default();
     let motion = analysis.reduced.as_ref().and_then(|r| r.motion.as_ref());
     if let Some(motion) = motion {
@@ -117,13 +88,22 @@ fn validate_case(
             files,
             record,
             findings: analysis.findings,
-            pictures: figures.into_iter().map(picture).collect(),
+            pictures: pictures(scene, figures),
             ..Outcome::default()
         },
         snapshot,
         not_applicable: analysis.not_applicable,
         audited: Vec::new(),
     })
+}
+
+/// The figures of a case, to be drawn.
+pub(crate) fn pictures(scene: &SceneFile, figures: Vec<Figure>) -> Vec<Picture> {
+    let picture = |figure: Figure| {
+        let path = format!("{}/{}.png", scene.name, figure.name);
+        Picture::figure(scene, path, true, figure)
+    };
+    figures.into_iter().map(picture).collect()
 }
 
 /// How many findings pass, those that fail, and the period.

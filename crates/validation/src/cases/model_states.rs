@@ -1,14 +1,18 @@
 //! States of motion by a scene's model, under its loads: the claims that the checks of states are applied to.
 
+use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{ActuatorId, BodyId, Pose, Vec2};
 use dwell_kinetostatics::{
     EvaluatedState, InverseDynamics, KinematicState, KinetostaticsError, Model, Workspace,
 };
+use dwell_numerics::Scalar;
 use dwell_scene::{PlaneScene, SceneLocation};
 use dwell_study::StudyError;
 use dwell_study::explain::explain_position;
 use dwell_study::models::loaded_model;
-use dwell_verify::{ClaimedState, condition_number, load_wrenches, magnitude_by_reactions};
+use dwell_verify::{
+    ClaimedState, Pose as BodyPose, Twist, condition_number, load_wrenches, magnitude_by_reactions,
+};
 use std::f64::consts::TAU;
 
 /// Between two positions no coordinate changes by more than this, rad, or this part of the size:
@@ -36,8 +40,8 @@ pub(crate) struct ModelStates<'a> {
     /// The coordinates, rad or m, and the largest step of each.
     coordinates: Vec<f64>,
     coordinate_steps: Vec<f64>,
-    /// The frames of all bodies as assembled.
-    pub(crate) assembly_poses: Vec<[f64; 3]>,
+    /// Where all bodies are as assembled.
+    pub(crate) assembly_poses: Vec<BodyPose>,
 }
 
 /// The pose that was reached, with the memory to evaluate states of motion there.
@@ -89,6 +93,12 @@ pub(crate) struct StateValues<'m> {
 }
 
 impl StateValues<'_> {
+    /// The frames of all bodies, their angles with whole revolutions.
+    fn counted_frames(&self) -> Vec<[f64; 3]> {
+        let both = self.body_poses.iter().zip(self.angles);
+        both.map(|(&[x, y, _], angle)| [x, y, *angle]).collect()
+    }
+
     /// Condition number of the dense rows.
     pub(crate) fn condition_number(&self) -> f64 {
         condition_number(&self.scene.mechanism, &self.body_poses)
@@ -121,8 +131,8 @@ impl<'a> ModelStates<'a> {
             model,
         };
         model_states.set_coordinates(&scene.assembly.coordinates)?;
-        model_states.assembly_poses = model_states.body_poses();
-        let angles = model_states.assembly_poses.iter().map(|pose| pose[2]);
+        model_states.assembly_poses = BodyPose::all_in_plane(&model_states.body_poses());
+        let angles = model_states.assembly_poses.iter().map(|pose| pose.angle);
         model_states.angles = angles.collect();
         Ok(model_states)
     }
@@ -133,19 +143,11 @@ impl<'a> ModelStates<'a> {
     /// As [`ModelStates::evaluate_at`].
     pub(crate) fn state(&mut self, request: &StateRequest) -> Result<ClaimedState, StudyError> {
         let values = self.evaluate_at(request)?;
-        let mut bodies = values.body_poses;
+        let bodies = values.counted_frames();
         let (scene, state) = (values.scene, &values.state);
         let (states, result) = (state.bodies(), state.inverse_dynamics());
-        for (pose, angle) in bodies.iter_mut().zip(values.angles) {
-            pose[2] = *angle;
-        }
-        let rates = |b: usize| {
-            let (body, origin) = (states.body(BodyId(b)), states.point(BodyId(b), Vec2::ZERO));
-            let (v, a) = (origin.velocity, origin.acceleration);
-            let velocity = [v.x, v.y, body.angular_velocity];
-            (velocity, [a.x, a.y, body.angular_acceleration])
-        };
-        let (velocities, accelerations): (Vec<_>, Vec<_>) = (0..bodies.len()).map(rates).unzip();
+        let motion = claimed_motion(&bodies, states);
+        let velocities: Vec<_> = motion.velocities.iter().map(Twist::in_plane).collect();
         let loads = scene.loads.iter().zip(&state.loads().magnitude);
         let (ground, masses) = (scene.mechanism.ground, &scene.masses);
         let reactions = &result.reactions;
@@ -154,16 +156,15 @@ impl<'a> ModelStates<'a> {
             load_wrenches(&load.kind, magnitude, ground, masses, &bodies, &velocities)
         });
         Ok(ClaimedState {
+            name: format!("t = {} s", request.t),
             t: request.t,
             q: request.q.clone(),
             q_dot: request.q_dot.clone(),
             load_wrenches: loads.flatten().collect(),
             q_ddot: values.q_ddot,
-            velocities,
-            accelerations,
             reactions: reactions.clone(),
             tau: result.tau.clone(),
-            poses: bodies,
+            ..motion
         })
     }
 
@@ -271,6 +272,25 @@ impl<'a> ModelStates<'a> {
             found += remaining * found / at_rest;
         }
         Ok(vec![found])
+    }
+}
+
+/// What is claimed of the motion of all bodies in the plane, whose frames are these.
+pub fn claimed_motion<T: Scalar>(frames: &[[f64; 3]], states: &BodyStates<T>) -> ClaimedState {
+    let twist = |linear: Vec2<T>, angular: T| {
+        Twist::from([linear.x, linear.y, angular].map(|part| part.value()))
+    };
+    let rates = |b: usize| {
+        let (body, at) = (states.body(BodyId(b)), states.point(BodyId(b), Vec2::ZERO));
+        let velocity = twist(at.velocity, body.angular_velocity);
+        (velocity, twist(at.acceleration, body.angular_acceleration))
+    };
+    let (velocities, accelerations) = (0..frames.len()).map(rates).unzip();
+    ClaimedState {
+        poses: BodyPose::all_in_plane(frames),
+        velocities,
+        accelerations,
+        ..ClaimedState::default()
     }
 }
 

@@ -3,20 +3,18 @@
 
 use crate::cases::reference::Reference;
 use crate::checked::angle_table::AngleTable;
+use crate::written::poses::difference::Differences;
+use crate::written::poses::rows::largest;
 use crate::written::poses::units::Units;
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::KnownReaction;
 use dwell_scene::PlaneScene;
+use dwell_verify::FindingSpec;
 
 /// Angles that the scene's text is compared at, by the golden ratio: none at a position of the table.
 const ANGLES: usize = 24;
 /// Angular velocity, rad/s, and acceleration, rad/s², of the comparison: of one size, so that a and b both count.
 const MOTION: [f64; 2] = [1.3, -1.7];
-/// Polynomials through a series differ from it by 1e-13 of its largest value; some roundings of the series besides.
-const TEXT_TOLERANCE: f64 = 5e-13;
-/// As of every reference value: they have more digits than are computed.
-const REFERENCE_TOLERANCE: f64 = 1e-12;
-
 /// The findings of what one scene claims, where another is right; none without such reactions.
 pub(crate) fn known_reaction_findings(
     right: &PlaneScene,
@@ -49,52 +47,43 @@ fn of(scene: &PlaneScene) -> Vec<&KnownReaction> {
     all.flat_map(|varying| &varying.reactions).collect()
 }
 
-/// The largest difference of pairs of numbers, absolute and relative to the largest of the second ones.
-#[derive(Default)]
-struct Largest {
-    difference: f64,
-    scale: f64,
-    at: String,
-    count: usize,
-}
+const TEXT: FindingSpec<'_> = FindingSpec {
+    key: "known-reactions",
+    check: Check::WrittenLaws,
+    comparison: "reactions within the mechanism of a varying inertia with those of the scene's text",
+    scale: "the largest of these reactions",
+    // Polynomials through a series differ from it by 1e-13 of its largest value; some roundings of the series besides.
+    tolerance: 5e-13,
+    tolerance_reason: "polynomials through a series differ from it by 1e-13",
+};
+const REFERENCE: FindingSpec<'_> = FindingSpec {
+    key: "published-known-reactions",
+    check: Check::ReferenceValues,
+    comparison: "a and b of reactions within the mechanism of a varying inertia with reference values",
+    scale: "the largest of these coefficients",
+    tolerance: 1e-12,
+    tolerance_reason: "published to more digits than are computed; a margin for the computation",
+};
 
-impl Largest {
-    fn add(&mut self, value: f64, expected: f64, at: impl Fn() -> String) {
-        let difference = (value - expected).abs();
-        if difference > self.difference || difference.is_nan() {
-            (self.difference, self.at) = (difference, at());
-        }
-        self.scale = self.scale.max(expected.abs());
-        self.count += 1;
-    }
+/// A value, what it should be, and where.
+type Compared = (f64, f64, String);
 
-    fn finding(
-        self,
-        key: &str,
-        check: Check,
-        (comparison, scale, reason): (&str, &str, &str),
-        tolerance: f64,
-    ) -> Finding {
-        let relative = if self.difference == 0.0 {
-            0.0
-        } else {
-            self.difference / self.scale
-        };
-        Finding {
-            comparison: comparison.to_owned(),
-            domain: format!("{} values", self.count),
-            unit: "N".to_owned(),
-            scale: scale.to_owned(),
-            worst_at: self.at,
-            tolerance_reason: reason.to_owned(),
-            pass: self.count > 0 && relative <= tolerance,
-            ..Finding::new(key, check, [self.difference, relative], tolerance)
-        }
+/// The finding of some values, relative to the largest that they should have; it fails where there are none.
+fn finding(spec: &FindingSpec<'_>, values: Vec<Compared>) -> Finding {
+    let scale = largest(values.iter().map(|(_, expected, _)| expected));
+    let domain = format!("{} values", values.len());
+    let mut worst = Differences::default();
+    for (value, expected, place) in values {
+        worst.compare([value, expected, scale], "N", || place);
     }
+    if worst.count() == 0 {
+        worst.fail("there are no values");
+    }
+    worst.finding(spec, &domain).unwrap_or_default()
 }
 
 fn text_finding(right: &PlaneScene, claimed: &[&KnownReaction]) -> Finding {
-    let mut largest = Largest::default();
+    let mut values = Vec::new();
     let root: toml::Table = right.source.inner().parse().unwrap_or_default();
     let bodies = root.get("bodies").and_then(toml::Value::as_table);
     let units = Units::read(&root);
@@ -107,41 +96,24 @@ fn text_finding(right: &PlaneScene, claimed: &[&KnownReaction]) -> Finding {
                 let found = find(claimed, expected.name, expected.is_moment);
                 let [speed, acceleration] = MOTION;
                 let value = found.map_or(f64::NAN, |r| r.value(angle, speed, acceleration));
-                largest.add(value, expected.value, || {
-                    format!("theta = {angle:.6} rad, {}", expected.name)
-                });
+                let place = format!("theta = {angle:.6} rad, {}", expected.name);
+                values.push((value, expected.value, place));
             }
         }
     }
-    let comparison =
-        "reactions within the mechanism of a varying inertia with those of the scene's text";
-    let reason = "polynomials through a series differ from it by 1e-13";
-    largest.finding(
-        "known-reactions",
-        Check::WrittenLaws,
-        (comparison, "the largest of these reactions", reason),
-        TEXT_TOLERANCE,
-    )
+    finding(&TEXT, values)
 }
 
 fn reference_finding(claimed: &[&KnownReaction], reference: &Reference) -> Finding {
-    let mut largest = Largest::default();
+    let mut values = Vec::new();
     for sample in &reference.known_reactions {
         let found = find(claimed, &sample.name, sample.is_moment);
         let value = |speed: f64, acceleration: f64| {
             found.map_or(f64::NAN, |r| r.value(sample.angle, speed, acceleration))
         };
-        let at = || format!("theta = {:.6} rad, {}", sample.angle, sample.name);
-        largest.add(value(0.0, 1.0), sample.a, at);
-        largest.add(value(1.0, 0.0), sample.b, at);
+        let place = format!("theta = {:.6} rad, {}", sample.angle, sample.name);
+        values.push((value(0.0, 1.0), sample.a, place.clone()));
+        values.push((value(1.0, 0.0), sample.b, place));
     }
-    let comparison =
-        "a and b of reactions within the mechanism of a varying inertia with reference values";
-    let reason = "published to more digits than are computed; a margin for the computation";
-    largest.finding(
-        "published-known-reactions",
-        Check::ReferenceValues,
-        (comparison, "the largest of these coefficients", reason),
-        REFERENCE_TOLERANCE,
-    )
+    finding(&REFERENCE, values)
 }

@@ -8,7 +8,9 @@ use dwell_findings::Finding;
 use dwell_geometry::Reaction;
 use dwell_scene::{PlaneScene, PrescribedMotion};
 use dwell_study::models::indeterminate_reactions;
-use dwell_verify::{ClaimedState, Inertias, check_energies, check_states};
+use dwell_verify::{
+    AssembledMechanism, CheckedMechanism, ClaimedState, Inertias, Pose, check_states,
+};
 use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -24,12 +26,10 @@ const MARGIN: f64 = 0.02;
 /// The states of a case and their findings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CheckedStates {
-    /// The frames of all bodies as assembled: x, y (m) and angle (rad).
-    pub assembly_poses: Vec<[f64; 3]>,
+    /// Where all bodies are as assembled.
+    pub assembly_poses: Vec<Pose>,
     /// Along the prescribed motion, over the sweep, and those of the reference.
     pub states: Vec<ClaimedState>,
-    /// By state: the generalised inertias, row by row.
-    pub mass_matrices: Vec<Vec<f64>>,
     /// How many of them, from the first, are of the motion that is drawn.
     pub drawn_count: usize,
     /// That motion in words.
@@ -42,6 +42,13 @@ pub struct CheckedStates {
     pub indeterminate: HashSet<Reaction>,
     /// The checks of the states, then of the reference.
     pub findings: Vec<Finding>,
+}
+
+impl CheckedStates {
+    /// The mechanism of the scene that was checked, as it is assembled.
+    pub fn assembled<'a>(&'a self, scene: &'a PlaneScene) -> AssembledMechanism<'a> {
+        assembled(scene, &self.assembly_poses)
+    }
 }
 
 /// Checks the case whose scene is `scene` and whose reference, if any, is in `folder`, in states
@@ -70,11 +77,12 @@ pub(crate) fn check(
     };
     let requests: Vec<Vec<StateRequest>> = motions(&model, STATES_PER_MOTION).collect();
     let drawn = requests.first().map_or(0, Vec::len);
-    let (mut states, mut mass_matrices) = (Vec::new(), Vec::new());
+    let mut states = Vec::new();
     let requests = requests.into_iter().flatten();
     for request in requests.chain(reference.state_requests()) {
-        states.push(model.state(&request)?);
-        mass_matrices.push(model.mass_matrix());
+        let state = model.state(&request)?;
+        let inertias = model.mass_matrix();
+        states.push(ClaimedState { inertias, ..state });
     }
     let fine = motions(&model, DRAWN_POSES).next();
     let (mut body_poses, mut actuator_forces) = (Vec::new(), Vec::new());
@@ -84,13 +92,11 @@ pub(crate) fn check(
         actuator_forces.push((state.t, state.tau));
     }
     let start = model.assembly_poses.clone();
-    let claimed = (&states[..], &mass_matrices[..]);
-    let mut findings = state_findings(scene, &start, claimed, ENERGY_CHECKED_STATES);
+    let mut findings = check_states(&assembled(scene, &start), &states, ENERGY_CHECKED_STATES);
     findings.extend(reference.findings(scene, &mut model)?);
     Ok(CheckedStates {
         assembly_poses: start,
         states,
-        mass_matrices,
         drawn_count: drawn,
         motion_text: motion,
         body_poses,
@@ -124,25 +130,13 @@ pub(crate) fn inertias(scene: &PlaneScene) -> Inertias<'_> {
     }
 }
 
-/// The findings on states of a scene with their generalised inertias; at most so many of them, spread evenly, are checked by kinetic
-/// energy.
-pub(crate) fn state_findings(
-    scene: &PlaneScene,
-    assembly_poses: &[[f64; 3]],
-    (states, mass_matrices): (&[ClaimedState], &[Vec<f64>]),
-    energy_checked: usize,
-) -> Vec<Finding> {
-    let (mechanism, inertias) = (&scene.mechanism, inertias(scene));
-    let some = energy_checked.min(states.len());
-    let sampled = (0..some).map(|k| (2 * k + 1) * states.len() / (2 * some));
-    let sampled = sampled.map(|k| (states[k].clone(), mass_matrices[k].clone()));
-    let (sampled, matrices): (Vec<_>, Vec<_>) = sampled.unzip();
-    let (mut findings, energy_findings) = rayon::join(
-        || check_states(mechanism, inertias, assembly_poses, states),
-        || check_energies(mechanism, inertias, assembly_poses, &sampled, &matrices),
-    );
-    findings.extend(energy_findings);
-    findings
+/// A mechanism as it is assembled, with its bodies in these poses.
+pub(crate) fn assembled<'a>(scene: &'a PlaneScene, poses: &'a [Pose]) -> AssembledMechanism<'a> {
+    AssembledMechanism {
+        mechanism: CheckedMechanism::Plane(&scene.mechanism, inertias(scene)),
+        q: &scene.assembly.coordinates,
+        poses,
+    }
 }
 
 /// The prescribed motion.

@@ -8,7 +8,7 @@ use super::mechanisms::{body, mass};
 use super::ratios::FIGURE;
 use super::series::{ALLOWED_ROUNDINGS, ParameterSeries, Requirement, RunResult};
 use crate::cases::model_states::{ModelStates, StateRequest};
-use crate::checked::states::inertias;
+use crate::checked::states::assembled;
 use dwell_findings::Finding;
 use dwell_kinetostatics::Mass;
 use dwell_numerics::{DoubleDouble, Scalar};
@@ -168,8 +168,7 @@ fn findings_of(text: &str) -> Result<Vec<Finding>, String> {
         model.state(&request).map_err(|e| e.to_string())
     };
     let states: Vec<_> = (0..DENSE_STATES).map(state).collect::<Result<_, _>>()?;
-    let (mechanism, inertias) = (&scene.mechanism, inertias(&scene));
-    let found = check_states(mechanism, inertias, &model.assembly_poses, &states);
+    let found = check_states(&assembled(&scene, &model.assembly_poses), &states, 0);
     let named = found.into_iter().map(|finding| Finding {
         key: format!("large-group-{}", finding.key),
         domain: format!("a ring of {DENSE_LINKS} links, {}", finding.domain),

@@ -26,7 +26,7 @@ pub use key_faults::{KeyFault, KeyFaults, PlantedFault};
 pub use planted::{PlantedResult, PlantedScene};
 
 use crate::cases::reference::Reference;
-use crate::overview::CaseResult;
+use crate::overview::ValidatedCase;
 use committed_mutations::committed_mutations;
 use document::{CaseEntry, Contents, counts, document, text};
 use dwell_findings::Finding;
@@ -113,15 +113,13 @@ impl Manual {
     }
 
     /// The findings of each scene: those of its case, or its own.
-    fn case_findings<'a>(&'a self, results: &[CaseResult<'a>]) -> Vec<CaseFindings<'a>> {
+    fn case_findings<'a>(&'a self, cases: &[ValidatedCase<'a>]) -> Vec<CaseFindings<'a>> {
         let each = self.scenes.iter().zip(&self.findings);
         each.map(|(planted, own)| {
             let name = planted.scene.name.as_str();
-            let mut done = results
-                .iter()
-                .filter_map(|(_, result)| result.as_ref().ok());
-            let validated = done.find(|(scene, _)| scene.name == name);
-            let findings = validated.map_or(&own[..], |(_, done)| &done.outcome.findings);
+            let of_name = cases.iter().find(|case| case.name == name);
+            let validated = of_name.and_then(|case| case.result.as_ref().ok());
+            let findings = validated.map_or(&own[..], |done| &done.outcome.findings);
             CaseFindings { name, findings }
         })
         .collect()
@@ -131,12 +129,12 @@ impl Manual {
     /// independent reader, in words. Each failing capability is a failed finding.
     pub fn outcome(
         &self,
-        results: &[CaseResult<'_>],
+        validated: &[ValidatedCase<'_>],
         extremes: &[Finding],
         interface: &Interface,
         independent_reader: &str,
     ) -> Outcome {
-        let cases = self.case_findings(results);
+        let cases = self.case_findings(validated);
         let (faults, texts) = committed_mutations(&reports(&self.folder));
         let mut lines: Vec<Line> = self.keys.iter().map(|key| key_line(key, &cases)).collect();
         lines.extend(command_lines(interface, &cases, extremes, &faults));

@@ -10,11 +10,11 @@ use super::motion_claims::{MotionClaims, differ};
 use crate::cases::model_states::{ModelStates, StateRequest};
 use crate::cases::reference::Reference;
 use crate::checked::known_reactions::known_reaction_findings;
-use crate::checked::states::{motions, state_findings};
+use crate::checked::states::{assembled, motions};
 use dwell_findings::{Check, Finding};
 use dwell_scene::PlaneScene;
 use dwell_study::StudyError;
-use dwell_verify::ClaimedState;
+use dwell_verify::{ClaimedState, Pose, Twist, check_states};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::OnceLock;
@@ -36,12 +36,11 @@ pub struct PlantedScene {
     ignored: OnceLock<BTreeSet<String>>,
 }
 
-/// States and by state the generalised inertias, row by row.
+/// What is claimed of a scene.
 #[derive(Debug, Clone, PartialEq)]
 struct StateClaims {
-    assembly_poses: Vec<[f64; 3]>,
+    assembly_poses: Vec<Pose>,
     states: Vec<ClaimedState>,
-    mass_matrices: Vec<Vec<f64>>,
 }
 
 /// The result of a planted fault.
@@ -167,18 +166,17 @@ impl PlantedScene {
     fn claims(&self, scene: &PlaneScene) -> Option<StateClaims> {
         let claims = || -> Result<StateClaims, StudyError> {
             let mut model = ModelStates::new(scene)?;
-            let requests: Vec<StateRequest> = motions(scene, &model, &self.reference, STATES)
-                .flatten()
-                .collect();
-            let (mut states, mut mass_matrices) = (Vec::new(), Vec::new());
+            let requests = motions(scene, &model, &self.reference, STATES).flatten();
+            let requests: Vec<StateRequest> = requests.collect();
+            let mut states = Vec::new();
             for request in &requests {
-                states.push(model.state(request)?);
-                mass_matrices.push(model.mass_matrix());
+                let state = model.state(request)?;
+                let inertias = model.mass_matrix();
+                states.push(ClaimedState { inertias, ..state });
             }
             Ok(StateClaims {
-                assembly_poses: model.assembly_poses.clone(),
+                assembly_poses: model.assembly_poses,
                 states,
-                mass_matrices,
             })
         };
         claims().ok().filter(|claims| !claims.states.is_empty())
@@ -186,8 +184,7 @@ impl PlantedScene {
 
     fn check_states(&self, claims: &StateClaims) -> Vec<Finding> {
         let own = self.own_states().map_or(&[][..], |own| &own.assembly_poses);
-        let claimed = (&claims.states[..], &claims.mass_matrices[..]);
-        state_findings(&self.scene, own, claimed, ENERGY_STATES)
+        check_states(&assembled(&self.scene, own), &claims.states, ENERGY_STATES)
     }
 }
 
@@ -195,7 +192,7 @@ impl StateClaims {
     /// The claims for the states that another scene requests, under the loads there.
     fn with_requests_of(mut self, own: &Self) -> Self {
         for (claim, own) in self.states.iter_mut().zip(&own.states) {
-            claim.t = own.t;
+            (claim.t, claim.name) = (own.t, own.name.clone());
             claim.q.clone_from(&own.q);
             claim.q_dot.clone_from(&own.q_dot);
             claim.q_ddot.clone_from(&own.q_ddot);
@@ -213,18 +210,19 @@ impl StateClaims {
     }
 
     fn differs_from(&self, own: &Self) -> bool {
-        let kinds: [fn(&ClaimedState) -> Vec<f64>; 4] = [
-            |s| s.poses.concat(),
-            |s| s.velocities.concat(),
-            |s| s.accelerations.concat(),
+        let kinds: [fn(&ClaimedState) -> Vec<f64>; 5] = [
+            |s| s.inertias.clone(),
+            |s| s.poses.iter().flat_map(Pose::in_plane).collect(),
+            |s| s.velocities.iter().flat_map(Twist::in_plane).collect(),
+            |s| s.accelerations.iter().flat_map(Twist::in_plane).collect(),
             |s| [&s.reactions[..], &s.tau].concat(),
         ];
-        let differs = |values: &dyn Fn(&Self) -> Vec<f64>| differ(&values(self), &values(own));
-        let of_kind = |kind: fn(&ClaimedState) -> Vec<f64>| {
-            move |claims: &Self| claims.states.iter().flat_map(kind).collect::<Vec<f64>>()
+        let differs = |kind: fn(&ClaimedState) -> Vec<f64>| {
+            let [one, other] = [self, own]
+                .map(|claims| -> Vec<f64> { claims.states.iter().flat_map(kind).collect() });
+            differ(&one, &other)
         };
-        differs(&|claims| claims.mass_matrices.concat())
-            || kinds.into_iter().any(|kind| differs(&of_kind(kind)))
+        kinds.into_iter().any(differs)
     }
 }
 

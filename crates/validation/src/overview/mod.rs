@@ -11,15 +11,11 @@ use crate::report_parts::{
 };
 use dwell_findings::{Check, Finding, all_pass};
 use dwell_report::{Block, Document, markdown_text};
-use dwell_scene::PlaneScene;
 use dwell_study::Outcome;
 use dwell_study::output::Picture;
 
 /// The meaning of the kinds of reference values.
 const SOURCE_KINDS: &str = "Independent: made by the program in `validation/reference`, which shares nothing with Dwell and remakes every one of them (`just reference`). Literature: as printed, with its citation on the case's page. Own oracle: no value from elsewhere; Dwell's independent checks alone. The values of the squeezer at 0.03 s that the Test Set for IVP Solvers publishes are 1.5e-9 rad off (accelerations and multipliers 1.3e-6 of the largest): the independent energy integral and Dwell's integration agree against them.";
-
-/// A case and its result: its report, or the reason why there is none.
-pub type CaseResult<'a> = (&'a str, Result<(&'a PlaneScene, &'a Validation), String>);
 
 /// A case in the plane or in space, with its result.
 #[derive(Debug, Clone)]

@@ -1,8 +1,7 @@
 //! What a model in space says of itself, evaluated in any kind of number, for the checks of states.
 
-use super::reference_poses::SpaceSubject;
 use dwell_geometry::space::{
-    BodyMotion, Frame, Joint, JointKind, Placement, Pose, Rotation, Vec3, Wrench, vec3,
+    BodyMotion, Frame, Joint, JointKind, Placement, Pose, Rotation, Vec3, vec3,
 };
 use dwell_geometry::{JointId, PositionError};
 use dwell_kinetostatics::space::{Axes, Component, Load, LoadKind, Model, Reaction};
@@ -12,19 +11,21 @@ use dwell_kinetostatics::{
 use dwell_numerics::Scalar;
 use dwell_scene::SpaceScene;
 use dwell_study::{StudyError, model_with_loads};
-use dwell_verify::SubjectError;
-use dwell_verify::space::{SpaceCase, SpaceState, sliding_in_space, with_friction_in_space};
-use std::marker::PhantomData;
+use dwell_verify::space::{DensePose, load_wrenches};
+use dwell_verify::{
+    AssembledMechanism, CheckedMechanism, ClaimedState, DenseError, Pose as BodyPose, SubjectError,
+    Twist,
+};
 
 /// Components of a joint's reaction in one kind of axes.
-const COMPONENTS: usize = 6;
+pub(super) const COMPONENTS: usize = 6;
 
 /// A scene with its loaded model, which has all reactions in the axes of the ground and in those of their joints.
 #[derive(Debug)]
 pub struct SpaceClaims<'a> {
     scene: &'a SpaceScene,
     model: Model,
-    start: Vec<Placement>,
+    start: Vec<BodyPose>,
 }
 
 impl<'a> SpaceClaims<'a> {
@@ -44,7 +45,7 @@ impl<'a> SpaceClaims<'a> {
             start: Vec::new(),
         };
         if at_start.is_ok() {
-            claims.start = claims.all_placements(&pose);
+            claims.start = BodyPose::all_in_space(&claims.all_placements(&pose));
         }
         Ok(claims)
     }
@@ -54,15 +55,35 @@ impl<'a> SpaceClaims<'a> {
         &self.model
     }
 
+    /// The scene.
+    pub(super) fn scene(&self) -> &'a SpaceScene {
+        self.scene
+    }
+
+    /// A length of the order of the mechanism, m.
+    pub(super) fn size(&self) -> f64 {
+        self.model.plan().size()
+    }
+
     /// The mechanism for the checks.
-    pub fn case(&self) -> SpaceCase<'_> {
-        SpaceCase {
-            mechanism: &self.scene.mechanism,
-            masses: &self.scene.masses,
-            size: self.model.plan().size(),
-            idle: &self.model.plan().mobility().idle,
-            start: (&self.scene.assembly.q, &self.start),
+    pub fn assembled(&self) -> AssembledMechanism<'_> {
+        let (scene, idle) = (self.scene, &self.model.plan().mobility().idle);
+        AssembledMechanism {
+            mechanism: CheckedMechanism::Space(&scene.mechanism, &scene.masses, idle),
+            q: &scene.assembly.q,
+            poses: &self.start,
         }
+    }
+
+    /// The dense equations at placements of all bodies.
+    ///
+    /// # Errors
+    /// [`DenseError`] where they have no singular values.
+    pub(super) fn dense_pose<'p>(
+        &'p self,
+        placements: &'p [Placement],
+    ) -> Result<DensePose<'p>, DenseError> {
+        DensePose::new(&self.scene.mechanism, &self.scene.masses, placements)
     }
 
     /// The loads that have a direction of their own when they are alone, as what they are at magnitude one: of a damper a unit of its
@@ -91,9 +112,9 @@ impl<'a> SpaceClaims<'a> {
     /// # Errors
     /// [`PositionError`] where there is no pose.
     pub fn determined(&self, q: &[f64]) -> Result<Vec<bool>, PositionError> {
-        let all = self.model.determined(q, &mut self.model.workspace())?;
-        let of_ground = all.chunks(2 * COMPONENTS).flat_map(|of| &of[..COMPONENTS]);
-        Ok(of_ground.copied().collect())
+        Ok(of_ground(
+            &self.model.determined(q, &mut self.model.workspace())?,
+        ))
     }
 
     fn placement<T: Scalar>(&self, pose: &Pose<T>, body: usize) -> Placement {
@@ -115,20 +136,15 @@ impl<'a> SpaceClaims<'a> {
         bodies.map(|b| self.placement(pose, b)).collect()
     }
 
-    /// The reactions of one kind of axes as wrenches in those of the ground.
-    fn wrenches<T: Scalar>(
-        &self,
-        reactions: &[T],
-        placements: &[Placement],
-        of: Axes,
-    ) -> Vec<Wrench> {
+    /// The reactions of one kind of axes in those of the ground.
+    fn in_ground<T: Scalar>(&self, reactions: &[T], poses: &[BodyPose], of: Axes) -> Vec<f64> {
         let first = match of {
             Axes::Ground => 0,
             Axes::Joint => COMPONENTS,
         };
         let of_joint = |(joint, all): (&Joint, &[T])| {
             let side = &joint.sides[0];
-            let turned = |v: Vec3| placements[joint.side_body(0).0].rotation.apply(v);
+            let turned = |v: Vec3| poses[joint.side_body(0).0].rotation.apply(v);
             let axes = match of {
                 Axes::Ground => Vec3::AXES,
                 Axes::Joint => [side.normal, side.axis.cross(side.normal), side.axis].map(turned),
@@ -139,20 +155,21 @@ impl<'a> SpaceClaims<'a> {
                     sum + axis.scaled(part.value())
                 })
             };
-            Wrench {
-                force: vector(0),
-                moment: vector(3),
-            }
+            [vector(0), vector(3)].map(|v| [v.x, v.y, v.z]).concat()
         };
         let joints = self.scene.mechanism.joints.iter();
         joints
             .zip(reactions.chunks(2 * COMPONENTS))
-            .map(of_joint)
+            .flat_map(of_joint)
             .collect()
     }
 
-    /// Placements and motions of all bodies.
-    fn motion<T: Scalar>(&self, rates: [&[f64]; 3]) -> Result<SpaceState, PositionError> {
+    /// Poses and motions of all bodies, under loads with their magnitudes.
+    fn motion<T: Scalar>(
+        &self,
+        rates: [&[f64]; 3],
+        loads: &[(LoadKind, f64)],
+    ) -> Result<ClaimedState, PositionError> {
         let plan = self.model.plan();
         let mut pose = plan.pose::<T>();
         let [q, q_dot, q_ddot] = rates.map(lifted);
@@ -168,23 +185,43 @@ impl<'a> SpaceClaims<'a> {
                 angular_acceleration: plain(motion.angular_acceleration),
             }
         };
+        let placements = self.all_placements(&pose);
+        let motions: Vec<BodyMotion> = (0..placements.len()).map(motion).collect();
+        let velocity = |m: &BodyMotion| Twist {
+            linear: m.velocity,
+            angular: m.angular_velocity,
+        };
+        let acceleration = |m: &BodyMotion| Twist {
+            linear: m.acceleration,
+            angular: m.angular_acceleration,
+        };
+        let bodies = (
+            &self.scene.mechanism,
+            &self.scene.masses[..],
+            &placements[..],
+        );
         let [q, q_dot, q_ddot] = rates.map(<[f64]>::to_vec);
-        Ok(SpaceState {
+        let coordinates: Vec<String> = q.iter().map(|q| format!("{q:.4}")).collect();
+        Ok(ClaimedState {
+            name: format!("q = {}", coordinates.join(" ")),
             q,
             q_dot,
             q_ddot,
-            placements: self.all_placements(&pose),
-            motions: (0..self.scene.mechanism.bodies.len()).map(motion).collect(),
-            ..SpaceState::default()
+            load_wrenches: load_wrenches(bodies, &motions, loads),
+            load_power: Some(0.0),
+            poses: BodyPose::all_in_space(&placements),
+            velocities: motions.iter().map(velocity).collect(),
+            accelerations: motions.iter().map(acceleration).collect(),
+            ..ClaimedState::default()
         })
     }
 
-    /// The motions of all bodies at coordinates, speeds and accelerations.
+    /// The accelerations of all bodies at coordinates, speeds and accelerations.
     ///
     /// # Errors
     /// [`PositionError`] where there is no pose.
-    pub fn motions(&self, rates: [&[f64]; 3]) -> Result<Vec<BodyMotion>, PositionError> {
-        Ok(self.motion::<f64>(rates)?.motions)
+    pub fn accelerations(&self, rates: [&[f64]; 3]) -> Result<Vec<Twist>, PositionError> {
+        Ok(self.motion::<f64>(rates, &[])?.accelerations)
     }
 
     /// The magnitudes of the loads in plain numbers.
@@ -220,8 +257,8 @@ impl<'a> SpaceClaims<'a> {
         let Some((friction, radius)) = self.surface_friction(&self.model.loads()[load]) else {
             return Ok(self.unit_loads().get(load).copied().into_iter().collect());
         };
-        let placements = self.motion::<f64>([q, &[0.0], &[0.0]])?.placements;
-        let [along, turn] = sliding_in_space(&self.case(), &placements, &[1.0], &friction)?;
+        let placements = self.placements::<f64>(q)?;
+        let [along, turn] = self.dense_pose(&placements)?.sliding(&[1.0], &friction);
         let length = along.hypot(radius * turn);
         Ok(vec![
             (LoadKind::SlideForce(friction.joint), along / length),
@@ -253,15 +290,9 @@ impl<'a> SpaceClaims<'a> {
         if frictions.iter().all(Option::is_none) {
             return Ok(loads);
         }
-        let placements = self.motion::<f64>([q, q_dot, q_ddot])?.placements;
-        let given = (&loads[..], &frictions[..]);
-        let rates = [q_dot, q_ddot];
-        Ok(with_friction_in_space(
-            &self.case(),
-            &placements,
-            rates,
-            given,
-        )?)
+        let placements = self.placements::<f64>(q)?;
+        let dense = self.dense_pose(&placements)?;
+        Ok(dense.with_friction([q_dot, q_ddot], (&loads, &frictions))?)
     }
 
     /// The state under all loads at time `t` (s), at coordinates, speeds and accelerations, with its reactions as they are read in these axes.
@@ -273,22 +304,22 @@ impl<'a> SpaceClaims<'a> {
         t: f64,
         rates: [&[f64]; 3],
         axes: Axes,
-    ) -> Result<SpaceState, SubjectError> {
+    ) -> Result<ClaimedState, SubjectError> {
         let [q, q_dot, _] = rates;
         let explain = |e: &dyn std::fmt::Display| refused(q, e);
-        let mut claimed = self.motion::<T>(rates).map_err(|e| explain(&e))?;
         let magnitudes = self.magnitudes(t, [q, q_dot]).map_err(|e| explain(&e))?;
-        claimed.loads = (self.loads(rates, &magnitudes)).map_err(|e| explain(&e))?;
+        let loads = (self.loads(rates, &magnitudes)).map_err(|e| explain(&e))?;
+        let mut claimed = self.motion::<T>(rates, &loads).map_err(|e| explain(&e))?;
         let (mut workspace, mut result) = (self.model.workspace(), self.model.result_buffer());
         let of_numbers = rates.map(lifted::<T>);
         let at = of_numbers.each_ref().map(Vec::as_slice);
         let state = self.model.kinetostatics(t, at, &mut workspace, &mut result);
         let state = state.map_err(|e| explain(&e))?;
         let powers = (0..magnitudes.len()).map(|load| state.load_power(load).value());
-        claimed.load_power = powers.sum();
+        claimed.load_power = Some(powers.sum());
         let found = state.inverse_dynamics();
         claimed.tau = found.tau.iter().map(|v| v.value()).collect();
-        claimed.reactions = self.wrenches(&found.reactions, &claimed.placements, axes);
+        claimed.reactions = self.in_ground(&found.reactions, &claimed.poses, axes);
         claimed.inertias = self.mass_matrix(&mut state.into_kinematic_state(), q.len());
         Ok(claimed)
     }
@@ -301,10 +332,10 @@ impl<'a> SpaceClaims<'a> {
         &self,
         q: f64,
         axes: Axes,
-    ) -> Result<[SpaceState; 2], SubjectError> {
+    ) -> Result<[ClaimedState; 2], SubjectError> {
         let explain = |e: &dyn std::fmt::Display| refused(&[q], e);
         let mut moving = self
-            .motion::<T>([&[q], &[1.0], &[0.0]])
+            .motion::<T>([&[q], &[1.0], &[0.0]], &[])
             .map_err(|e| explain(&e))?;
         let mut workspace = self.model.workspace();
         let mut found = self.model.coefficient_buffer::<T>();
@@ -315,18 +346,40 @@ impl<'a> SpaceClaims<'a> {
         moving.inertias = vec![found.m.value()];
         let mut from_rest = moving.clone();
         (from_rest.q_dot, from_rest.q_ddot) = (vec![0.0], vec![1.0]);
-        for motion in &mut from_rest.motions {
-            *motion = BodyMotion {
-                acceleration: motion.velocity,
-                angular_acceleration: motion.angular_velocity,
-                ..Default::default()
-            };
-        }
+        let at_rest = vec![Twist::default(); moving.velocities.len()];
+        from_rest.accelerations = std::mem::replace(&mut from_rest.velocities, at_rest);
         moving.tau = vec![found.half_dm.value()];
         from_rest.tau = vec![found.m.value()];
-        moving.reactions = self.wrenches(&found.b, &moving.placements, axes);
-        from_rest.reactions = self.wrenches(&found.a, &moving.placements, axes);
+        moving.reactions = self.in_ground(&found.b, &moving.poses, axes);
+        from_rest.reactions = self.in_ground(&found.a, &moving.poses, axes);
         Ok([moving, from_rest])
+    }
+
+    /// The state at rest, under loads with their magnitudes, without reactions.
+    fn state_at_rest<T: Scalar>(
+        &self,
+        q: &[f64],
+        loads: &[(LoadKind, f64)],
+    ) -> Result<ClaimedState, SubjectError> {
+        let zero = vec![0.0; q.len()];
+        let claimed = self.motion::<T>([q, &zero, &zero], loads);
+        let (mut workspace, zero) = (self.model.workspace(), lifted::<T>(&zero));
+        let state = self
+            .model
+            .kinematic_state(&lifted::<T>(q), &zero, &mut workspace);
+        let mut state = state.map_err(|e| refused(q, &e))?;
+        Ok(ClaimedState {
+            inertias: self.mass_matrix(&mut state, q.len()),
+            ..claimed.map_err(|e| refused(q, &e))?
+        })
+    }
+
+    /// The poses and the generalised inertias at coordinates.
+    ///
+    /// # Errors
+    /// [`SubjectError`] where there is no pose.
+    pub fn at_rest<T: Scalar>(&self, q: &[f64]) -> Result<ClaimedState, SubjectError> {
+        self.state_at_rest::<T>(q, &[])
     }
 
     /// The response to a unit of a load, at rest.
@@ -338,14 +391,12 @@ impl<'a> SpaceClaims<'a> {
         q: &[f64],
         load: usize,
         axes: Axes,
-    ) -> Result<SpaceState, SubjectError> {
+    ) -> Result<ClaimedState, SubjectError> {
         let explain = |e: &dyn std::fmt::Display| refused(q, e);
-        let zero = vec![0.0; q.len()];
-        let mut claimed = self
-            .motion::<T>([q, &zero, &zero])
-            .map_err(|e| explain(&e))?;
+        let loads = self.unit_parts(q, load).map_err(|e| explain(&e))?;
+        let mut claimed = self.state_at_rest::<T>(q, &loads)?;
         let (mut workspace, mut found) = (self.model.workspace(), self.model.result_buffer::<T>());
-        let rates = [lifted::<T>(q), lifted(&zero)];
+        let rates = [lifted::<T>(q), lifted(&claimed.q_dot)];
         let state = self
             .model
             .kinematic_state(&rates[0], &rates[1], &mut workspace);
@@ -353,9 +404,7 @@ impl<'a> SpaceClaims<'a> {
         let done = state.unit_load_response(load, &mut found);
         done.map_err(|e| explain(&e))?;
         claimed.tau = found.tau.iter().map(|v| v.value()).collect();
-        claimed.reactions = self.wrenches(&found.reactions, &claimed.placements, axes);
-        claimed.loads = self.unit_parts(q, load).map_err(|e| explain(&e))?;
-        claimed.inertias = self.inertias::<T>(q)?;
+        claimed.reactions = self.in_ground(&found.reactions, &claimed.poses, axes);
         Ok(claimed)
     }
 
@@ -368,18 +417,6 @@ impl<'a> SpaceClaims<'a> {
         let done = self.model.plan().positions(&lifted(q), &mut pose);
         done.map_err(|e| refused(q, &e))?;
         Ok(self.all_placements(&pose))
-    }
-
-    /// The generalised inertias at coordinates, row by row.
-    ///
-    /// # Errors
-    /// [`SubjectError`] where there is no pose.
-    pub fn inertias<T: Scalar>(&self, q: &[f64]) -> Result<Vec<f64>, SubjectError> {
-        let (mut workspace, n) = (self.model.workspace(), q.len());
-        let [q_of, rest] = [lifted::<T>(q), vec![T::default(); n]];
-        let state = self.model.kinematic_state(&q_of, &rest, &mut workspace);
-        let mut state = state.map_err(|e| refused(q, &e))?;
-        Ok(self.mass_matrix(&mut state, n))
     }
 
     /// The generalised inertias of a state, row by row.
@@ -398,35 +435,16 @@ impl<'a> SpaceClaims<'a> {
         }
         inertias
     }
-
-    /// What is asked beside the states, in a kind of number.
-    pub fn in_numbers<T: Scalar>(&self) -> ClaimsIn<'_, T> {
-        ClaimsIn {
-            claims: self,
-            numbers: PhantomData,
-        }
-    }
 }
 
-/// Claims in a kind of number.
-#[derive(Debug)]
-pub struct ClaimsIn<'a, T> {
-    claims: &'a SpaceClaims<'a>,
-    numbers: PhantomData<T>,
-}
-
-impl<T: Scalar> SpaceSubject for ClaimsIn<'_, T> {
-    fn placements(&self, q: &[f64]) -> Result<Vec<Placement>, SubjectError> {
-        self.claims.placements::<T>(q)
-    }
-
-    fn inertias(&self, q: &[f64]) -> Result<Vec<f64>, SubjectError> {
-        self.claims.inertias::<T>(q)
-    }
+/// What of all reactions is in the axes of the ground.
+pub(super) fn of_ground<T: Copy>(all: &[T]) -> Vec<T> {
+    let joints = all.chunks(2 * COMPONENTS);
+    joints.flat_map(|of| &of[..COMPONENTS]).copied().collect()
 }
 
 /// All components of the reactions of all joints, joint by joint, in some kinds of axes.
-pub(super) fn all_reactions(scene: &SpaceScene, axes: &[Axes]) -> Vec<Reaction> {
+pub(crate) fn all_reactions(scene: &SpaceScene, axes: &[Axes]) -> Vec<Reaction> {
     let joints = 0..scene.mechanism.joints.len();
     let kinds = joints.flat_map(|j| axes.iter().map(move |&axes| (j, axes)));
     let component = |(j, axes): (usize, Axes)| {
@@ -444,11 +462,6 @@ pub(super) fn all_reactions(scene: &SpaceScene, axes: &[Axes]) -> Vec<Reaction> 
 /// Names of the components of a reaction, and the components themselves.
 pub(super) const NAMES: [&str; COMPONENTS] = ["x", "y", "z", "moment-x", "moment-y", "moment-z"];
 
-pub(super) fn components(wrench: &Wrench) -> [f64; COMPONENTS] {
-    let (f, m) = (wrench.force, wrench.moment);
-    [f.x, f.y, f.z, m.x, m.y, m.z]
-}
-
 /// A load of constant magnitude.
 pub(super) fn constant(load: &Load) -> Option<(LoadKind, f64)> {
     match load.magnitude {
@@ -465,7 +478,7 @@ fn plain<T: Scalar>(v: Vec3<T>) -> Vec3 {
     vec3(v.x.value(), v.y.value(), v.z.value())
 }
 
-fn refused(q: &[f64], why: &dyn std::fmt::Display) -> SubjectError {
+pub(super) fn refused(q: &[f64], why: &dyn std::fmt::Display) -> SubjectError {
     SubjectError {
         q: q.first().copied().unwrap_or(0.0),
         message: why.to_string(),

@@ -5,7 +5,6 @@ use super::period::period;
 use super::reference::{Reference, Sample};
 use super::reference_poses::ReferencePoses;
 use super::states::state_findings;
-use super::subject::SpatialSubject;
 use crate::error::ValidationError;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::rows::largest;
@@ -13,7 +12,7 @@ use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::Coefficients;
 use dwell_study::PreparedSpaceScene;
 use dwell_study::reduce::compute::ReducedScene as _;
-use dwell_verify::{Case, CheckedMechanism, FindingSpec, verify_all};
+use dwell_verify::{Case, FindingSpec, verify_all};
 
 /// Rounding of positions, amplified by the condition of the equations.
 const ROUNDING: &str = "rounding, amplified by the condition of the equations";
@@ -56,36 +55,30 @@ const DIGITS: FindingSpec<'_> = FindingSpec {
 
 /// All findings; a reference may be missing.
 pub(super) fn findings(
+    claims: &SpaceClaims<'_>,
     prepared: &PreparedSpaceScene<'_>,
     reference: Option<&Reference>,
 ) -> Result<Vec<Finding>, ValidationError> {
-    let subject = SpatialSubject::new(prepared)?;
     let q = positions(prepared);
-    let mechanism = CheckedMechanism::Space(
-        &prepared.scene.mechanism,
-        &prepared.scene.masses,
-        &subject.model.plan().mobility().idle,
-    );
     let case = Case {
-        mechanism,
+        mechanism: claims.assembled().mechanism,
         range: prepared.range(),
         positions: q.clone(),
     };
-    let mut found = verify_all(&case, &subject, &[]);
+    let mut found = verify_all(&case, claims, &[]);
     let domain = format!("{POSITIONS} positions");
     found.extend(against_passes(prepared, &q)?.finding(&IN_PASSES, &domain));
     found.extend(rounding(prepared, &q)?.finding(&DIGITS, &domain));
     let positions: Vec<Vec<f64>> = q.iter().step_by(3).map(|q| vec![*q]).collect();
-    found.extend(state_findings(prepared.scene, &positions)?);
+    found.extend(state_findings(claims, &positions)?);
     if let Some(reference) = reference {
         let domain = format!("{} positions of the reference", reference.samples().count());
         let [inertia, reactions] = against_reference(prepared, reference)?;
         found.extend(inertia.finding(&REFERENCE, &domain));
         found.extend(reactions.finding(&REFERENCE_REACTIONS, &domain));
         found.extend(period(prepared, reference)?);
-        let claims = SpaceClaims::new(prepared.scene)?;
         let poses = ReferencePoses::of(prepared.scene, reference);
-        found.extend(poses.placements(&claims.case(), &claims.in_numbers::<f64>()));
+        found.extend(poses.placements(claims, &|q| claims.at_rest::<f64>(q)));
     }
     Ok(found)
 }

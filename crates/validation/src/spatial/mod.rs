@@ -19,6 +19,8 @@ mod states;
 mod stopped_motion;
 mod subject;
 
-pub use claims::{ClaimsIn, SpaceClaims};
-pub use reference_poses::{ReferencePoses, SpaceSubject};
-pub use report::validate_in_space;
+pub use claims::SpaceClaims;
+pub(crate) use claims::all_reactions;
+pub use motion::solved;
+pub use reference_poses::{ClaimedAt, ReferencePoses};
+pub(crate) use report::validate_in_space;

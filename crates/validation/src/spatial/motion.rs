@@ -10,12 +10,10 @@ use dwell_dynamics::{
     DenseOutput, Machine, MachineOde, Method, OdeState, Options, StepControl, integrate,
 };
 use dwell_findings::{Check, Finding};
-use dwell_geometry::space::BodyMotion;
 use dwell_kinetostatics::MachineModel as _;
 use dwell_kinetostatics::space::{LoadKind, Model};
 use dwell_scene::{MotionDuration, SpaceScene};
 use dwell_verify::FindingSpec;
-use dwell_verify::space::{DensePose, kinetic_energy, potential_energy};
 
 /// The motion without `[motion]`: its speeds at the assembly, rad/s or fifths of the size per s, and the longest time, s.
 const SPEEDS: [f64; 4] = [1.0, -0.6, 0.4, 0.3];
@@ -101,13 +99,13 @@ pub(super) fn start(scene: &SpaceScene, model: &Model) -> ([Vec<f64>; 2], f64) {
 
 /// The findings; none where the machine has no equation of motion.
 pub(super) fn motion_findings(
-    scene: &SpaceScene,
+    claims: &SpaceClaims<'_>,
     reference: Option<&Reference>,
 ) -> Result<Vec<Finding>, ValidationError> {
+    let scene = claims.scene();
     let Some(machine) = free_machine(scene)? else {
         return Ok(Vec::new());
     };
-    let claims = SpaceClaims::new(scene)?;
     let ([q, q_dot], duration) = start(scene, claims.model());
     let y = machine.initial_state(&q, &q_dot);
     let times: Vec<f64> = (0..=TIMES)
@@ -115,7 +113,7 @@ pub(super) fn motion_findings(
         .collect();
     let states = states_at(&machine, &y, &times).unwrap_or_default();
     let domain = format!("{} times", states.len());
-    let [equations, energy] = along(&claims, &machine, &states);
+    let [equations, energy] = along(claims, &machine, &states);
     let mut findings: Vec<Finding> = [(equations, &EQUATIONS), (energy, &ENERGY)]
         .into_iter()
         .filter_map(|(worst, of)| worst.finding(of, &domain))
@@ -135,7 +133,7 @@ pub(super) fn motion_findings(
             for (i, wanted) in wanted.iter().enumerate() {
                 let found = found.get(k).map_or(f64::NAN, |state| state.y[i]);
                 let is_angle = claims.model().is_angle(i);
-                let unit = if is_angle { 1.0 } else { claims.case().size };
+                let unit = if is_angle { 1.0 } else { claims.size() };
                 let name = &scene.mechanism.actuators[i].name;
                 let of = if is_angle { "rad" } else { "m" };
                 worst.compare([found, *wanted, unit], of, || format!("t = {t} s, {name}"));
@@ -169,12 +167,12 @@ fn along(
         // Those of speeds may cancel.
         let unit = |k: usize| match claims.model().is_angle(k) {
             true => 1.0,
-            false => claims.case().size,
+            false => claims.size(),
         };
         let speeds = q_dot.iter().enumerate().map(|(k, v)| (v / unit(k)).powi(2));
         let scale = speeds.fold(dense.scale, f64::max);
         for (k, (found, wanted)) in found.iter().zip(&dense.accelerations).enumerate() {
-            let name = &claims.case().mechanism.actuators[k].name;
+            let name = &claims.scene().mechanism.actuators[k].name;
             equations.compare([*found, *wanted, scale], "1/s2", || {
                 format!("t = {t:.4} s, {name}")
             });
@@ -214,12 +212,12 @@ pub(super) struct Dense {
 
 impl Dense {
     pub(super) fn new(claims: &SpaceClaims<'_>, t: f64, [q, q_dot]: [&[f64]; 2]) -> Option<Self> {
-        let (case, n) = (claims.case(), q.len());
+        let n = q.len();
         let placements = claims.placements::<f64>(q).ok()?;
         let magnitudes = claims.magnitudes(t, [q, q_dot]).ok()?;
         let kinds = claims.model().loads().iter().map(|load| load.kind);
         let loads: Vec<(LoadKind, f64)> = kinds.zip(magnitudes).collect();
-        let pose = DensePose::new(case.mechanism, case.masses, &placements).ok()?;
+        let pose = claims.dense_pose(&placements).ok()?;
         let at_rest = vec![0.0; n];
         let actions = |q_ddot: &[f64], loads: &[(LoadKind, f64)], q_dot: &[f64]| {
             pose.solve([q_dot, q_ddot], loads).actuator_actions
@@ -241,13 +239,12 @@ impl Dense {
             let parts = solved(&columns, &one)?;
             scale = scale.max(largest(&parts));
         }
-        let motions: Vec<BodyMotion> = pose.velocities(q_dot);
         let constant = claims.model().loads().iter().filter_map(constant);
-        let conservative = constant.filter_map(|load| potential_energy(&case, &placements, load));
+        let conservative = constant.filter_map(|load| pose.potential_energy(load));
         Some(Self {
             accelerations,
             scale,
-            kinetic: kinetic_energy(&case, &placements, &motions),
+            kinetic: pose.kinetic_energy(q_dot),
             potential: conservative.sum(),
             columns,
             rest,
@@ -255,16 +252,11 @@ impl Dense {
     }
 }
 
-/// x of Σ columns x = right.
-fn solved(columns: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
+/// x of Σ columns x = right, by Gauss's elimination with the largest pivots; none where there is no pivot.
+pub fn solved(columns: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
     let n = columns.len();
     let row = |i: usize| columns.iter().map(|c| c[i]).chain([right[i]]).collect();
-    solve((0..n).map(row).collect())
-}
-
-/// Gauss's elimination with the largest pivots; the right side is the last column.
-fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
-    let n = rows.len();
+    let mut rows: Vec<Vec<f64>> = (0..n).map(row).collect();
     for column in 0..n {
         let size = |row: &usize| rows[*row][column].abs();
         let pivot = (column..n).max_by(|a, b| size(a).total_cmp(&size(b)))?;

@@ -1,5 +1,6 @@
 //! Placements and generalised inertias of a reference, in plain numbers, against those of a subject.
 
+use super::claims::SpaceClaims;
 use super::reference::Reference;
 use crate::error::ValidationError;
 use crate::written::poses::difference::Differences;
@@ -7,8 +8,7 @@ use crate::written::poses::rows::largest;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::{Placement, Vec3};
 use dwell_scene::SpaceScene;
-use dwell_verify::space::SpaceCase;
-use dwell_verify::{FindingSpec, SubjectError};
+use dwell_verify::{ClaimedState, FindingSpec, Pose, SubjectError};
 use std::path::Path;
 
 const PLACEMENTS: FindingSpec<'_> = FindingSpec {
@@ -29,20 +29,8 @@ const INERTIAS: FindingSpec<'_> = FindingSpec {
     tolerance_reason: "rounding, amplified by the condition of the equations",
 };
 
-/// What is compared with a reference. A question must have the same answer whatever was asked before.
-pub trait SpaceSubject {
-    /// Where the bodies are at coordinates, rad or m.
-    ///
-    /// # Errors
-    /// [`SubjectError`] where there is no pose.
-    fn placements(&self, q: &[f64]) -> Result<Vec<Placement>, SubjectError>;
-
-    /// The generalised inertias at coordinates, row by row.
-    ///
-    /// # Errors
-    /// [`SubjectError`] where there is no pose.
-    fn inertias(&self, q: &[f64]) -> Result<Vec<f64>, SubjectError>;
-}
+/// What is compared with a reference: poses and generalised inertias at coordinates.
+pub type ClaimedAt<'a> = &'a dyn Fn(&[f64]) -> Result<ClaimedState, SubjectError>;
 
 /// A position of a reference.
 #[derive(Debug)]
@@ -90,18 +78,18 @@ impl ReferencePoses {
     }
 
     /// The finding on placements; none where the reference has no placements.
-    pub fn placements(&self, case: &SpaceCase<'_>, subject: &dyn SpaceSubject) -> Option<Finding> {
+    pub fn placements(&self, claims: &SpaceClaims<'_>, claimed: ClaimedAt<'_>) -> Option<Finding> {
         let mut worst = Differences::default();
         for ReferencePose { q, placements, .. } in &self.poses {
             if placements.is_empty() {
                 continue;
             }
-            let found = subject.placements(q).unwrap_or_default();
+            let found = claimed(q).unwrap_or_default().poses;
             for (body, wanted) in placements {
                 let error = found
                     .get(*body)
-                    .map_or(f64::NAN, |found| apart(case, *body, [found, wanted]));
-                let name = &case.mechanism.bodies[*body].name;
+                    .map_or(f64::NAN, |found| apart(claims, *body, found, wanted));
+                let name = &claims.scene().mechanism.bodies[*body].name;
                 worst.compare([error, 0.0, 1.0], "", || format!("q = {:.4}, {name}", q[0]));
             }
         }
@@ -109,10 +97,10 @@ impl ReferencePoses {
     }
 
     /// The finding on generalised inertias.
-    pub fn inertias(&self, subject: &dyn SpaceSubject) -> Option<Finding> {
+    pub fn inertias(&self, claimed: ClaimedAt<'_>) -> Option<Finding> {
         let mut worst = Differences::default();
         for ReferencePose { q, inertias, .. } in &self.poses {
-            let found = subject.inertias(q).unwrap_or_default();
+            let found = claimed(q).unwrap_or_default().inertias;
             let scale = largest(inertias);
             for (k, wanted) in inertias.iter().enumerate() {
                 let found = found.get(k).copied().unwrap_or(f64::NAN);
@@ -128,14 +116,16 @@ impl ReferencePoses {
 }
 
 /// How far a body is from where it should be, parts of the size or rad; how it stands about the line of its two balls is nobody's.
-fn apart(case: &SpaceCase<'_>, body: usize, [found, wanted]: [&Placement; 2]) -> f64 {
-    let idle = case.idle.iter().find(|idle| idle.body.0 == body);
+fn apart(claims: &SpaceClaims<'_>, body: usize, found: &Pose, wanted: &Placement) -> f64 {
+    let mobility = claims.model().plan().mobility();
+    let idle = mobility.idle.iter().find(|idle| idle.body.0 == body);
     let turned = |v: Vec3| (found.rotation.apply(v) - wanted.rotation.apply(v)).norm();
     let turn: f64 = match idle {
         Some(idle) => turned(idle.axis),
         None => Vec3::AXES.map(turned).into_iter().sum(),
     };
     let point = idle.map_or(Vec3::ZERO, |idle| idle.point);
-    let at = |p: &Placement| p.position + p.rotation.apply(point);
-    turn + (at(found) - at(wanted)).norm() / case.size
+    let gap = found.position + found.rotation.apply(point)
+        - (wanted.position + wanted.rotation.apply(point));
+    turn + gap.norm() / claims.size()
 }

@@ -1,19 +1,21 @@
 //! The report of a case in space: findings, what is determined, pictures, and the values that every machine reproduces.
 
+use super::claims::SpaceClaims;
 use super::determined;
 use super::findings::findings;
 use super::reference::Reference;
 use super::several::of_several;
-use crate::case_report::validate::Validation;
+use crate::case_report::snapshot::{rounded_to, verdicts};
+use crate::case_report::validate::{Validation, pictures};
 use crate::error::ValidationError;
 use crate::report_parts::{figure_blocks, findings_text, result_line};
-use crate::written::{self, WRITTEN_PREFIX};
+use crate::written;
 use dwell_findings::Finding;
 use dwell_kinetostatics::Coefficients;
 use dwell_report::{Block, Document, Figure, Files, markdown_text};
 use dwell_scene::SpaceScene;
 use dwell_study::number_format::count;
-use dwell_study::output::{Picture, provenance_line};
+use dwell_study::output::provenance_line;
 use dwell_study::reduce::compute::ReducedCurves;
 use dwell_study::reduce::compute::ReducedScene as _;
 use dwell_study::{Outcome, PreparedSpaceScene, reduce};
@@ -37,57 +39,46 @@ pub(super) struct Report {
     pub(super) figures: Vec<Figure>,
 }
 
-/// Validates a scene in space, with the reference in a file if there is one, and what the program at a path writes of it when it runs as a
-/// process. The files are `NAME.md` and `NAME.txt`.
+/// Validates a scene in space, with the reference `NAME.json` in a folder if there is one, and what the program at a path writes of it when it
+/// runs as a process.
 ///
 /// # Errors
 /// [`ValidationError`] when the scene or the reference cannot be used. A failed check is no error.
-pub fn validate_in_space(
+pub(crate) fn validate_in_space(
     scene: &SpaceScene,
-    reference: Option<&Path>,
+    folder: &Path,
     program: Option<&Path>,
 ) -> Result<Validation, ValidationError> {
-    let reference = reference.map(Reference::read).transpose()?;
+    let reference = folder.join(format!("{}.json", scene.name));
+    let reference = reference.is_file().then(|| Reference::read(&reference));
+    let reference = reference.transpose()?;
+    let claims = SpaceClaims::new(scene)?;
     let mut report = match scene.mechanism.actuators.len() {
-        1 => of_one(scene, reference.as_ref())?,
-        _ => of_several(scene, reference.as_ref())?,
+        1 => of_one(&claims, reference.as_ref())?,
+        _ => of_several(&claims, reference.as_ref())?,
     };
     if let Some(program) = program {
         let text = scene.source.inner();
         report
             .findings
             .extend(written::findings(program, &scene.name, text));
-        report.findings.extend(determined::finding(scene, program)?);
+        report
+            .findings
+            .extend(determined::finding(&claims, program));
     }
     report.findings.sort_by_key(|finding| finding.check);
     let document = document(scene, reference.as_ref(), &report);
-    let Report {
-        findings,
-        figures,
-        values: mut snapshot,
-        ..
-    } = report;
-    snapshot.push('\n');
-    // Writing to a string cannot fail.
-    let of_library = |f: &&Finding| !f.key.starts_with(WRITTEN_PREFIX);
-    for f in findings.iter().filter(of_library) {
-        let result = if f.pass { "pass" } else { "FAIL" };
-        let _ = writeln!(snapshot, "{result}  {}  [{}]", f.key, f.check);
-    }
+    let snapshot = format!("{}\n{}", report.values, verdicts(&report.findings));
     let name = &scene.name;
     let mut files = Files::new();
     files.add(format!("{name}.txt"), snapshot.clone());
     files.add_document(name, &document);
-    let picture = |figure: Figure| {
-        let path = format!("{name}/{}.png", figure.name);
-        Picture::figure(scene, path, true, figure)
-    };
     Ok(Validation {
         outcome: Outcome {
-            summary: findings_text(name, &findings, ""),
+            summary: findings_text(name, &report.findings, ""),
             files,
-            findings,
-            pictures: figures.into_iter().map(picture).collect(),
+            findings: report.findings,
+            pictures: pictures(scene, report.figures),
             ..Outcome::default()
         },
         snapshot,
@@ -117,9 +108,12 @@ fn document(scene: &SpaceScene, reference: Option<&Reference>, report: &Report) 
 }
 
 /// The report of a case of one coordinate.
-fn of_one(scene: &SpaceScene, reference: Option<&Reference>) -> Result<Report, ValidationError> {
-    let prepared = PreparedSpaceScene::new(scene)?;
-    let findings = findings(&prepared, reference)?;
+fn of_one(
+    claims: &SpaceClaims<'_>,
+    reference: Option<&Reference>,
+) -> Result<Report, ValidationError> {
+    let prepared = PreparedSpaceScene::new(claims.scene())?;
+    let findings = findings(claims, &prepared, reference)?;
     let curves = ReducedCurves::new(&prepared, None)?;
     let is_rounding = curves.rounding(&prepared);
     let mut figures = vec![prepared.mechanism_figure()?];
@@ -188,28 +182,13 @@ fn values(prepared: &PreparedSpaceScene<'_>) -> Result<String, ValidationError> 
     let mut text = format!("{}\n\n", prepared.scene.title);
     // Writing to a string cannot fail.
     for (q, at) in q.iter().zip(&all) {
-        let [m, half_dm] = [at.m, at.half_dm].map(|value| rounded(value, m_max));
+        let [m, half_dm] = [at.m, at.half_dm].map(|value| rounded_to(value, m_max));
         let _ = writeln!(text, "q = {q:.7}  m = {m}  half_dm = {half_dm}");
         for (k, (name, unit)) in names.iter().enumerate() {
             let scale = if *unit == "N" { scales[0] } else { scales[1] };
-            let [a, b] = [at.a[k], at.b[k]].map(|value| rounded(value, scale));
+            let [a, b] = [at.a[k], at.b[k]].map(|value| rounded_to(value, scale));
             let _ = writeln!(text, "    {name}  a = {a}  b = {b}");
         }
     }
     Ok(text)
-}
-
-/// To seven digits after the first of the largest, without a sign on zero.
-pub(super) fn rounded(value: f64, largest: f64) -> String {
-    let magnitude = if largest > 0.0 {
-        largest.log10().floor()
-    } else {
-        0.0
-    };
-    let decimals = (7.0 - magnitude).clamp(0.0, 30.0) as usize;
-    let text = format!("{value:.decimals$}");
-    match text.strip_prefix('-') {
-        Some(digits) if digits.trim_matches(['0', '.']).is_empty() => digits.to_owned(),
-        _ => text,
-    }
 }

@@ -1,20 +1,20 @@
 //! A case of several coordinates: its findings and its report.
 
-use super::claims::{SpaceClaims, components};
+use super::claims::{COMPONENTS, SpaceClaims};
 use super::motion::motion_findings;
 use super::reference::Reference;
-use super::report::{Report, rounded};
+use super::report::Report;
 use super::states::{
     STATES, free_accelerations, free_machine, in_units, near_assembly, state_findings,
 };
 use super::stopped_motion::stopped_findings;
+use crate::case_report::snapshot::rounded_to;
 use crate::error::ValidationError;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::rows::largest;
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::space::Axes;
 use dwell_report::Figure;
-use dwell_scene::SpaceScene;
 use dwell_study::figure_of_positions;
 use dwell_verify::FindingSpec;
 use std::fmt::Write as _;
@@ -42,26 +42,22 @@ const RATES: [[f64; 4]; 2] = [[1.3, -0.7, 0.4, 0.2], [-0.9, 1.1, 0.6, -0.5]];
 
 /// All findings of a scene.
 fn findings(
-    scene: &SpaceScene,
+    claims: &SpaceClaims<'_>,
     reference: Option<&Reference>,
 ) -> Result<Vec<Finding>, ValidationError> {
-    let claims = SpaceClaims::new(scene)?;
-    let mut found = state_findings(scene, &near_assembly(scene, claims.model()))?;
+    let scene = claims.scene();
+    let mut found = state_findings(claims, &near_assembly(scene, claims.model()))?;
     found.extend(match scene.stops.is_empty() {
-        true => motion_findings(scene, reference)?,
-        false => stopped_findings(scene)?,
+        true => motion_findings(claims, reference)?,
+        false => stopped_findings(claims)?,
     });
     if let Some(reference) = reference {
-        found.extend(against_reference(scene, &claims, reference)?);
+        found.extend(against_reference(claims, reference));
     }
     Ok(found)
 }
 
-fn against_reference(
-    scene: &SpaceScene,
-    claims: &SpaceClaims<'_>,
-    reference: &Reference,
-) -> Result<Vec<Finding>, ValidationError> {
+fn against_reference(claims: &SpaceClaims<'_>, reference: &Reference) -> Vec<Finding> {
     let mut worst = <[Differences; 2]>::default();
     let rates = RATES.each_ref().map(|row| in_units(claims.model(), row));
     let rates = [&rates[0][..], &rates[1][..]];
@@ -96,9 +92,9 @@ fn against_reference(
             largest(of_kind.map(|(.., value)| value))
         });
         for (joint, k, wanted) in reactions {
-            let mut joints = scene.mechanism.joints.iter().zip(&state.reactions);
-            let found = joints.find(|(j, _)| j.name == joint);
-            let found = found.map_or(f64::NAN, |(_, wrench)| components(wrench)[k]);
+            let mut joints = claims.scene().mechanism.joints.iter();
+            let index = joints.position(|j| j.name == joint);
+            let found = index.map_or(f64::NAN, |j| state.reactions[COMPONENTS * j + k]);
             let unit = ["N", "N m"][k / 3];
             worst[1].compare([found, wanted, scales[k / 3]], unit, || place(&joint));
         }
@@ -109,7 +105,7 @@ fn against_reference(
         inertia.finding(&INERTIA, &domain),
         reactions.finding(&REACTIONS, &domain),
     ];
-    Ok(found.into_iter().flatten().collect())
+    found.into_iter().flatten().collect()
 }
 
 /// The report of a case of several coordinates.
@@ -117,36 +113,36 @@ fn against_reference(
 /// # Errors
 /// [`ValidationError`] when the scene cannot be used.
 pub(super) fn of_several(
-    scene: &SpaceScene,
+    claims: &SpaceClaims<'_>,
     reference: Option<&Reference>,
 ) -> Result<Report, ValidationError> {
     Ok(Report {
-        findings: findings(scene, reference)?,
+        findings: findings(claims, reference)?,
         about: format!(
             " The mechanism has {} coordinates, so there is no reduced model: states near the assembly are \
              checked, at prescribed accelerations and in free motion, and a free motion.",
-            scene.mechanism.actuators.len()
+            claims.scene().mechanism.actuators.len()
         ),
         reference: "Reference",
         more: None,
-        values: values(scene)?,
-        figures: vec![mechanism(scene)?],
+        values: values(claims)?,
+        figures: vec![mechanism(claims)],
     })
 }
 
 /// The mechanism at the assembly.
-fn mechanism(scene: &SpaceScene) -> Result<Figure, ValidationError> {
-    let claims = SpaceClaims::new(scene)?;
-    let (_, start) = claims.case().start;
-    let position = (start.to_vec(), "the assembly".to_owned());
+fn mechanism(claims: &SpaceClaims<'_>) -> Figure {
+    let scene = claims.scene();
+    let start = claims.placements::<f64>(&scene.assembly.q);
+    let position = (start.unwrap_or_default(), "the assembly".to_owned());
     let provenance = "the mechanism at its assembly".to_owned();
-    Ok(figure_of_positions(scene, vec![position], provenance))
+    figure_of_positions(scene, vec![position], provenance)
 }
 
 /// Inertias, actions under the loads at rest and free accelerations at some states, to seven digits after the first of the largest of
 /// their kind.
-fn values(scene: &SpaceScene) -> Result<String, ValidationError> {
-    let claims = SpaceClaims::new(scene)?;
+fn values(claims: &SpaceClaims<'_>) -> Result<String, ValidationError> {
+    let scene = claims.scene();
     let machine = free_machine(scene)?;
     let actuators = scene.mechanism.actuators.iter();
     let names: Vec<&str> = actuators.map(|a| a.name.as_str()).collect();
@@ -154,7 +150,7 @@ fn values(scene: &SpaceScene) -> Result<String, ValidationError> {
     // What is zero but for rounding has no digits beside what an acceleration of one makes.
     let line = |values: &[f64], least: f64| {
         let largest = largest(values).max(least);
-        let all: Vec<String> = values.iter().map(|v| rounded(*v, largest)).collect();
+        let all: Vec<String> = values.iter().map(|v| rounded_to(*v, largest)).collect();
         all.join("  ")
     };
     // Writing to a string cannot fail.

@@ -7,8 +7,7 @@ use dwell_findings::Finding;
 use dwell_kinetostatics::space::{Axes, Model};
 use dwell_scene::SpaceScene;
 use dwell_study::{StudyError, model_with_loads};
-use dwell_verify::SubjectError;
-use dwell_verify::space::{SpaceState, check_branch_in_space, check_states_in_space};
+use dwell_verify::{ClaimedState, SubjectError, check_branch, check_states};
 
 /// Speeds and accelerations of the states, by state and actuator, in the unit of the coordinate: rad, or a fifth of the size.
 const SPEEDS: [[f64; 4]; STATES] = [
@@ -81,19 +80,18 @@ const BY_ENERGIES: usize = 4;
 
 /// The findings of states at these coordinates: at prescribed accelerations, and in free motion.
 pub(super) fn state_findings(
-    scene: &SpaceScene,
+    claims: &SpaceClaims<'_>,
     positions: &[Vec<f64>],
 ) -> Result<Vec<Finding>, ValidationError> {
-    let claims = SpaceClaims::new(scene)?;
-    let machine = free_machine(scene)?;
-    let mut states: Vec<SpaceState> = Vec::new();
+    let machine = free_machine(claims.scene())?;
+    let mut states: Vec<ClaimedState> = Vec::new();
     let mut refusals: Vec<SubjectError> = Vec::new();
     for (k, q) in positions.iter().enumerate() {
         let axes = [Axes::Ground, Axes::Joint][k % 2];
         let of = |rows: &[[f64; 4]; STATES]| in_units(claims.model(), &rows[k % STATES]);
         let (q_dot, q_ddot) = (of(&SPEEDS), of(&ACCELERATIONS));
         let t = 0.1 * k as f64;
-        let mut add = |state: Result<SpaceState, SubjectError>| match state {
+        let mut add = |state: Result<ClaimedState, SubjectError>| match state {
             Ok(state) => states.push(state),
             Err(error) => refusals.push(error),
         };
@@ -105,14 +103,14 @@ pub(super) fn state_findings(
         if let Some(free) = machine.and_then(|m| free_accelerations(m, t, [q, &q_dot])) {
             // Nothing acts but the loads: that is what its accelerations claim.
             let state = claims.state::<f64>(t, [q, &q_dot, &free], axes);
-            add(state.map(|state| SpaceState {
+            add(state.map(|state| ClaimedState {
                 tau: vec![0.0; q.len()],
                 ..state
             }));
         }
     }
-    let mut findings = check_states_in_space(&claims.case(), &states, BY_ENERGIES);
-    findings.push(check_branch_in_space(&claims.case(), &states));
+    let mut findings = check_states(&claims.assembled(), &states, BY_ENERGIES);
+    findings.push(check_branch(&claims.assembled(), &states));
     if let Some(refusal) = refusals.first() {
         for finding in &mut findings {
             (finding.pass, finding.worst_at) = (false, refusal.to_string());

@@ -11,7 +11,7 @@ use dwell_dynamics::{
 };
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::space::Model;
-use dwell_scene::{NamedStop, SpaceScene};
+use dwell_scene::NamedStop;
 use dwell_study::machines::MachineScene;
 use dwell_verify::FindingSpec;
 
@@ -45,7 +45,8 @@ const ENERGY: FindingSpec<'_> = FindingSpec {
 };
 
 /// The findings of the motion of a scene with end stops whose coordinates are all free; none where something drives them.
-pub(super) fn stopped_findings(scene: &SpaceScene) -> Result<Vec<Finding>, ValidationError> {
+pub(super) fn stopped_findings(claims: &SpaceClaims<'_>) -> Result<Vec<Finding>, ValidationError> {
+    let scene = claims.scene();
     let is_free = scene
         .motion
         .as_ref()
@@ -54,7 +55,6 @@ pub(super) fn stopped_findings(scene: &SpaceScene) -> Result<Vec<Finding>, Valid
         return Ok(Vec::new());
     }
     let machine = scene.machine(&[])?;
-    let claims = SpaceClaims::new(scene)?;
     let ([q, q_dot], duration) = start(scene, claims.model());
     let y = machine.initial_state(&q, &q_dot);
     let options = Options {
@@ -65,7 +65,7 @@ pub(super) fn stopped_findings(scene: &SpaceScene) -> Result<Vec<Finding>, Valid
     let solution = solve(&machine, machine.model(), &begin, duration, &options, &[]);
     let solution = solution.map_err(|error| scene.explain(machine.model(), &error))?;
     let motion = StoppedMotion {
-        claims: &claims,
+        claims,
         machine: &machine,
         stops: &scene.stops,
     };

@@ -2,15 +2,15 @@
 
 use crate::cases::reference::Reference;
 use crate::checked::free_motion_setup::FreeMotionSetup;
+use crate::spatial::all_reactions;
 use dwell_dynamics::{
     DynamicsError, Event, EventKind, Machine, OdeState, Options, TabulatedMachine, TabulationError,
     solve,
 };
 use dwell_findings::Table;
-use dwell_geometry::JointId;
 use dwell_geometry::space::CoordinateFunction;
 use dwell_kinetostatics::TableDomain;
-use dwell_kinetostatics::space::{Axes, Component, Model as SpaceModel};
+use dwell_kinetostatics::space::{Axes, Model as SpaceModel};
 use dwell_scene::{FreeMotionSpec, MotionDuration, PlaneScene, SpaceScene};
 use dwell_study::explain::NamedScene;
 use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
@@ -257,19 +257,9 @@ impl StudiedScene for SpaceScene {
     }
 
     fn compared_reactions(&self, model: &Self::Model) -> Result<Vec<Self::Reaction>, StudyError> {
-        // All components in the axes of the ground, including those that a joint cannot transmit, which are zero.
-        let joints = 0..self.mechanism.joints.len();
-        let of_joint = |j: usize| {
-            (0..6).map(move |k| Self::Reaction {
-                joint: JointId(j),
-                component: match k {
-                    0..3 => Component::Force(Axes::Ground, k),
-                    _ => Component::Moment(Axes::Ground, k - 3),
-                },
-            })
-        };
+        // All in the axes of the ground, those that a joint cannot transmit among them: they are zero.
         let mut scene = self.clone();
-        scene.requests.reactions = joints.flat_map(of_joint).collect();
+        scene.requests.reactions = all_reactions(self, &[Axes::Ground]);
         let [determined, _] = scene.sorted_reactions(model)?;
         Ok(determined)
     }

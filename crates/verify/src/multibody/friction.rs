@@ -1,25 +1,20 @@
-//! Coulomb friction and the separating forces of teeth: each depends on reactions, which depend on all of them.
+//! Coulomb friction and the separating forces of teeth as contacts: each depends on reactions, which depend on all of them.
 //!
 //! ```text
-//! F_j = −µ g(R_j) tanh(v/v₀),    R = R⁰ + Σ F_k R^k
+//! F = −µ g(R) tanh(v/v₀)
 //! g = r √(X² + Y²)  in a pin,    |N/2 + M/l| + |N/2 − M/l|  in a guide of length l
-//! S_j = tan α |T_j|  of teeth with the pressure angle α and the tooth force T
+//! S = tan α |T|  of teeth with the pressure angle α and the tooth force T
 //! ```
 
 use super::equations::MultibodyOde;
 use super::state::MultibodyState;
 use super::{MultibodyError, MultibodySystem, Result};
 use crate::body_motion::slide_axis;
-use crate::dense::add_scaled;
+use crate::friction::{Bearings, Contact, bearings, coefficient_at, contact_forces};
 use crate::loads::reaction_row;
-use crate::lu::Lu;
+use dwell_geometry::space::{Vec3, Wrench, vec3};
 use dwell_geometry::{Component, JointKind};
 use dwell_kinetostatics::{Friction, FrictionContact, Load, LoadKind, Magnitude, PressureAngle};
-use faer::Mat;
-
-const MAX_NEWTON_STEPS: usize = 100;
-/// Newton's change of a friction, relative to the largest, that is none.
-const CONVERGED_CHANGE: f64 = 1e-15;
 
 /// Whether a load answers to the reactions of its joint.
 pub(super) fn depends_on_reactions(magnitude: &Magnitude) -> bool {
@@ -62,19 +57,22 @@ impl MultibodySystem {
         (0..self.loads.len()).filter(depends).collect()
     }
 
-    /// µ sign(v) or µ tanh(v/v₀), or −tan α.
+    /// φ: µ sign(v) or µ tanh(v/v₀), in a pin times its radius; or −tan α.
     fn factor(&self, load: &Load, at: &MultibodyState) -> Option<f64> {
         if let Magnitude::Separating(teeth) = &load.magnitude {
             return Some(-teeth.angle.tan());
         }
-        let Magnitude::Friction(friction) = &load.magnitude else {
-            return None;
-        };
-        let [_, velocity] = match load.kind {
-            LoadKind::SlideForce(guide) => {
-                at.motion().travel(guide.bodies, guide.points, guide.axis)?
-            }
-            LoadKind::Torque { bodies } => at.motion().angle(bodies)?,
+        let friction = load.friction()?;
+        let (lever, [_, speed]) = match load.kind {
+            LoadKind::SlideForce(guide) => (
+                1.0,
+                at.motion().travel(guide.bodies, guide.points, guide.axis)?,
+            ),
+            LoadKind::Torque { bodies } => match friction.contact {
+                FrictionContact::Pin { radius } => (radius, at.motion().angle(bodies)?),
+                // Of a guide, or of a joint in space.
+                FrictionContact::Guide { .. } | FrictionContact::Bearing { .. } => return None,
+            },
             LoadKind::Gravity { .. }
             | LoadKind::Force { .. }
             | LoadKind::Spring { .. }
@@ -85,54 +83,32 @@ impl MultibodySystem {
             | LoadKind::SlideDamper(_)
             | LoadKind::SeparatingForce(_) => return None,
         };
-        let sign = match friction.regularization_speed {
-            Some(speed) => (velocity / speed).tanh(),
-            None if velocity == 0.0 => 0.0,
-            None => velocity.signum(),
-        };
-        Some(friction.coefficient * sign)
+        Some(coefficient_at(&friction, speed) * lever)
     }
 
-    /// g or |T|, with its derivative by every row that it depends on.
-    fn contact_force(&self, load: &Load, reactions: &[f64]) -> (f64, Vec<(usize, f64)>) {
-        let row_of = |joint, component| {
-            let row = reaction_row(&self.mechanism, joint, component)?;
-            Some((row, reactions[row]))
+    /// The forces in the bearings of a load's joint under some reactions, in axes of the joint.
+    fn bearings(&self, load: &Load, reactions: &[f64]) -> Bearings {
+        let of = |joint, component| {
+            let row = reaction_row(&self.mechanism, joint, component);
+            row.map(|row| reactions[row])
         };
-        let magnitude = |(row, force): (usize, f64)| (force.abs(), vec![(row, force.signum())]);
-        let none = (f64::NAN, vec![]);
         if let Magnitude::Separating(teeth) = &load.magnitude {
-            return row_of(teeth.joint, Component::Tooth).map_or(none, magnitude);
+            let force = of(teeth.joint, Component::Tooth).unwrap_or(f64::NAN);
+            return [vec3(force, 0.0, 0.0), Vec3::ZERO];
         }
-        let Magnitude::Friction(friction) = &load.magnitude else {
-            return none;
+        let Some(friction) = load.friction() else {
+            return Bearings::default();
         };
-        let row = |component| row_of(friction.joint, component);
-        let size = match friction.contact {
-            FrictionContact::Pin { radius: size } | FrictionContact::Guide { length: size } => size,
-            // Of a joint in space.
-            FrictionContact::Bearing { .. } => return none,
-        };
-        if let (Some((i, x)), Some((j, y))) = (row(Component::X), row(Component::Y)) {
-            let force = x.hypot(y);
-            if force == 0.0 {
-                return (0.0, vec![]);
-            }
-            let slope = size / force;
-            return (size * force, vec![(i, slope * x), (j, slope * y)]);
+        let part = |component| of(friction.joint, component);
+        let mut reaction = Wrench::default();
+        if let (Some(x), Some(y)) = (part(Component::X), part(Component::Y)) {
+            reaction.force = vec3(x, y, 0.0);
+            return bearings(&friction, Vec3::AXES[2], &reaction);
         }
-        let Some((i, n)) = row(Component::Normal) else {
-            return (0.0, vec![]);
-        };
-        match row(Component::Moment) {
-            Some((j, m)) if size > 0.0 => {
-                let [near, far] = [1.0, -1.0].map(|side| 0.5 * n + side * m / size);
-                let (s, t) = (near.signum(), far.signum());
-                let gradient = vec![(i, 0.5 * (s + t)), (j, (s - t) / size)];
-                (near.abs() + far.abs(), gradient)
-            }
-            _ => magnitude((i, n)),
-        }
+        // The axis of a slide is x there.
+        reaction.force.y = part(Component::Normal).unwrap_or(0.0);
+        reaction.moment.z = part(Component::Moment).unwrap_or(0.0);
+        bearings(&friction, Vec3::AXES[0], &reaction)
     }
 }
 
@@ -146,45 +122,17 @@ impl MultibodyOde<'_> {
         unit_reactions: &[Vec<f64>],
         at: &MultibodyState,
     ) -> Result<Vec<f64>> {
-        let n = frictions.len();
-        if n == 0 {
-            return Ok(vec![]);
-        }
-        let self_locking = MultibodyError::SelfLocking(at.t);
-        let loads = || frictions.iter().map(|&load| &self.system.loads[load]);
-        let factors: Option<Vec<f64>> = loads().map(|load| self.system.factor(load, at)).collect();
-        let factors = factors.ok_or(MultibodyError::NotFinite(at.t))?;
-        let mut force = vec![0.0_f64; n];
-        for _ in 0..MAX_NEWTON_STEPS {
-            let mut reactions = frictionless.to_vec();
-            for (force, unit) in force.iter().zip(unit_reactions) {
-                add_scaled(&mut reactions, *force, unit);
-            }
-            let mut matrix = Mat::<f64>::identity(n, n);
-            let mut step = Mat::zeros(n, 1);
-            for (j, (load, factor)) in loads().zip(&factors).enumerate() {
-                let (contact_force, gradient) = self.system.contact_force(load, &reactions);
-                step[(j, 0)] = -(force[j] + factor * contact_force);
-                for (k, unit) in unit_reactions.iter().enumerate() {
-                    let sensitivity: f64 = gradient.iter().map(|&(row, s)| s * unit[row]).sum();
-                    matrix[(j, k)] += factor * sensitivity;
-                }
-            }
-            let lu = Lu::new(matrix).map_err(|_| self_locking)?;
-            lu.solve(&mut step);
-            let (mut change, mut largest) = (0.0_f64, 0.0_f64);
-            for (j, force) in force.iter_mut().enumerate() {
-                *force += step[(j, 0)];
-                if !force.is_finite() {
-                    return Err(self_locking);
-                }
-                change = change.max(step[(j, 0)].abs());
-                largest = largest.max(force.abs());
-            }
-            if change <= CONVERGED_CHANGE * largest {
-                return Ok(force);
-            }
-        }
-        Err(self_locking)
+        let contact = |&load: &usize| {
+            let load = &self.system.loads[load];
+            let units = unit_reactions.iter();
+            Some(Contact {
+                factor: self.system.factor(load, at)?,
+                own: self.system.bearings(load, frictionless),
+                units: units.map(|unit| self.system.bearings(load, unit)).collect(),
+            })
+        };
+        let contacts: Option<Vec<Contact>> = frictions.iter().map(contact).collect();
+        let contacts = contacts.ok_or(MultibodyError::NotFinite(at.t))?;
+        contact_forces(&contacts).ok_or(MultibodyError::SelfLocking(at.t))
     }
 }

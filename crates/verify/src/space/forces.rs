@@ -7,7 +7,7 @@ use dwell_geometry::{BodyId, JointId};
 use dwell_kinetostatics::space::{Direction, LoadKind, Mass};
 
 /// The forces of loads of some magnitudes on bodies.
-pub(super) fn load_wrenches(
+pub fn load_wrenches(
     (mechanism, masses, placements): (&Mechanism, &[Mass], &[Placement]),
     motions: &[BodyMotion],
     loads: &[(LoadKind, f64)],

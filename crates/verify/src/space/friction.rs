@@ -1,100 +1,68 @@
-//! Dry friction in the joints of a claimed state: its forces from reactions of the dense equations, and from speeds of theirs.
-//!
-//! ```text
-//! R = R⁰ + Σ F_k R^k,    F_j = −φ_j g(R_j)                                                                    (1)
-//! N = |f₁| + |f₂|,  f₁ + f₂ = F across u,  ½ L u × (f₁ − f₂) = M across u;  without L:  N = |F across u|       (2)
-//! ```
-//!
-//! with R⁰ the reactions without friction and R^k what a unit of friction k adds: the dense equations are linear in the loads.
+//! Dry friction in the joints of a state: its forces from reactions of the dense equations, and from speeds of theirs.
 
 use super::DensePose;
-use super::state::SpaceCase;
 use crate::error::Result;
+use crate::friction::{Contact, bearings, coefficient_at, contact_forces};
 use dwell_geometry::space::{BodyMotion, Joint, JointKind, Placement, Vec3, Wrench};
-use dwell_kinetostatics::space::LoadKind;
+use dwell_kinetostatics::space::{LoadKind, Mass};
 use dwell_kinetostatics::{Friction, FrictionContact};
 
-/// Substitutions of (1) in itself at most, and their change that is none.
-const MAX_ROUNDS: usize = 400;
-const NO_CHANGE: f64 = 1e-16;
-
-/// The loads with the forces of those that are friction, which are given for them by load: in a state at these placements, with speeds and
-/// accelerations of the actuators.
-///
-/// # Errors
-/// [`DenseError`](crate::DenseError) where the equations have no singular values.
-pub fn with_friction_in_space(
-    case: &SpaceCase<'_>,
-    placements: &[Placement],
-    rates: [&[f64]; 2],
-    (loads, frictions): (&[(LoadKind, f64)], &[Option<Friction>]),
-) -> Result<Vec<(LoadKind, f64)>> {
-    let pose = DensePose::new(case.mechanism, case.masses, placements)?;
-    let rest = vec![0.0; rates[0].len()];
-    let own = pose.solve(rates, loads);
-    let indices = (0..loads.len()).filter(|&load| frictions[load].is_some());
-    let indices: Vec<usize> = indices.collect();
-    let mass_free = vec![dwell_kinetostatics::space::Mass::default(); case.masses.len()];
-    let unloaded = DensePose::new(case.mechanism, &mass_free, placements)?;
-    let units: Vec<Vec<Wrench>> = indices
-        .iter()
-        .map(|&load| {
-            let unit = [(loads[load].0, 1.0)];
+impl DensePose<'_> {
+    /// The loads with the forces of those that are friction, which are given for them by load: at speeds and accelerations of the actuators. Not
+    /// numbers where friction locks itself.
+    ///
+    /// # Errors
+    /// [`DenseError`](crate::DenseError) where the equations have no singular values.
+    pub fn with_friction(
+        &self,
+        rates: [&[f64]; 2],
+        (loads, frictions): (&[(LoadKind, f64)], &[Option<Friction>]),
+    ) -> Result<Vec<(LoadKind, f64)>> {
+        let rest = vec![0.0; rates[0].len()];
+        let own = self.solve(rates, loads);
+        let given = frictions.iter().enumerate();
+        let given = given.filter_map(|(load, friction)| Some((load, friction.as_ref()?)));
+        let given: Vec<(usize, &Friction)> = given.collect();
+        let mass_free = vec![Mass::default(); self.masses.len()];
+        let unloaded = DensePose::new(self.mechanism, &mass_free, self.placements)?;
+        let units = given.iter().map(|(load, _)| {
+            let unit = [(loads[*load].0, 1.0)];
             unloaded.solve([&rest, &rest], &unit).reactions
-        })
-        .collect();
-    let mut forces = vec![0.0; indices.len()];
-    for _ in 0..MAX_ROUNDS {
-        let mut change = 0.0_f64;
-        for k in 0..indices.len() {
-            let Some(friction) = &frictions[indices[k]] else {
-                continue;
+        });
+        let units: Vec<Vec<Wrench>> = units.collect();
+        let contacts = given.iter().map(|(load, friction)| {
+            let law = self.law(friction, &own.motions);
+            let of = |reactions: &Vec<Wrench>| {
+                bearings(friction, law.axis(), &reactions[friction.joint.0])
             };
-            let joint = &case.mechanism.joints[friction.joint.0];
-            let mut reaction = own.reactions[friction.joint.0];
-            for (force, unit) in forces.iter().zip(&units) {
-                reaction.force += unit[friction.joint.0].force.scaled(*force);
-                reaction.moment += unit[friction.joint.0].moment.scaled(*force);
+            Contact {
+                factor: law.factor(loads[*load].0),
+                own: of(&own.reactions),
+                units: units.iter().map(of).collect(),
             }
-            let law = Law {
-                joint,
-                friction,
-                placements,
-                motions: &own.motions,
-            };
-            let force = -law.factor(loads[indices[k]].0) * law.press(&reaction);
-            change = change.max((force - forces[k]).abs() / force.abs().max(f64::MIN_POSITIVE));
-            forces[k] = force;
+        });
+        let forces = contact_forces(&contacts.collect::<Vec<_>>());
+        let forces = forces.unwrap_or_else(|| vec![f64::NAN; given.len()]);
+        let mut all = loads.to_vec();
+        for ((load, _), force) in given.into_iter().zip(forces) {
+            all[load].1 = force;
         }
-        if change <= NO_CHANGE {
-            break;
-        }
+        Ok(all)
     }
-    let mut all = loads.to_vec();
-    for (load, force) in indices.into_iter().zip(forces) {
-        all[load].1 = force;
-    }
-    Ok(all)
-}
 
-/// The rates of the travel along the axis of a friction's joint and of the angle about it, in m/s and rad/s, at speeds of the actuators.
-///
-/// # Errors
-/// As of [`with_friction_in_space`].
-pub fn sliding_in_space(
-    case: &SpaceCase<'_>,
-    placements: &[Placement],
-    q_dot: &[f64],
-    friction: &Friction,
-) -> Result<[f64; 2]> {
-    let pose = DensePose::new(case.mechanism, case.masses, placements)?;
-    let law = Law {
-        joint: &case.mechanism.joints[friction.joint.0],
-        friction,
-        placements,
-        motions: &pose.velocities(q_dot),
-    };
-    Ok(law.speeds())
+    /// The rates of the travel along the axis of a friction's joint and of the angle about it, in m/s and rad/s, at speeds of the actuators.
+    pub fn sliding(&self, q_dot: &[f64], friction: &Friction) -> [f64; 2] {
+        self.law(friction, &self.velocities(q_dot)).speeds()
+    }
+
+    fn law<'a>(&'a self, friction: &'a Friction, motions: &'a [BodyMotion]) -> Law<'a> {
+        Law {
+            joint: &self.mechanism.joints[friction.joint.0],
+            friction,
+            placements: self.placements,
+            motions,
+        }
+    }
 }
 
 /// The law of the friction of a joint in a state.
@@ -130,7 +98,7 @@ impl Law<'_> {
         [u.dot(v_b - v_a), u.dot(w_b - w_a)]
     }
 
-    /// φ g/N: the factor of the bearing force, against the velocity along the load.
+    /// φ: the factor of the bearing forces, against the velocity along the load.
     fn factor(&self, kind: LoadKind) -> f64 {
         let [travel, turn] = self.speeds();
         let radius = match self.friction.contact {
@@ -138,12 +106,7 @@ impl Law<'_> {
             FrictionContact::Guide { .. } | FrictionContact::Pin { .. } => 1.0,
         };
         let is_couple = matches!(kind, LoadKind::JointTorque(_));
-        let mu = self.friction.coefficient;
-        let smoothed = |speed: f64| match self.friction.regularization_speed {
-            Some(slow) => (speed / slow).tanh(),
-            None if speed == 0.0 => 0.0,
-            None => speed.signum(),
-        };
+        let coefficient = |speed| coefficient_at(self.friction, speed);
         if self.joint.kind == JointKind::Cylindrical {
             let surface = [travel, radius * turn];
             let speed = surface[0].hypot(surface[1]);
@@ -153,29 +116,11 @@ impl Law<'_> {
                 surface[usize::from(is_couple)] / speed
             };
             let lever = if is_couple { radius } else { 1.0 };
-            return mu * smoothed(speed) * part * lever;
+            return coefficient(speed) * part * lever;
         }
         match is_couple {
-            true => mu * smoothed(turn) * radius,
-            false => mu * smoothed(travel),
+            true => coefficient(turn) * radius,
+            false => coefficient(travel),
         }
-    }
-
-    /// N of (2).
-    fn press(&self, reaction: &Wrench) -> f64 {
-        let u = self.axis();
-        let across = |v: Vec3| v - u.scaled(u.dot(v));
-        let force = across(reaction.force);
-        let distance = match self.friction.contact {
-            FrictionContact::Bearing { distance, .. } => distance,
-            FrictionContact::Guide { length } => length,
-            FrictionContact::Pin { .. } => 0.0,
-        };
-        if distance == 0.0 {
-            return force.norm();
-        }
-        let difference = across(reaction.moment).cross(u).scaled(2.0 / distance);
-        let bearings = [1.0, -1.0].map(|side| (force + difference.scaled(side)).scaled(0.5));
-        bearings[0].norm() + bearings[1].norm()
     }
 }

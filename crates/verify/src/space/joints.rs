@@ -71,6 +71,6 @@ pub fn closure_error(joint: &Joint, placements: &[Placement]) -> f64 {
 /// relative to the carrier by the screw that leads from one pose to the other (its angle below half a revolution). None of other joints.
 pub fn mesh_error(joint: &Joint, poses: [&[Placement]; 2]) -> Option<f64> {
     let mesh = mesh(joint)?;
-    let [from, to] = poses.map(super::state::poses);
+    let [from, to] = poses.map(crate::pose::Pose::all_in_space);
     Some(mesh.travel(&from, &to))
 }

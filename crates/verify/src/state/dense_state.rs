@@ -1,6 +1,6 @@
 //! One state closed densely, with all that it is compared with.
 
-use super::Claim;
+use super::ClaimedState;
 use crate::checks::MAX_DIFFERENCE_STEP;
 use crate::comparison::{Comparison, ComparisonSet};
 use crate::constraint_closing::Configuration;
@@ -18,9 +18,7 @@ const STRESS: f64 = 1e-7;
 /// A state with its dense solution.
 pub(super) struct DenseState<'a> {
     pub(super) dense: &'a DenseMechanism,
-    pub(super) state: &'a Claim,
-    /// Which of all it is.
-    pub(super) index: usize,
+    pub(super) state: &'a ClaimedState,
     pub(super) configuration: Configuration,
     /// How far closing moved the claimed poses, relative to the largest coordinate in them.
     pub(super) closing_correction: f64,
@@ -61,7 +59,7 @@ pub(super) struct DenseSolution {
 impl DenseSolution {
     fn new(
         dense: &DenseMechanism,
-        state: &Claim,
+        state: &ClaimedState,
         at: &Configuration,
         unit_velocities: &[Vec<f64>],
         loads: &[BodyWrench],
@@ -92,10 +90,7 @@ impl DenseSolution {
 
 impl<'a> DenseState<'a> {
     /// A state that has passed [`check_counts`].
-    pub(super) fn new(
-        dense: &'a DenseMechanism,
-        (index, state): (usize, &'a Claim),
-    ) -> Result<Self> {
+    pub(super) fn new(dense: &'a DenseMechanism, state: &'a ClaimedState) -> Result<Self> {
         let poses = &state.poses;
         let (configuration, closing_correction) = dense.close_at(poses, &state.q)?;
         dense.check_redundant_rows(&configuration)?;
@@ -118,7 +113,6 @@ impl<'a> DenseState<'a> {
                 &state.tau,
             ),
             state,
-            index,
             condition_number: dense.condition_number(&configuration.poses),
             stresses: dense.self_stresses(&configuration.poses),
             configuration,
@@ -412,7 +406,7 @@ impl<'a> DenseState<'a> {
 }
 
 /// Everything must be there, and as many as there should be.
-pub(super) fn check_counts(dense: &DenseMechanism, state: &Claim) -> Result<(), String> {
+pub(super) fn check_counts(dense: &DenseMechanism, state: &ClaimedState) -> Result<(), String> {
     let (bodies, actuators) = (dense.bodies.len(), dense.actuators.len());
     let counts = [
         ("coordinates", state.q.len(), actuators),

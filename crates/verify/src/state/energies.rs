@@ -16,15 +16,13 @@
 //! without loads, (3) is τ = m q̈ + ½ m′ q̇² and R = a q̈ + b q̇².
 
 use super::dense_state::DenseState;
-use super::{Claim, ClaimedState, StateChecker, claims};
+use super::{AssembledMechanism, ClaimedState, StateChecker};
 use crate::checks::MAX_DIFFERENCE_STEP;
 use crate::comparison::{ComparisonSet, FindingSpec};
-use crate::dense::{DenseMechanism, add_scaled};
+use crate::dense::add_scaled;
 use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives, slope};
-use crate::inertias::Inertias;
 use crate::wrenches::BodyWrench;
 use dwell_findings::{Check, Finding};
-use dwell_geometry::Mechanism;
 use rayon::prelude::*;
 
 const MASS_MATRIX: FindingSpec<'_> = FindingSpec {
@@ -64,46 +62,33 @@ const ENERGY_RATE: FindingSpec<'_> = FindingSpec {
     ..LAGRANGE
 };
 
-/// Checks claimed states by kinetic energy and virtual work alone, as [`check_states`] does by the
-/// equations of motion. `matrices` are by state the claimed generalised inertias M_ij, row by row.
-/// Each reaction costs some twenty closings a state.
+/// Checks claimed states by kinetic energy and virtual work alone, as [`check_states`] does by the equations of motion. Each reaction costs some twenty closings a state.
 ///
 /// The findings are state-inertia, state-kinetic, state-lagrange and state-released, in this order. Reactions
 /// that are not determined are left out, and state-released where none is. If the mechanism is not determinate there is one failed finding.
 ///
 /// [`check_states`]: super::check_states
-pub fn check_energies<'m>(
-    mechanism: &Mechanism,
-    inertias: impl Into<Inertias<'m>>,
-    assembly_poses: &[[f64; 3]],
-    states: &[ClaimedState],
-    matrices: &[Vec<f64>],
-) -> Vec<Finding> {
-    match DenseMechanism::with_meshed_gears(mechanism, inertias, assembly_poses) {
-        Ok(dense) => StateChecker::new(&dense, &claims(states)).by_energies(matrices),
+pub fn check_energies(assembled: &AssembledMechanism<'_>, states: &[ClaimedState]) -> Vec<Finding> {
+    match assembled.dense() {
+        Ok(dense) => StateChecker::new(&dense, states).by_energies(),
         Err(error) => vec![super::not_dense(&MASS_MATRIX, &error)],
     }
 }
 
 impl StateChecker<'_> {
-    /// The findings on states with their generalised inertias, row by row.
-    pub(crate) fn by_energies(&self, matrices: &[Vec<f64>]) -> Vec<Finding> {
-        let mut findings = self.energies(matrices).to_vec();
+    pub(super) fn by_energies(&self) -> Vec<Finding> {
+        let mut findings = self.energies().to_vec();
         findings.extend(self.lagrange());
         findings
     }
 
     /// (1) and (2).
-    fn energies(&self, claimed: &[Vec<f64>]) -> [Finding; 2] {
+    fn energies(&self) -> [Finding; 2] {
         let mut matrix = ComparisonSet::with_individual_scales();
         let mut kinetic = ComparisonSet::default();
         for m in &self.dense_states {
-            let claimed = claimed.get(m.index);
             let n = m.state.q.len();
-            let at = |i: usize, j: usize| {
-                let value = claimed.and_then(|claimed| claimed.get(i * n + j));
-                value.copied().unwrap_or(f64::NAN)
-            };
+            let at = |i: usize, j: usize| m.inertia(i * n + j);
             let dense = m.mass_matrix();
             let mut half = 0.0;
             for i in 0..n {
@@ -128,12 +113,12 @@ impl StateChecker<'_> {
 
     /// With D₁ the rate of E along the motion, and D₂ that of E at the speeds of the state throughout: Σ τ q̇ + P = D₁, and q̇ᵀ M q̈ = D₁ − D₂. Of claims
     /// with the power P of the loads.
-    pub(crate) fn energy_rates(&self, matrices: &[Vec<f64>]) -> Finding {
+    pub(super) fn energy_rates(&self) -> Finding {
         let mut comparisons = ComparisonSet::with_individual_scales();
         let states = self.dense_states.par_iter();
         let rates: Vec<_> = states.map(DenseState::energy_rates).collect();
         for (m, [moving, steady]) in self.dense_states.iter().zip(rates) {
-            let Claim {
+            let ClaimedState {
                 q_dot, q_ddot, tau, ..
             } = m.state;
             let n = q_dot.len();
@@ -144,11 +129,7 @@ impl StateChecker<'_> {
                 let numbers = [supplied + of_loads - moving.value, scale, moving.error];
                 m.compare(&mut comparisons, numbers, "W", "power");
             }
-            let matrix = matrices.get(m.index).map_or(&[][..], Vec::as_slice);
-            let product = (0..n * n).map(|k| {
-                let inertia = matrix.get(k).copied().unwrap_or(f64::NAN);
-                q_dot[k / n] * inertia * q_ddot[k % n]
-            });
+            let product = (0..n * n).map(|k| q_dot[k / n] * m.inertia(k) * q_ddot[k % n]);
             let difference = product.sum::<f64>() - (moving.value - steady.value);
             let numbers = [difference, scale, moving.error + steady.error];
             m.compare(&mut comparisons, numbers, "W", "inertias");
@@ -219,6 +200,11 @@ impl DenseState<'_> {
         let actuators = (dense.actuator_row()..).zip(&state.tau);
         actuators.for_each(|(row, tau)| all[row] = Some(*tau));
         all
+    }
+
+    /// One of the claimed generalised inertias; not a number where none is claimed.
+    fn inertia(&self, k: usize) -> f64 {
+        self.state.inertias.get(k).copied().unwrap_or(f64::NAN)
     }
 
     /// (1) at the state.

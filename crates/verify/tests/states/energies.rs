@@ -20,15 +20,17 @@ fn inertias(setup: &Setup, state: &ClaimedState) -> Vec<f64> {
     (0..n * n).map(|k| columns[k % n][k / n]).collect()
 }
 
+fn with_inertias(setup: &Setup, states: &[ClaimedState]) -> Vec<ClaimedState> {
+    let with_own = |state: &ClaimedState| ClaimedState {
+        inertias: inertias(setup, state),
+        ..state.clone()
+    };
+    states.iter().map(with_own).collect()
+}
+
 fn findings_for(setup: &Setup, states: &[ClaimedState]) -> Vec<Finding> {
-    let all: Vec<_> = states.iter().map(|s| inertias(setup, s)).collect();
-    check_energies(
-        &setup.mechanism,
-        &setup.masses,
-        &setup.assembly_poses,
-        states,
-        &all,
-    )
+    let states = with_inertias(setup, states);
+    setup.check(|assembled| check_energies(assembled, &states))
 }
 
 #[test]
@@ -131,19 +133,13 @@ fn every_term_counts() {
 fn every_inertia_and_velocity_counts() {
     for setup in all() {
         let states = setup.states();
-        let sound: Vec<_> = states.iter().map(|s| inertias(&setup, s)).collect();
-        for k in 0..sound[1].len() {
+        let sound = with_inertias(&setup, &states);
+        for k in 0..sound[1].inertias.len() {
             let mut wrong = sound.clone();
-            let n = states[1].q.len();
-            let size = (sound[1][k / n * (n + 1)] * sound[1][k % n * (n + 1)]).sqrt();
-            wrong[1][k] -= 1e-9 * size;
-            let findings = check_energies(
-                &setup.mechanism,
-                &setup.masses,
-                &setup.assembly_poses,
-                &states,
-                &wrong,
-            );
+            let (n, own) = (states[1].q.len(), &sound[1].inertias);
+            let size = (own[k / n * (n + 1)] * own[k % n * (n + 1)]).sqrt();
+            wrong[1].inertias[k] -= 1e-9 * size;
+            let findings = setup.check(|assembled| check_energies(assembled, &wrong));
             assert!(
                 failing(&findings).contains(&"state-mass-matrix"),
                 "{}\n{}",
@@ -153,7 +149,7 @@ fn every_inertia_and_velocity_counts() {
         }
         let mut wrong = states.clone();
         for velocity in &mut wrong[1].velocities {
-            *velocity = velocity.map(|v| v * (1.0 + 1e-6));
+            *velocity = velocity.in_plane().map(|v| v * (1.0 + 1e-6)).into();
         }
         let findings = findings_for(&setup, &wrong);
         assert_eq!(
@@ -168,25 +164,14 @@ fn every_inertia_and_velocity_counts() {
 
 #[test]
 fn what_is_not_claimed_fails() {
-    let setup = all().remove(0);
+    let mut setup = all().remove(0);
     let states = setup.states();
-    let findings = check_energies(
-        &setup.mechanism,
-        &setup.masses,
-        &setup.assembly_poses,
-        &states,
-        &[],
-    );
+    let findings = setup.check(|assembled| check_energies(assembled, &states));
     assert_eq!(
         failing(&findings),
         ["state-mass-matrix", "state-kinetic-energy"]
     );
-    let short = &setup.masses[1..];
-    assert!(!all_pass(&check_energies(
-        &setup.mechanism,
-        short,
-        &setup.assembly_poses,
-        &states,
-        &[]
-    )));
+    setup.masses.remove(0);
+    let findings = setup.check(|assembled| check_energies(assembled, &states));
+    assert!(!all_pass(&findings));
 }

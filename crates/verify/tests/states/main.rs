@@ -17,7 +17,7 @@ use dwell_findings::{Finding, all_pass};
 use dwell_geometry::space::vec3;
 use dwell_geometry::{BodyId, JointKind, vec2};
 use dwell_verify::{
-    Case, CheckedMechanism, ClaimedState, Range, check_states, rank, spread, verify_all,
+    Case, CheckedMechanism, ClaimedState, Pose, Range, check_states, rank, spread, verify_all,
 };
 use mechanisms::all;
 use setup::Setup;
@@ -37,12 +37,7 @@ fn describe(findings: &[Finding]) -> String {
 }
 
 fn findings_for(setup: &Setup, states: &[ClaimedState]) -> Vec<Finding> {
-    check_states(
-        &setup.mechanism,
-        &setup.masses,
-        &setup.assembly_poses,
-        states,
-    )
+    setup.check(|assembled| check_states(assembled, states, 0))
 }
 
 #[test]
@@ -134,11 +129,15 @@ fn every_number_counts() {
                 for field in 0..3 {
                     let mut wrong = states.clone();
                     let s = &mut wrong[1];
-                    let values = [&mut s.poses, &mut s.velocities, &mut s.accelerations];
-                    let Some(values) = values.into_iter().nth(field) else {
-                        continue;
-                    };
-                    values[body][c] += 1e-6;
+                    let mut change = [0.0; 3];
+                    change[c] = 1e-6;
+                    let moved =
+                        |[x, y, angle]: [f64; 3]| [x + change[0], y + change[1], angle + change[2]];
+                    match field {
+                        0 => s.poses[body] = moved(s.poses[body].in_plane()).into(),
+                        1 => s.velocities[body] = moved(s.velocities[body].in_plane()).into(),
+                        _ => s.accelerations[body] = moved(s.accelerations[body].in_plane()).into(),
+                    }
                     let findings = findings_for(&setup, &wrong);
                     assert!(!all_pass(&findings), "{}: {body} {c} {field}", setup.name);
                 }
@@ -199,7 +198,7 @@ fn broken_states_are_refused() {
     );
     let message = failure_message(&|s| s.load_wrenches[0].body = BodyId(40));
     assert!(message.ends_with("a load acts on body 40, but there are 5 bodies"));
-    failure_message(&|s| s.poses[1][0] = f64::NAN);
+    failure_message(&|s| s.poses[1].position.x = f64::NAN);
     failure_message(&|s| s.velocities.clear());
     assert!(findings_for(setup, &[]).iter().all(|f| !f.pass));
 }
@@ -261,7 +260,8 @@ fn val_reduced_checks_with_every_joint() {
 fn val_all_are_determinate_and_of_full_rank() {
     for setup in all() {
         let state = &setup.states()[0];
-        let ranks = rank(&setup.mechanism, &state.poses).unwrap();
+        let frames: Vec<[f64; 3]> = state.poses.iter().map(Pose::in_plane).collect();
+        let ranks = rank(&setup.mechanism, &frames).unwrap();
         let actuators = setup.mechanism.actuators.len();
         assert_eq!(
             ranks.with_actuators.degrees_of_freedom(),

@@ -6,7 +6,7 @@ use dwell_geometry::constraint_rows::ConstraintRows;
 use dwell_geometry::space::vec3;
 use dwell_geometry::{BodyId, Mechanism, Vec2};
 use dwell_kinetostatics::{LoadKind, Mass};
-use dwell_verify::{ClaimedState, load_wrenches};
+use dwell_verify::{ClaimedState, Pose, Twist, load_wrenches};
 
 /// The state at the coordinates, closed from `start`, with loads of given magnitudes.
 // Long: the equations of a state in one piece, as in a textbook.
@@ -81,16 +81,17 @@ pub(crate) fn state(
     let mut reactions = gauss(transposed, &force, n);
     let tau = reactions.split_off(actuator_row);
     ClaimedState {
-        t: q[0],
+        name: format!("q = {q:?}"),
         q,
         q_dot,
         q_ddot,
-        accelerations: by_body(&x_ddot),
-        poses: bodies,
-        velocities: velocity,
+        accelerations: Twist::all_in_plane(&by_body(&x_ddot)),
+        poses: Pose::all_in_plane(&bodies),
+        velocities: Twist::all_in_plane(&velocity),
         reactions,
         tau,
         load_wrenches: wrenches,
+        ..ClaimedState::default()
     }
 }
 

@@ -3,7 +3,10 @@
 use super::plain;
 use dwell_geometry::{ActuatorKind, BodyId, Coordinate, Mechanism, Vec2};
 use dwell_kinetostatics::{LoadKind, Mass};
-use dwell_verify::{ClaimedState, Coefficients, InverseDynamics, Pose, Subject, SubjectError};
+use dwell_verify::{
+    AssembledMechanism, CheckedMechanism, ClaimedState, Coefficients, Finding, InverseDynamics,
+    Pose, Subject, SubjectError,
+};
 
 /// A mechanism, where it starts, what loads it, and how it is moved.
 pub(crate) struct Setup {
@@ -17,6 +20,18 @@ pub(crate) struct Setup {
 }
 
 impl Setup {
+    /// What a check of its assembled mechanism finds.
+    pub(crate) fn check(
+        &self,
+        check: impl Fn(&AssembledMechanism<'_>) -> Vec<Finding>,
+    ) -> Vec<Finding> {
+        check(&AssembledMechanism {
+            mechanism: CheckedMechanism::Plane(&self.mechanism, (&self.masses).into()),
+            q: &[],
+            poses: &Pose::all_in_plane(&self.assembly_poses),
+        })
+    }
+
     pub(crate) fn states(&self) -> Vec<ClaimedState> {
         let motions = self.motions.iter().cloned();
         motions
@@ -92,7 +107,7 @@ impl Setup {
 /// Without its loads, and with its first actuator's coordinate.
 impl Subject for Setup {
     fn poses(&self, q: f64) -> Result<Vec<Pose>, SubjectError> {
-        Ok(Pose::all_in_plane(&self.unloaded(q, 0.0, 0.0).poses))
+        Ok(self.unloaded(q, 0.0, 0.0).poses)
     }
 
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {

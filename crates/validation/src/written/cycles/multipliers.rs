@@ -48,6 +48,6 @@ mod tests {
             .collect();
         assert!(multiplier_differences(&speeds, &[[0.01, 0.0], [0.2, 0.0]]).largest() < 1e-4);
         assert!(multiplier_differences(&speeds, &[[0.21, 0.0]]).largest() > 0.04);
-        assert_eq!(multiplier_differences(&speeds, &[[0.2, 0.1]]).count, 0);
+        assert_eq!(multiplier_differences(&speeds, &[[0.2, 0.1]]).count(), 0);
     }
 }

@@ -1,18 +1,11 @@
 //! The largest of many differences, and the finding that it makes.
 
 use dwell_findings::Finding;
-use dwell_verify::FindingSpec;
+use dwell_verify::{Comparison, FindingSpec, LargestDifference};
 
-/// The largest difference relative to its scale. What could not be compared fails.
+/// The largest difference relative to its scale. What could not be compared fails, and nothing to compare is no finding.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Differences {
-    pub(crate) count: usize,
-    absolute: f64,
-    relative: f64,
-    unit: &'static str,
-    worst_at: String,
-    failure: Option<String>,
-}
+pub(crate) struct Differences(LargestDifference);
 
 impl Differences {
     /// Adds a difference with its scale; its place is only composed if it is the worst.
@@ -23,16 +16,8 @@ impl Differences {
         unit: &'static str,
         at: impl FnOnce() -> S,
     ) {
-        let relative = match difference.abs() {
-            0.0 => 0.0,
-            size => size / scale.abs(),
-        };
-        let is_worse = !self.relative.is_nan() && (relative.is_nan() || relative > self.relative);
-        if self.count == 0 || is_worse {
-            (self.absolute, self.relative, self.unit) = (difference.abs(), relative, unit);
-            self.worst_at = at().into();
-        }
-        self.count += 1;
+        let comparison = Comparison::new([difference, scale.abs(), 0.0], unit, 1.0);
+        self.0.record(&comparison, || at().into());
     }
 
     /// Adds a value that should be another, relative to a scale.
@@ -60,7 +45,7 @@ impl Differences {
 
     /// Something could not be compared: the finding fails with this reason.
     pub(crate) fn fail(&mut self, reason: impl Into<String>) {
-        self.failure.get_or_insert(reason.into());
+        self.0.record_failure(reason.into());
     }
 
     /// Counts what must hold; where it does not, the finding fails.
@@ -71,55 +56,37 @@ impl Differences {
         }
     }
 
+    /// How many were compared.
+    pub(crate) fn count(&self) -> usize {
+        self.0.count
+    }
+
     /// The largest relative difference.
     #[cfg(test)]
     pub(crate) fn largest(&self) -> f64 {
-        self.relative
+        self.0.relative_difference
     }
 
     /// Why something could not be compared.
     #[cfg(test)]
     pub(crate) fn failure(&self) -> Option<&str> {
-        self.failure.as_deref()
+        self.0.failure.as_deref()
     }
 
     /// The worse of both.
     pub(crate) fn merge(&mut self, other: Self) {
-        let failure = self.failure.take().or(other.failure.clone());
-        let count = self.count + other.count;
-        let is_worse = other.count > 0
-            && (self.count == 0
-                || (!self.relative.is_nan()
-                    && (other.relative.is_nan() || other.relative > self.relative)));
-        if is_worse {
-            *self = other;
-        }
-        (self.failure, self.count) = (failure, count);
+        self.0 = std::mem::take(&mut self.0).merge(other.0);
     }
 
     /// The finding over a domain, which says how many comparisons there were; none where there was nothing to compare.
     pub(crate) fn counted_finding(self, spec: &FindingSpec<'_>, domain: &str) -> Option<Finding> {
-        let domain = format!("{domain}, {} comparisons", self.count);
+        let domain = format!("{domain}, {} comparisons", self.0.count);
         self.finding(spec, &domain)
     }
 
     /// The finding over a domain; none where there was nothing to compare.
     pub(crate) fn finding(self, spec: &FindingSpec<'_>, domain: &str) -> Option<Finding> {
-        if self.count == 0 && self.failure.is_none() {
-            return None;
-        }
-        let numbers = match self.failure {
-            Some(_) => [f64::NAN; 2],
-            None => [self.absolute, self.relative],
-        };
-        Some(Finding {
-            comparison: spec.comparison.to_owned(),
-            domain: domain.to_owned(),
-            unit: self.unit.to_owned(),
-            scale: spec.scale.to_owned(),
-            worst_at: self.failure.unwrap_or(self.worst_at),
-            tolerance_reason: spec.tolerance_reason.to_owned(),
-            ..Finding::new(spec.key, spec.check, numbers, spec.tolerance)
-        })
+        let is_any = self.0.count > 0 || self.0.failure.is_some();
+        is_any.then(|| spec.finding(domain.to_owned(), self.0))
     }
 }

@@ -84,6 +84,6 @@ mod tests {
         assert!(largest(1.2561) > 1e-3);
         let missing = [("½m′  from ".to_owned(), vec![(1.0, 1.0)])];
         let found = sentence_differences(printed, &missing, "reduce");
-        assert_eq!(found.count, 0);
+        assert_eq!(found.count(), 0);
     }
 }

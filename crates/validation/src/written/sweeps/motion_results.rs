@@ -52,7 +52,7 @@ pub(super) fn motion_differences(
             None => all.fail(format!("`simulate` has no column for {name}")),
         }
     }
-    if all.count == 0 {
+    if all.count() == 0 {
         all.fail("`sweep` has no results of the motion");
     }
     Ok(all)

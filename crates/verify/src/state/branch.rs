@@ -1,12 +1,11 @@
 //! The branch of claimed states: that of the assembly, by continuing its pose densely.
 
-use super::state::{SpaceCase, SpaceState, poses};
+use super::{AssembledMechanism, ClaimedState, not_dense};
 use crate::comparison::{Comparison, FindingSpec, LargestDifference};
 use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
-use crate::error::Result;
+use crate::error::{DenseError, Result};
 use crate::pose::Pose;
-use crate::state::not_dense;
 use dwell_findings::{Check, Finding};
 
 const BRANCH: FindingSpec<'_> = FindingSpec {
@@ -29,25 +28,28 @@ const MESH: FindingSpec<'_> = FindingSpec {
     ..BRANCH
 };
 
-impl SpaceCase<'_> {
-    /// The pose of the assembly, closed.
-    fn start(&self, dense: &DenseMechanism) -> Result<Configuration> {
-        Ok(dense.close_at(&poses(self.start.1), self.start.0)?.0)
+/// The mechanism in dense rows, and the pose of its assembly, closed.
+fn closed(assembled: &AssembledMechanism<'_>) -> Result<(DenseMechanism, Configuration)> {
+    let dense = assembled.dense()?;
+    if assembled.q.len() != dense.actuators.len() {
+        return Err(DenseError::InvalidPoses);
     }
+    let (start, _) = dense.close_at(assembled.poses, assembled.q)?;
+    Ok((dense, start))
+}
 
-    /// The moved frames after the coordinates have moved from the assembly to other values on a straight line, closed densely all the way.
-    fn continued(dense: &DenseMechanism, start: &Configuration, q: &[f64]) -> Result<Vec<Pose>> {
-        let mut row_values = start.row_values.clone();
-        row_values[dense.actuator_row()..].copy_from_slice(q);
-        Ok(dense.follow_to(start, &row_values)?.poses)
-    }
+/// The moved frames after the coordinates have moved from the assembly to other values on a straight line, closed densely all the way.
+fn continued(dense: &DenseMechanism, start: &Configuration, q: &[f64]) -> Result<Vec<Pose>> {
+    let mut row_values = start.row_values.clone();
+    row_values[dense.actuator_row()..].copy_from_slice(q);
+    Ok(dense.follow_to(start, &row_values)?.poses)
 }
 
 /// Checks that claimed states are on the branch of the assembly: their placements with those to which it leads, closed densely all the way.
 /// It costs some closings for each rad.
-pub fn check_branch_in_space(case: &SpaceCase<'_>, states: &[SpaceState]) -> Finding {
+pub fn check_branch(assembled: &AssembledMechanism<'_>, states: &[ClaimedState]) -> Finding {
     compare_continued(
-        case,
+        assembled,
         &BRANCH,
         states,
         |dense, claimed, [found, wanted], worst| {
@@ -63,9 +65,9 @@ pub fn check_branch_in_space(case: &SpaceCase<'_>, states: &[SpaceState]) -> Fin
 }
 
 /// Checks that the teeth of gears in claimed states mesh as they did at the assembly.
-pub(super) fn check_mesh(case: &SpaceCase<'_>, states: &[SpaceState]) -> Finding {
+pub(super) fn check_mesh(assembled: &AssembledMechanism<'_>, states: &[ClaimedState]) -> Finding {
     compare_continued(
-        case,
+        assembled,
         &MESH,
         states,
         |dense, claimed, [found, wanted], worst| {
@@ -81,32 +83,29 @@ pub(super) fn check_mesh(case: &SpaceCase<'_>, states: &[SpaceState]) -> Finding
 
 /// Compares the moved frames of claimed states with those that are continued from the assembly to their coordinates.
 fn compare_continued(
-    case: &SpaceCase<'_>,
+    assembled: &AssembledMechanism<'_>,
     spec: &FindingSpec<'_>,
-    states: &[SpaceState],
-    compare: impl Fn(&DenseMechanism, &SpaceState, [&[Pose]; 2], &mut LargestDifference),
+    states: &[ClaimedState],
+    compare: impl Fn(&DenseMechanism, &ClaimedState, [&[Pose]; 2], &mut LargestDifference),
 ) -> Finding {
     let mut worst = LargestDifference::default();
     let mut count = 0;
-    let mut last: Option<&SpaceState> = None;
-    let assembled = case
-        .dense()
-        .and_then(|dense| Ok((case.start(&dense)?, dense)));
-    let (start, dense) = match assembled {
-        Ok(assembled) => assembled,
+    let mut last: Option<&ClaimedState> = None;
+    let (dense, start) = match closed(assembled) {
+        Ok(closed) => closed,
         Err(error) => return not_dense(spec, &error),
     };
     for claimed in states {
         let is_known = last
             .replace(claimed)
-            .is_some_and(|last| last.q == claimed.q && last.placements == claimed.placements);
+            .is_some_and(|last| last.q == claimed.q && last.poses == claimed.poses);
         if is_known {
             continue;
         }
         count += 1;
-        let found = dense.moved_frames(&poses(&claimed.placements));
+        let found = dense.moved_frames(&claimed.poses);
         let both = found.and_then(|found| {
-            let wanted = SpaceCase::continued(&dense, &start, &claimed.q)?;
+            let wanted = continued(&dense, &start, &claimed.q)?;
             Ok((found, wanted))
         });
         match both {
