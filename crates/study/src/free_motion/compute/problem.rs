@@ -163,7 +163,7 @@ impl<'a> FreeMotionProblem<'a> {
 impl ChartedProblem for FreeMotionProblem<'_> {
     type Chart = Chart;
 
-    const FEWEST_POINTS: bool = true;
+    const IS_THINNED: bool = true;
 
     fn by_method(&self, duration: f64, options: &Options) -> Result<SegmentedMotion, StudyError> {
         self.solve(duration, options)

@@ -63,7 +63,7 @@ pub(super) fn by_quadrature<P: ChartedProblem>(
         sample_interval,
         delay,
     };
-    let found = match P::FEWEST_POINTS {
+    let found = match P::IS_THINNED {
         true => quadrature.by_fewest_points()?,
         false => quadrature.compared([&exact; 2])?,
     };

@@ -78,7 +78,7 @@ impl SpaceMotionProblem<'_> {
 impl ChartedProblem for SpaceMotionProblem<'_> {
     type Chart = SpaceMotionProblem<'static>;
 
-    const FEWEST_POINTS: bool = false;
+    const IS_THINNED: bool = false;
 
     fn by_method(&self, duration: f64, options: &Options) -> Result<Motion, StudyError> {
         let motion = self.through_charts(options, duration);
