@@ -55,14 +55,8 @@ pub(crate) fn estimate_error<P: ChartedProblem>(
     if motion.end_time() == 0.0 {
         return Ok(ComputedMotion::default());
     }
-    let (samples, others) = rayon::join(
-        || problem.samples(motion),
-        || {
-            second
-                .as_ref()
-                .and_then(|motion| problem.samples(motion).ok())
-        },
-    );
+    let samples_of_second = || problem.samples(second.as_ref()?).ok();
+    let (samples, others) = rayon::join(|| problem.samples(motion), samples_of_second);
     let samples = samples.map_err(|e| problem.explain(&e))?;
     let finer = estimate::comparison_options(options);
     let refinement = if finer.method == options.method {
