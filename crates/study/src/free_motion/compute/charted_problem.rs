@@ -117,6 +117,9 @@ pub(crate) trait ChartedProblem: MotionProblem<Scene: RowScene> + Sync {
         sample: &TrajectorySample,
     ) -> Option<[f64; 3]>;
 
+    /// Lines of the summary about chart changes and change points.
+    fn describe_changes(&self, motion: &MotionOf<Self>) -> Vec<String>;
+
     /// The coordinates and speeds of all actuators at an event.
     fn coordinates_at(&self, motion: &MotionOf<Self>, event: &NumberedEvent) -> Option<Vec<f64>>;
 

@@ -85,7 +85,7 @@ pub(crate) fn summary<P: ChartedProblem>(
         text += &event_line((name, event.terminal), times, late, &mut record);
     }
     text += &NamedContacts::new(problem).describe(&motion.segments, second, &mut record);
-    for change in &motion.chart_changes {
+    for change in problem.describe_changes(motion) {
         text += &format!("  {change}\n");
     }
     text += &cost_line(&motion.statistics, &mut record);

@@ -111,7 +111,7 @@ impl<'a> FreeMotionProblem<'a> {
             false => atlas.coordinate_history(&continued, atlas.actuator_coordinate()),
         };
         let statistics = continued.statistics();
-        let chart_changes = self.describe_changes(&atlas, &continued);
+        let chart_changes = self.changes(&atlas, &continued);
         let segments = continued.segments.into_iter();
         Ok(SegmentedMotion {
             orbit: None,
@@ -125,7 +125,7 @@ impl<'a> FreeMotionProblem<'a> {
     }
 
     /// Lines of the summary about chart changes and change points.
-    fn describe_changes(&self, atlas: &Atlas<'_>, continued: &ContinuedMotion) -> Vec<String> {
+    fn changes(&self, atlas: &Atlas<'_>, continued: &ContinuedMotion) -> Vec<String> {
         let name = |chart: usize| &atlas.charts()[chart].name;
         let describe = |change: &ChartChange| {
             let what = match change.reason {
@@ -275,6 +275,10 @@ impl ChartedProblem for FreeMotionProblem<'_> {
                 Some(now)
             }
         }
+    }
+
+    fn describe_changes(&self, motion: &SegmentedMotion) -> Vec<String> {
+        motion.chart_changes.clone()
     }
 
     fn coordinates_at(&self, motion: &SegmentedMotion, event: &NumberedEvent) -> Option<Vec<f64>> {

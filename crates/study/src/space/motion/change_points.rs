@@ -1,6 +1,5 @@
 //! What a motion in space says of the change points of its branch.
 
-use super::charts::Motion;
 use super::problem::SpaceMotionProblem;
 use crate::free_motion::compute::{MotionProblem as _, first_changes};
 use crate::number_format::digits;
@@ -28,21 +27,8 @@ fn count_below(window: &SpaceFitWindow, q: f64) -> f64 {
 }
 
 impl SpaceMotionProblem<'_> {
-    /// Lines of the summary: where the motion changes its coordinate, and where it passes change points, and how.
-    pub(super) fn describe_changes(&self, motion: &Motion) -> Vec<String> {
-        let changes = self.changes(motion).into_iter().map(|(t, [from, to])| {
-            let t = digits(t, 6);
-            format!("t = {t} s: coordinate changed from {from} (next to its dead point) to {to}")
-        });
-        let mut lines = first_changes(changes.collect());
-        for (problem, solution) in self.parts(motion) {
-            lines.extend(problem.describe_change_points(solution));
-        }
-        lines
-    }
-
-    /// The same of the change points of one coordinate.
-    fn describe_change_points(&self, solution: &Solution) -> Vec<String> {
+    /// Lines of the summary: which change points of its coordinate a part of the motion passes, and how.
+    pub(super) fn describe_change_points(&self, solution: &Solution) -> Vec<String> {
         let windows = self.machine.change_point_windows();
         let steps = &solution.steps;
         let passages = steps.windows(2).flat_map(|pair| {

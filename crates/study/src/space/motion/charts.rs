@@ -7,8 +7,9 @@
 use super::problem::SpaceMotionProblem;
 use crate::explain::StudyError;
 use crate::free_motion::compute::{
-    ChartedProblem, Instant, MotionProblem as _, NumberedEvent, SegmentedMotion,
+    ChartedProblem, Instant, MotionProblem as _, NumberedEvent, SegmentedMotion, first_changes,
 };
+use crate::number_format::digits;
 use crate::space::trajectory::SpaceRows;
 use crate::trajectory::compute::TrajectorySample;
 use dwell_dynamics::{DynamicsError, Event, Machine, OdeState, Options, Solution};
@@ -58,20 +59,23 @@ impl SpaceMotionProblem<'_> {
         chart.unwrap_or(self)
     }
 
-    /// The times at which the coordinate changes, s, with the names before and after.
-    pub(super) fn changes(&self, motion: &Motion) -> Vec<(f64, [String; 2])> {
+    /// Lines of the summary: where the motion changes its coordinate.
+    fn changes(&self, motion: &Motion) -> Vec<String> {
         let name = |chart: usize| {
             let scene = self.in_chart(motion, chart).scene();
-            scene.mechanism.actuators[0].name.clone()
+            &scene.mechanism.actuators[0].name
         };
-        let pairs = motion.segments.windows(2).filter_map(|pair| {
+        let lines = motion.segments.windows(2).filter_map(|pair| {
             let [(from, _), (to, solution)] = pair else {
                 return None;
             };
             let start = solution.steps.first().filter(|_| from != to)?;
-            Some((start.t, [name(*from), name(*to)]))
+            let (t, [from, to]) = (digits(start.t, 6), [*from, *to].map(name));
+            Some(format!(
+                "t = {t} s: coordinate changed from {from} (next to its dead point) to {to}"
+            ))
         });
-        pairs.collect()
+        lines.collect()
     }
 }
 
@@ -116,6 +120,14 @@ impl ChartedProblem for SpaceMotionProblem<'_> {
     ) -> Option<[f64; 3]> {
         let problem = self.in_chart(motion, sample.chart);
         problem.coordinate_of(problem.chart?, [&sample.q, &sample.q_dot, &sample.q_ddot])
+    }
+
+    fn describe_changes(&self, motion: &Motion) -> Vec<String> {
+        let mut lines = first_changes(self.changes(motion));
+        for (problem, solution) in self.parts(motion) {
+            lines.extend(problem.describe_change_points(solution));
+        }
+        lines
     }
 
     fn coordinates_at(&self, motion: &Motion, event: &NumberedEvent) -> Option<Vec<f64>> {

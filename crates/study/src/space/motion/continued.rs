@@ -26,7 +26,6 @@ impl SpaceMotionProblem<'_> {
             }
             motion.failure.clone_from(&last.error);
         }
-        motion.chart_changes = self.describe_changes(&motion);
         Ok(motion)
     }
 
