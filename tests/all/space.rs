@@ -16,6 +16,7 @@ mod mutations;
 mod oblique;
 mod operating_points;
 mod planes;
+mod points;
 mod random_loops;
 mod reference;
 mod scenes;

@@ -21,6 +21,8 @@ PARTS = {
     "cylindrical": ("line", "axes"),
     "helical": ("line", "axes", "thread"),
     "planar": ("plane", "axes"),
+    "point-on-line": ("line",),
+    "point-in-plane": ("plane",),
     "slot": ("line",),
     "distance": ("length",),
     "gear": ("gear",),
@@ -308,25 +310,22 @@ def free_directions(joint, motion):
     """
     zero = Jet(np.zeros((motion.count, 3)))
     eye = [jet(np.broadcast_to(e, (motion.count, 3))) for e in np.eye(3)]
-    if joint.kind == "gear in space":
-        normal = motion.direction(joint.carrier.body, joint.axes[0])
-        flat = [scaled(normal, -dot(normal, e)) + e for e in eye]
-        free = [(e, zero) for e in flat] + [(zero, e) for e in eye]
-    elif joint.kind == "distance":
+    parts = PARTS[joint.kind]
+
+    def across(u):
+        return [e - scaled(u, dot(u, e)) for e in eye]
+
+    if "thread" in parts:
+        u = axis_of(joint, motion)
+        slides, turns = [(u * (joint.sizes["pitch"] / (2.0 * np.pi)), u)], []
+    elif "teeth" in parts:
+        slides, turns = across(motion.direction(joint.carrier.body, joint.axes[0])), eye
+    elif "length" in parts:
         line = gap_of(joint, motion)
-        line = scaled(line, 1.0 / length(line))
-        free = [(e - scaled(line, dot(line, e)), zero) for e in eye] + [(zero, e) for e in eye]
-    elif joint.kind == "spherical":
-        free = [(zero, e) for e in eye]
+        slides, turns = across(scaled(line, 1.0 / length(line))), eye
     else:
         u, w = axis_of(joint, motion), axis_of(joint, motion, 1)
-        free = {
-            "weld": lambda: [],
-            "revolute": lambda: [(zero, u)],
-            "prismatic": lambda: [(u, zero)],
-            "cylindrical": lambda: [(u, zero), (zero, u)],
-            "helical": lambda: [(u * (joint.sizes["pitch"] / (2.0 * np.pi)), u)],
-            "universal": lambda: [(zero, u), (zero, w)],
-            "planar": lambda: [(e - scaled(u, dot(u, e)), zero) for e in eye] + [(zero, u)],
-        }[joint.kind]()
+        slides = [] if "point" in parts else [u] if "line" in parts else across(u)
+        turns = [] if "normals" in parts else [u] if "axes" in parts else [u, w] if "right angle" in parts else eye
+    free = [slide if isinstance(slide, tuple) else (slide, zero) for slide in slides] + [(zero, turn) for turn in turns]
     return [(force.value, moment.value) for force, moment in free]

@@ -46,7 +46,7 @@ def closure(judge, motion):
                 difference = without_turns(difference - difference.value[0])
         add(f"coordinate {coordinate.name}", difference, coordinate.measure.is_angle, max(1.0, largest(written.value)))
     for joint in scene.joints:
-        if joint.kind in ("prismatic", "slot", "cylindrical", "helical") and f"{joint.name}.travel" in rows:
+        if joint.kind in ("prismatic", "slot", "cylindrical", "helical", "point-on-line") and f"{joint.name}.travel" in rows:
             written = column_jet(rows, f"{joint.name}.travel")
             add(f"{joint.name}.travel", written - motion.measure(scene.measure_of(joint, "travel")), False)
 

@@ -19,7 +19,7 @@ LENGTHS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "km": 1e3, "in": 0.0254
 MASSES = {"kg": 1.0, "g": 1e-3, "t": 1e3, "lb": 0.45359237, "oz": 0.45359237 / 16.0}
 ANGLES = {"rad": 1.0, "deg": np.pi / 180.0}
 PLANE_KINDS = ("revolute", "prismatic", "slot", "weld", "gear", "rack", "rolling", "distance")
-SPACE_KINDS = ("revolute", "prismatic", "cylindrical", "helical", "universal", "spherical", "planar", "weld", "distance")
+SPACE_KINDS = ("revolute", "prismatic", "cylindrical", "helical", "universal", "spherical", "planar", "point-on-line", "point-in-plane", "weld", "distance")
 X, Z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 
 

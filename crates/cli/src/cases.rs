@@ -1,4 +1,4 @@
-//! Finds the folders to validate.
+//! The folders of the cases to validate.
 
 use miette::{Report, miette};
 use std::path::{Path, PathBuf};
@@ -18,12 +18,13 @@ pub(crate) fn find(names: &[String], folder: &Path) -> Result<Vec<PathBuf>, Repo
                 "cannot list the cases in `{shown}`: {reason}"
             )
         })?;
-        return match cases.is_empty() {
-            true => Err(miette!(
+        return if cases.is_empty() {
+            Err(miette!(
                 help = "a case is a folder with a scene.toml; name the folder of the cases with --folder",
                 "there is no case in `{shown}`"
-            )),
-            false => Ok(cases),
+            ))
+        } else {
+            Ok(cases)
         };
     }
     let mut found: Vec<PathBuf> = Vec::new();
@@ -38,7 +39,7 @@ pub(crate) fn find(names: &[String], folder: &Path) -> Result<Vec<PathBuf>, Repo
     Ok(found)
 }
 
-/// The scenes in space below a folder of cases: all if no names are given, else the named ones; and the other names.
+/// The scenes in space in a folder of cases (all if no names are given, otherwise the named ones), and the remaining names.
 pub(crate) fn find_in_space(names: &[String], folder: &Path) -> (Vec<PathBuf>, Vec<String>) {
     let below = folder.join("spatial");
     let (named, others): (Vec<_>, Vec<_>) = names.iter().cloned().partition(|name| {
@@ -61,7 +62,7 @@ pub(crate) fn find_in_space(names: &[String], folder: &Path) -> (Vec<PathBuf>, V
 
 fn find_one(name: &str, folder: &Path, all: &[PathBuf]) -> Result<PathBuf, Report> {
     let given = Path::new(name);
-    // The scene file itself stands for its folder.
+    // The scene file may be given instead of its folder.
     let is_scene = given.file_name().is_some_and(|n| n == SCENE);
     let of_scene = match given.parent() {
         Some(parent) if is_scene && parent != Path::new("") => parent,

@@ -1,4 +1,4 @@
-//! `dwell export`: its options, and what they ask for.
+//! `dwell export`: its options, and its request.
 
 use crate::values::{Choices, choice, parse_finite, parse_table_accuracy};
 use clap::Args;
@@ -60,11 +60,11 @@ pub(crate) struct ExportArgs {
     /// Accuracy of every function, relative to its largest value (default: 1e-9, or 1e-6 with --float)
     #[arg(long, value_parser = parse_table_accuracy, value_name = "ACCURACY", allow_hyphen_values = true)]
     accuracy: Option<f64>,
-    /// Numbers of four bytes; an accuracy below 1e-6 buys nothing then
+    /// Single precision; accuracies below 1e-6 have no effect
     #[arg(long)]
     float: bool,
-    /// The model's own operations instead of cells, to `c` or `fmu`: exact to rounding, with square roots, sines and cosines. Loops
-    /// that are closed by Newton's method have none
+    /// The model's own operations instead of cells, to `c` or `fmu`: exact to rounding, with square roots, sines and cosines. Not for
+    /// loops that are closed by Newton's method
     #[arg(long, conflicts_with = "accuracy")]
     exact: bool,
     /// Lower end of the coordinate, in the scene's unit (default: a full period, or the range without 2 % at each end)
@@ -76,11 +76,12 @@ pub(crate) struct ExportArgs {
 }
 
 impl ExportArgs {
-    /// What is exported, and how accurately.
+    /// The requested export.
     pub(crate) fn request(&self) -> ExportRequest {
-        let (precision, accuracy) = match self.float {
-            true => (Precision::Float, 1e-6),
-            false => (Precision::Double, 1e-9),
+        let (precision, accuracy) = if self.float {
+            (Precision::Float, 1e-6)
+        } else {
+            (Precision::Double, 1e-9)
         };
         ExportRequest {
             request: Request {

@@ -10,7 +10,7 @@ use dwell_study::{ColumnNames, ExportedTable, Outcome, StudyError, no_progress};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The name of the results: that of the first file without its ending.
+/// The name of the results: that of the first file without extension.
 pub(crate) fn name(options: &Options, runs: &[PathBuf]) -> String {
     let stem = runs.first().and_then(|path| path.file_stem());
     let of_file = || stem.map_or("runs".into(), |stem| stem.to_string_lossy());
@@ -65,7 +65,7 @@ fn unread(path: &Path, reason: &str) -> SceneError {
     SceneError::without_labels(message, Some(help.to_owned()))
 }
 
-/// A table of a file, by its first bytes: an archive, or text.
+/// The table in a file; its first bytes distinguish archives from text.
 fn table(path: &Path) -> Result<ExportedTable, SceneError> {
     let bytes = fs::read(path).map_err(|e| unread(path, &e.to_string()))?;
     let file = path.display().to_string();

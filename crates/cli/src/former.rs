@@ -1,8 +1,8 @@
-//! Options and commands by their names before the first release: an error suggests how they are called now.
+//! Former names of options and commands: an error suggests the current name.
 
 use clap::error::{ContextKind, ContextValue};
 
-/// Of which command, the former option, the current one.
+/// The command, its former option, and the current option.
 const OPTIONS: [(&str, &str, &str); 9] = [
     ("calibrate", "--set", "--parameter"),
     ("linearise", "--at", "--about"),
@@ -15,10 +15,10 @@ const OPTIONS: [(&str, &str, &str); 9] = [
     ("symbolic", "--to", "--format"),
     ("validate", "--long", "--slow"),
 ];
-/// The former command, the current one.
+/// The former name of a command, and the current one.
 const COMMAND: (&str, &str) = ("tradeoff", "work-precision");
 
-/// An error of the arguments, with the current name where it is about a former one of the command that is called.
+/// An error of the arguments, with the current name if it concerns a former name of this command.
 pub(crate) fn with_current_name(mut error: clap::Error) -> clap::Error {
     let given = |error: &clap::Error, kind| match error.get(kind) {
         Some(ContextValue::String(given)) => given.split(['=', ' ']).next().map(str::to_owned),

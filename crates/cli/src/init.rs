@@ -1,4 +1,4 @@
-//! `dwell init`: a commented scene to begin with.
+//! `dwell init`: writes a commented scene to start from.
 
 use crate::print;
 use miette::{Report, miette};
@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 
 /// The scene.
 const SCENE: &str = include_str!("init.toml");
-/// The ending of a scene file.
+/// The extension of a scene file.
 const ENDING: &str = "toml";
 
-/// Writes the scene to a file that does not exist yet, and says what to do with it.
+/// Writes the scene to a new file, and prints the next commands.
 pub(crate) fn write(path: &Path) -> Result<(), Report> {
     let path: PathBuf = match path.extension() {
         Some(ending) if ending == ENDING => path.to_owned(),

@@ -1,9 +1,9 @@
-//! The file of wanted instants: one time in s on each line. Empty lines and what follows `#` do not count.
+//! The file of requested instants: one time in s on each line. Empty lines and text after `#` are ignored.
 
 use dwell_scene::SceneError;
 use std::path::Path;
 
-/// Reads the instants; their order and their range are checked with the motion.
+/// Reads the instants; their order and range are checked later, with the motion.
 pub(crate) fn read(path: &Path) -> Result<Vec<f64>, SceneError> {
     let shown = path.display();
     let fault = |message: String| {

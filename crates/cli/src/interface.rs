@@ -1,4 +1,4 @@
-//! The commands and their options as the verification manual lists them: from the same definition that reads the arguments.
+//! The commands and their options for the verification manual, from the definition that parses the arguments.
 
 use crate::options::Options;
 use clap::CommandFactory as _;
@@ -31,10 +31,10 @@ mod tests {
     fn every_command_and_option_is_described_for_the_manual_or_an_exception_with_a_reason() {
         let mut interface = interface();
         assert_eq!(undescribed(&interface), Vec::<String>::new());
-        // One that is added is missed.
+        // An option without an entry is reported.
         interface.commands[0].1.push("--added".to_owned());
         assert_eq!(undescribed(&interface).len(), 1);
-        // One that is gone is named.
+        // An entry without a command is reported.
         interface.commands.retain(|(name, _)| name != "runs");
         assert!(
             undescribed(&interface)

@@ -1,4 +1,4 @@
-//! Lines on standard error while a run goes on that shows no progress bar, because its output goes into a file or a pipe.
+//! Progress lines on standard error for runs without a progress bar, whose output is a file or a pipe.
 
 use crate::print_note;
 use indicatif::ProgressBar;
@@ -7,18 +7,18 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// Seconds after which the first lines are printed; then one follows each minute. A shorter run prints none.
+/// Times of the first lines, s; then one line follows each minute. A shorter run prints none.
 const FIRST_LINES: [u64; 4] = [2, 10, 30, 60];
 
 /// Prints the lines of a run until it is dropped.
 pub(crate) struct LongRunLines {
-    /// What ends the lines when it is dropped.
+    /// Ends the lines when it is dropped.
     running: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl LongRunLines {
-    /// Those of a `command` whose progress is that of a bar; none on a terminal, where the bar itself is seen.
+    /// The lines of a `command` with the progress of a bar; none on a terminal, which shows the bar.
     pub(crate) fn new(command: &str, bar: &ProgressBar) -> Self {
         if stderr().is_terminal() {
             return Self {
@@ -41,7 +41,7 @@ impl LongRunLines {
         };
         Self {
             running: Some(running),
-            // Without a thread the run is silent, but it is a run.
+            // If no thread can be started, the run continues without lines.
             thread: std::thread::Builder::new().spawn(print_lines).ok(),
         }
     }
@@ -51,20 +51,20 @@ impl Drop for LongRunLines {
     fn drop(&mut self) {
         self.running = None;
         if let Some(thread) = self.thread.take() {
-            // A thread that only prints has no result to lose.
+            // The thread only prints; it has no result.
             let _ = thread.join();
         }
     }
 }
 
-/// When lines are printed, s.
+/// The times of the lines, s.
 fn line_times() -> impl Iterator<Item = u64> {
     FIRST_LINES
         .into_iter()
         .chain((2..).map(|minutes| 60 * minutes))
 }
 
-/// A line after so many seconds: steps done, of how many, and the last one.
+/// A line after `seconds`: number of completed steps, of all steps, and the last step.
 fn line(command: &str, seconds: u64, progress: &(u64, Option<u64>, String)) -> String {
     let time = match seconds % 60 {
         0 => format!("{} min", seconds / 60),

@@ -44,8 +44,9 @@ use times::Times;
 
 fn main() -> ExitCode {
     // clap itself exits with 2 on a bad argument, and with 0 for help.
-    let matches = Options::command().try_get_matches();
-    let matches = matches.unwrap_or_else(|error| former::with_current_name(error).exit());
+    let matches = Options::command()
+        .try_get_matches()
+        .unwrap_or_else(|error| former::with_current_name(error).exit());
     let options = Options::from_arg_matches(&matches).unwrap_or_else(|e| e.exit());
     match run(&options, matches.subcommand_name().unwrap_or_default()) {
         Ok(true) => ExitCode::SUCCESS,
@@ -57,8 +58,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs a command of this name, and returns whether all its checks passed.
-// Long: an arm for each command that does not study one scene.
+/// Runs a command, and returns whether all its checks passed.
+// Long, because each command that does not study one scene has an arm.
 fn run(options: &Options, name: &str) -> Result<bool, Report> {
     let Options { command, .. } = options;
     let mut times = Times::new();
@@ -123,20 +124,20 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
             done.map_err(|e| Report::new(SceneError::from(e)))?
         }
     };
-    // No line follows the results.
+    // No progress line may follow the results.
     drop(lines);
-    finish(done, (options, name), folder, times)
+    finish(done, options, name, folder, times)
 }
 
-/// What a command came to.
+/// The result of a command.
 #[derive(Default)]
 struct Done {
     outcome: Outcome,
-    /// The scene's file, of a command that studies one.
+    /// The scene file, if the command studies one.
     scene: Option<SceneFile>,
-    /// The name of the results, of a command that studies exported tables.
+    /// The name of the results, if the command studies exported tables.
     exported: Option<String>,
-    /// Why a trajectory ended early.
+    /// The reason why a trajectory ended early.
     early_stop: Option<SceneError>,
     /// The cases that could not be validated.
     failures: Option<SceneError>,
@@ -145,7 +146,8 @@ struct Done {
 /// Prints and writes the results, and returns whether all checks passed.
 fn finish(
     mut done: Done,
-    (options, name): (&Options, &str),
+    options: &Options,
+    name: &str,
     folder: OutputFolder,
     mut times: Times,
 ) -> Result<bool, Report> {
@@ -165,7 +167,7 @@ fn finish(
         status,
         errors: &errors.collect::<Vec<_>>(),
     };
-    // Where no case could be validated there is nothing to write.
+    // If no case could be validated, there are no files.
     if status < 2 || !done.outcome.files.is_empty() {
         let page = match (options.html, &options.command) {
             // Its pages are written already.
@@ -189,7 +191,7 @@ fn finish(
     }
 }
 
-/// Draws all pictures of a validation. Its pages show those in pixels.
+/// Draws all pictures of a validation. Its pages show the PNG files.
 fn draw_validation(outcome: Outcome, format: PictureFormat) -> Result<Outcome, Report> {
     let format = match format {
         PictureFormat::Svg => PictureFormat::Both,
@@ -199,7 +201,7 @@ fn draw_validation(outcome: Outcome, format: PictureFormat) -> Result<Outcome, R
     drawn.map_err(|e| Report::new(SceneError::from(e)))
 }
 
-/// The paths of summary and page in the output folder, without their endings. Each part of a sweep has its own.
+/// The paths of summary and page in the output folder, without extension. Each shard of a sweep has its own.
 fn results_stem(command: &Command, name: &str, results: Option<&str>) -> String {
     let of_scene = results.map_or(String::new(), |results| format!("{results}-"));
     let part = match command {
@@ -212,7 +214,7 @@ fn results_stem(command: &Command, name: &str, results: Option<&str>) -> String 
     format!("{of_scene}{name}{part}")
 }
 
-/// The folder of the results, tested before the work.
+/// The output folder, tested before the computation.
 fn open_folder(options: &Options) -> Result<OutputFolder, Report> {
     let out = &options.out;
     if out.exists() && !out.is_dir() {
@@ -240,7 +242,7 @@ fn open_folder(options: &Options) -> Result<OutputFolder, Report> {
     Ok(folder)
 }
 
-/// The name of the scene in a file, or of that on standard input.
+/// The name of the scene in a file or on standard input.
 fn scene_name(options: &Options, scene: &Path) -> String {
     match &options.name {
         Some(name) => name.clone(),
@@ -270,7 +272,7 @@ fn write_files(files: &Files, folder: OutputFolder, out: &Path) -> Result<(), Re
     }
 }
 
-/// Shows a step of a long study.
+/// Shows the progress of a long study.
 fn show_step(bar: &ProgressBar, step: Step<'_>) {
     bar.set_length(step.total as u64);
     bar.set_message(step.done.to_owned());
@@ -288,13 +290,14 @@ fn progress_bar() -> ProgressBar {
 /// Reads the scene of a command.
 fn read(options: &Options, command: &Command, bar: &ProgressBar) -> Result<Scene, StudyError> {
     let path = command.scene().unwrap_or_else(|| Path::new(STANDARD_INPUT));
-    let scene = match path == Path::new(STANDARD_INPUT) {
-        true => Scene::read_from(std::io::stdin().lock(), STANDARD_INPUT_NAME, "<stdin>")?,
-        false => Scene::read(path)?,
+    let scene = if path == Path::new(STANDARD_INPUT) {
+        Scene::read_from(std::io::stdin().lock(), STANDARD_INPUT_NAME, "<stdin>")?
+    } else {
+        Scene::read(path)?
     };
     let scene = scene.named(scene_name(options, path));
     print_warnings(&scene);
-    // From now on a terminal shows every second that the study goes on.
+    // From now on a terminal is updated every second.
     bar.enable_steady_tick(Duration::from_secs(1));
     Ok(scene)
 }

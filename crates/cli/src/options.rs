@@ -33,7 +33,7 @@ pub(crate) struct Options {
     /// largest values, findings. Validation always writes its pages
     #[arg(long, global = true)]
     pub(crate) html: bool,
-    /// Name of the scene, which the names of its files begin with (default: that of its file, or `stdin`)
+    /// Base name of the output files (default: that of the scene file, or `stdin`)
     #[arg(long, global = true, value_parser = parse_name, value_name = "NAME")]
     pub(crate) name: Option<String>,
 }
@@ -135,7 +135,7 @@ pub(crate) enum Command {
         #[arg(long)]
         slow: bool,
     },
-    /// Write the live page with a scene, and open it in the browser: there every result follows the scene as it is edited
+    /// Write the live page with a scene and open it in the browser: edit the scene there, and every result is updated
     View {
         /// The scene file, or `-` for standard input
         scene: PathBuf,
@@ -145,7 +145,7 @@ pub(crate) enum Command {
     },
     /// Print the JSON schema of scene files, for editors
     Schema,
-    /// Write a commented scene to begin with; an existing file is not replaced
+    /// Write a commented scene to start from; an existing file is not replaced
     Init {
         /// The scene file to write, with or without `.toml`
         #[arg(default_value = "slider-crank.toml")]
@@ -154,7 +154,7 @@ pub(crate) enum Command {
 }
 
 impl Command {
-    /// What is analysed along a trajectory, of a command that does so.
+    /// Options and analysis of a command that analyses a trajectory.
     pub(crate) fn trajectory(&self) -> Option<(&TrajectoryArgs, Analysis)> {
         match self {
             Self::Kinematics(arguments) => Some((arguments, Analysis::Kinematics)),
@@ -164,7 +164,7 @@ impl Command {
         }
     }
 
-    /// The scene file, of a command that studies one.
+    /// The scene file of a command that studies one.
     pub(crate) fn scene(&self) -> Option<&Path> {
         match self {
             Self::Reduce(arguments) => arguments.scene.as_deref(),
@@ -188,7 +188,7 @@ impl Command {
     }
 }
 
-/// The scene that is read from standard input, and its name.
+/// The argument for standard input, and the name of a scene read from it.
 pub(crate) const STANDARD_INPUT: &str = "-";
 pub(crate) const STANDARD_INPUT_NAME: &str = "stdin";
 
@@ -202,10 +202,10 @@ pub(crate) struct TrajectoryArgs {
     /// Number of positions, both ends included (default: the scene's `points`, or 361)
     #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1_000_000), value_name = "COUNT", allow_hyphen_values = true)]
     points: Option<u32>,
-    /// Where curves begin in the pictures: the time in s, or the swept coordinate in the scene's unit; files keep all rows
+    /// Start of the curves in the pictures: the time in s, or the swept coordinate in the scene's unit; files keep all rows
     #[arg(long, value_parser = parse_finite, value_name = "ABSCISSA", allow_hyphen_values = true)]
     from: Option<f64>,
-    /// Where they end
+    /// End of the curves in the pictures
     #[arg(long, value_parser = parse_finite, value_name = "ABSCISSA", allow_hyphen_values = true)]
     to: Option<f64>,
 }

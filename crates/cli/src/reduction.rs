@@ -1,4 +1,4 @@
-//! `dwell reduce`: its options, and what they ask for.
+//! `dwell reduce`: its options, and its request.
 
 use crate::values::{Choices, choice, parse_accuracy, parse_finite, parse_table_accuracy};
 use clap::Args;
@@ -36,8 +36,8 @@ pub(crate) struct ReduceArgs {
     /// TOML file that names the columns of the exported tables: coordinate, speed, acceleration, force, unit, [reactions]
     #[arg(long, requires = "runs", value_name = "FILE")]
     pub(crate) columns: Option<PathBuf>,
-    /// How values between the exported positions are found (default: trigonometric over a whole revolution at equal
-    /// distances, otherwise cubic)
+    /// Interpolation between the exported positions (default: trigonometric over a whole revolution with equal
+    /// steps, otherwise cubic)
     #[arg(long, requires = "runs", value_parser = choice(INTERPOLATIONS), value_name = "INTERPOLATION")]
     pub(crate) interpolation: Option<SampleInterpolation>,
     /// Also write an interpolation table with this accuracy, relative to the largest value of each function, such
@@ -63,7 +63,7 @@ impl ReduceArgs {
         self.points.map(|n| n as usize)
     }
 
-    /// The table that is asked for, over an interval if it has both ends.
+    /// The requested table, over an interval if both ends are given.
     pub(crate) fn table(&self) -> Option<TableRequest> {
         Some(TableRequest {
             accuracy: self.table_accuracy.or(self.accuracy)?,

@@ -1,4 +1,4 @@
-//! `dwell simulate`: its options, and how they compute a motion.
+//! `dwell simulate`: its options, and its request.
 
 use crate::instants;
 use crate::values::{Choices, choice, parse_accuracy, parse_finite, parse_time, parse_tolerance};
@@ -57,14 +57,14 @@ pub(crate) struct SimulateArgs {
     /// Time between the rows of the table, s (default: a thousandth of the duration)
     #[arg(long, value_parser = parse_time, value_name = "SECONDS", allow_hyphen_values = true)]
     sample_interval: Option<f64>,
-    /// File of the wanted instants, instead of a sample interval: one time in s on each line, in ascending order.
+    /// File of requested instants, instead of a sample interval: one time in s on each line, in ascending order.
     /// The last instant of the motion is a row, too
     #[arg(long, value_name = "FILE", conflicts_with = "sample_interval")]
     times: Option<PathBuf>,
-    /// Time at which curves begin in the pictures, s; files keep all rows
+    /// Start of the curves in the pictures, s; files keep all rows
     #[arg(long, value_parser = parse_finite, value_name = "SECONDS", allow_hyphen_values = true)]
     from: Option<f64>,
-    /// Time at which they end, s
+    /// End of the curves in the pictures, s
     #[arg(long, value_parser = parse_finite, value_name = "SECONDS", allow_hyphen_values = true)]
     to: Option<f64>,
 }
@@ -88,12 +88,12 @@ impl SimulateArgs {
         }
     }
 
-    /// The wanted instants.
+    /// The requested instants.
     pub(crate) fn times(&self) -> Result<Option<Vec<f64>>, SceneError> {
         self.times.as_deref().map(instants::read).transpose()
     }
 
-    /// The part that curves show.
+    /// The part of the motion that curves show.
     pub(crate) fn span(&self) -> PictureSpan {
         let Self { from, to, .. } = *self;
         PictureSpan { from, to }

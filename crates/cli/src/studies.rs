@@ -29,7 +29,7 @@ fn settings(method: Method, tolerance: f64) -> SolverSettings {
     }
 }
 
-/// What a command asks for; none for a work–precision diagram.
+/// The request of a command; `None` for a work–precision diagram.
 fn request<'a>(command: &'a Command, out: &'a Path) -> Result<Option<Request<'a>>, StudyError> {
     if let Some((given, analysis)) = command.trajectory() {
         return Ok(Some(Request::Trajectory {
@@ -81,7 +81,7 @@ fn request<'a>(command: &'a Command, out: &'a Path) -> Result<Option<Request<'a>
         Command::Sweep(given) => Request::Sweep(given.sweep(out)),
         Command::WorkPrecision { .. } => return Ok(None),
         Command::Check { .. } => Request::Check,
-        // Asked for before, or no studies of a scene.
+        // Handled before, or no studies of a scene.
         Command::Kinematics(_) | Command::Statics(_) | Command::Kinetostatics(_) => Request::Check,
         Command::Validate { .. } | Command::View { .. } => Request::Check,
         Command::Schema | Command::Init { .. } => Request::Check,

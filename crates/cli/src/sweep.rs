@@ -1,4 +1,4 @@
-//! `dwell sweep`: its options, and the sweep that they ask for, of scenes in the plane and in space.
+//! `dwell sweep`: its options, and its request.
 
 use crate::values::{Choices, choice, parse_count};
 use clap::Args;
@@ -41,13 +41,13 @@ pub(crate) struct SweepArgs {
     /// Compute only this part of the points, such as 2/8, in the folder that all parts share
     #[arg(long, value_name = "PART/PARTS", allow_hyphen_values = true)]
     pub(crate) shard: Option<Shard>,
-    /// Write the rows as a table, too
+    /// Also write the rows as a table
     #[arg(long, value_parser = choice(TABLE_FORMATS), value_name = "FORMAT")]
     export: Option<TableFormat>,
 }
 
 impl SweepArgs {
-    /// The sweep that is asked for, with its files in a folder.
+    /// The requested sweep, with its files in a folder.
     pub(crate) fn sweep<'a>(&'a self, folder: &'a Path) -> ParameterSweep<'a> {
         ParameterSweep {
             vary: &self.vary,

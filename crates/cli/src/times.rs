@@ -1,15 +1,15 @@
-//! Where the time of a command went.
+//! The times of the stages of a command.
 
 use std::time::{Duration, Instant};
 
-/// The stages of a command, and how long each took.
+/// The stages of a command with their durations.
 pub(crate) struct Times {
     since: Instant,
     stages: Vec<(&'static str, Duration)>,
 }
 
 impl Times {
-    /// Begins now.
+    /// Starts the first stage.
     pub(crate) fn new() -> Self {
         Self {
             since: Instant::now(),
@@ -17,7 +17,7 @@ impl Times {
         }
     }
 
-    /// Ends a stage; the next begins.
+    /// Ends a stage and starts the next.
     pub(crate) fn add(&mut self, stage: &'static str) {
         let now = Instant::now();
         self.stages.push((stage, now - self.since));
@@ -27,15 +27,16 @@ impl Times {
     /// The stages as a line.
     pub(crate) fn text(&self) -> String {
         let whole: Duration = self.stages.iter().map(|(_, time)| *time).sum();
-        let stages = self.stages.iter();
-        let stages: Vec<String> = stages
+        let stages: Vec<String> = self
+            .stages
+            .iter()
             .map(|(stage, time)| format!("{stage} {}", seconds(*time)))
             .collect();
         format!("time: {} ({})", seconds(whole), stages.join(", "))
     }
 }
 
-/// Two or three digits are enough.
+/// A duration with two or three digits.
 fn seconds(time: Duration) -> String {
     let seconds = time.as_secs_f64();
     match seconds {

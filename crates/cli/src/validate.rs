@@ -1,4 +1,4 @@
-//! `dwell validate`: every case; a case that cannot be validated does not stop the others.
+//! `dwell validate`: validates every case; a failing case does not stop the others.
 
 use crate::interface::interface;
 use crate::options::DEFAULT_CASE_FOLDER;
@@ -15,9 +15,9 @@ use miette::{Report, miette};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Validates the cases in parallel, and with all of Dwell's own cases also the extreme parameters (`slow`: those
-/// that take minutes too) and the verification manual. The outcome holds the cases that could be validated, the report the errors of the others.
-// Long because it is the command from its arguments to its outcome.
+/// Validates the cases in parallel; with all of Dwell's own cases also the extreme parameters (with `slow` those
+/// that take minutes, too) and the verification manual. The outcome contains the validated cases, the report the errors of the others.
+// Long, because it is the whole command from its arguments to its outcome.
 pub(crate) fn validate(
     names: &[String],
     folder: &Path,
@@ -25,9 +25,10 @@ pub(crate) fn validate(
     bar: &ProgressBar,
 ) -> Result<(Outcome, Option<SceneError>), Report> {
     let (in_space, others) = cases::find_in_space(names, folder);
-    let cases = match names.is_empty() || !others.is_empty() {
-        true => cases::find(&others, folder)?,
-        false => Vec::new(),
+    let cases = if names.is_empty() || !others.is_empty() {
+        cases::find(&others, folder)?
+    } else {
+        Vec::new()
     };
     let read = |case: &PathBuf| PlaneScene::read(case.join("scene.toml"));
     let scenes: Vec<_> = cases.iter().map(read).collect();
@@ -50,7 +51,7 @@ pub(crate) fn validate(
             bar.set_message(format!("{}: {}", scene.name, step.done));
             bar.inc(1);
         };
-        // What leaves the program is judged, too: it runs itself. Where the system does not say where it is, the library alone is.
+        // The program runs itself to check its files. If the system does not know its path, only the library is checked.
         let done = match &program {
             Some(program) => validate_program(scene, case, program, &progress),
             None => dwell_validation::validate(scene, case, &progress),
@@ -78,10 +79,10 @@ pub(crate) fn validate(
                 )
             },
         );
-    let spatial = in_space
+    let mut spatial: Vec<_> = in_space
         .par_iter()
-        .map(|path| case_in_space(path, program.as_deref()));
-    let mut spatial: Vec<_> = spatial.collect();
+        .map(|path| case_in_space(path, program.as_deref()))
+        .collect();
     bar.finish_and_clear();
     let mut studies = studies.map_err(SceneError::from)?;
     let (audit, no_reader) = match audit {
@@ -152,7 +153,7 @@ pub(crate) fn validate(
     Ok((all, failures))
 }
 
-/// Adds the results of a study or a case to all.
+/// Adds the results of a study or a case to all results.
 fn add(all: &mut Outcome, added: Outcome) {
     all.summary += &added.summary;
     all.findings.extend(added.findings);
@@ -160,8 +161,8 @@ fn add(all: &mut Outcome, added: Outcome) {
     all.pictures.extend(added.pictures);
 }
 
-/// The studies beside the cases: extreme parameters, and with all of Dwell's own cases what accuracy costs and what exported
-/// runs are worth.
+/// The studies beside the cases: extreme parameters, and with all of Dwell's own cases work–precision diagrams and the accuracy of exported
+/// runs.
 fn studies(
     all: Option<&[&PlaneScene]>,
     slow: bool,
@@ -182,20 +183,20 @@ fn studies(
     done.collect()
 }
 
-/// A scene in space with its validation, by the reference beside it if there is one, and what leaves the program of it.
+/// The validation of a scene in space, with its reference if there is one, and of its files.
 fn case_in_space(
     path: &Path,
     program: Option<&Path>,
 ) -> Result<(SpaceScene, Validation), SceneError> {
     let scene = SpaceScene::read(path)?;
     print_warnings(&scene);
-    let reference = path.with_extension("json");
-    let reference = reference.is_file().then_some(reference);
+    let reference_path = path.with_extension("json");
+    let reference = reference_path.is_file().then_some(reference_path);
     let done = dwell_validation::validate_in_space(&scene, reference.as_deref(), program);
     Ok((scene, done.map_err(validation_error)?))
 }
 
-/// The cases of the plane and those in space for the verdict.
+/// The cases in the plane and in space, for the verdict.
 fn validated_cases<'a>(
     by_case: &'a [CaseResult<'a>],
     in_space: &'a [PathBuf],
@@ -232,7 +233,7 @@ fn validated_cases<'a>(
         .collect()
 }
 
-/// Refuses two cases of one name: they would write the same files.
+/// Rejects two cases with one name: they would write the same files.
 fn reject_duplicate_names(
     cases: &[PathBuf],
     scenes: &[Result<PlaneScene, SceneError>],
@@ -266,14 +267,14 @@ fn case_results<'a>(
     names.iter().map(String::as_str).zip(results_of).collect()
 }
 
-/// What was validated, and what could not be.
+/// The validated cases, and the errors of the others.
 fn separate<T>(results: Vec<Result<T, SceneError>>) -> (Vec<T>, Vec<SceneError>) {
     let (done, failed): (Vec<_>, Vec<_>) = results.into_iter().partition(Result::is_ok);
     let failed = failed.into_iter().filter_map(Result::err);
     (done.into_iter().flatten().collect(), failed.collect())
 }
 
-/// All the errors in one.
+/// Combines all errors in one.
 fn combined_error(mut errors: Vec<SceneError>) -> Option<SceneError> {
     match errors.len() {
         0 => None,

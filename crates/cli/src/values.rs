@@ -1,4 +1,4 @@
-//! The values of options: words, numbers and names, and what is said of those that are wrong.
+//! The values of options: words, numbers and names, with the messages for invalid ones.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
@@ -8,7 +8,7 @@ pub(crate) type Choices<T> = &'static [(&'static str, T, &'static str)];
 /// Longest name of a scene, bytes: the name of a file has at most 255.
 const MAX_NAME: usize = 100;
 
-/// The parser of an option that has one of these values.
+/// The parser of an option with these values.
 pub(crate) fn choice<T: Copy + Send + Sync>(
     choices: Choices<T>,
 ) -> impl TypedValueParser<Value = T> {
@@ -25,7 +25,7 @@ pub(crate) fn parse_number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "not a number".to_owned())
 }
 
-/// A number that satisfies a condition, or else a message.
+/// A number that satisfies a condition, or a message.
 pub(crate) fn parse_checked(
     text: &str,
     is_valid: impl Fn(f64) -> bool,
@@ -38,11 +38,12 @@ pub(crate) fn parse_checked(
 /// The name of a scene: part of the names of its files.
 pub(crate) fn parse_name(text: &str) -> Result<String, String> {
     let is_plain = |c: char| c.is_alphanumeric() || "-_ ".contains(c);
-    match !text.trim().is_empty() && text.len() <= MAX_NAME && text.chars().all(is_plain) {
-        true => Ok(text.to_owned()),
-        false => Err(format!(
+    if !text.trim().is_empty() && text.len() <= MAX_NAME && text.chars().all(is_plain) {
+        Ok(text.to_owned())
+    } else {
+        Err(format!(
             "a name has letters, digits, `-`, `_` and spaces, at most {MAX_NAME} bytes"
-        )),
+        ))
     }
 }
 
@@ -55,14 +56,14 @@ pub(crate) fn parse_finite(text: &str) -> Result<f64, String> {
     parse_checked(text, f64::is_finite, "not a finite number")
 }
 
-/// A coefficient of fluctuation: above 2 the machine would reverse.
+/// A coefficient of fluctuation, at most 2: above that the machine would reverse.
 pub(crate) fn parse_fluctuation(text: &str) -> Result<f64, String> {
     let message = "expected a number between 0 and 2";
     parse_checked(text, |v| v > 0.0 && v < 2.0, message)
 }
 
-/// A tolerance of an integrator: below 1e-14 none can meet it in double precision, and above 1e-3 the energy of a
-/// motion is wrong by a quarter within two revolutions.
+/// A tolerance of an integrator: below 1e-14 it cannot be met in double precision, and above 1e-3 the energy of a
+/// motion has an error of a quarter within two revolutions.
 pub(crate) fn parse_tolerance(text: &str) -> Result<f64, String> {
     let message = "a tolerance must be between 1e-14 and 1e-3";
     parse_checked(text, |v| (1e-14..=1e-3).contains(&v), message)
@@ -82,7 +83,7 @@ pub(crate) fn parse_accuracy(text: &str) -> Result<f64, String> {
     parse_checked(text, |v| (1e-13..=1e-2).contains(&v), message)
 }
 
-/// The accuracy of a table: double precision allows 1e-14, and above 1e-2 a table is useless.
+/// The accuracy of a table, from 1e-14 (double precision) to 1e-2.
 pub(crate) fn parse_table_accuracy(text: &str) -> Result<f64, String> {
     let message = "the accuracy of a table must be between 1e-14 and 1e-2";
     parse_checked(text, |v| (1e-14..=1e-2).contains(&v), message)

@@ -1,4 +1,4 @@
-//! `dwell view`: the live page with a scene in it.
+//! `dwell view`: the live page with a scene.
 
 use crate::options::{Options, STANDARD_INPUT};
 use crate::{print, print_note, scene_name, unwritten};
@@ -12,12 +12,12 @@ use std::process::{Command, Stdio};
 /// The element of the page that holds its scene, as `just web` writes it.
 const SCENE_ELEMENT: &str = r#"<script id="live-scene" type="application/json">null</script>"#;
 const SCENE_START: &str = r#"<script id="live-scene" type="application/json">"#;
-/// The page's name, beside the program.
+/// The name of the page in the program's folder.
 const PAGE: &str = "dwell.html";
-/// Longest text that the page takes: a link holds no more, either.
+/// Longest text that the page accepts, the same as for links.
 const MAX_BYTES: u64 = 1_000_000;
 
-/// Writes the live page with the text of a scene, whether it is right or not: what is wrong is shown there, and mended there.
+/// Writes the live page with the text of a scene, which may have errors: the page shows them.
 pub(crate) fn write(
     options: &Options,
     scene: &Path,
@@ -26,9 +26,11 @@ pub(crate) fn write(
 ) -> Result<(), Report> {
     let template = template(page)?;
     let text = text(scene)?;
-    // Within a script element only `</` and `<!--` mean anything: JSON can do without `<`.
-    let text = json(&text).map_err(|e| unwritten(&e))?;
-    let text = text.trim_end().replace('<', "\\u003c");
+    // Within a script element only `</` and `<!--` are special; in JSON `<` can be escaped.
+    let text = json(&text)
+        .map_err(|e| unwritten(&e))?
+        .trim_end()
+        .replace('<', "\\u003c");
     let html = template.replacen(SCENE_ELEMENT, &format!("{SCENE_START}{text}</script>"), 1);
     let mut files = Files::new();
     files.add(format!("{}-live.html", scene_name(options, scene)), html);
@@ -62,12 +64,14 @@ fn template(given: Option<&Path>) -> Result<String, Report> {
     Ok(html)
 }
 
-/// The page beside the program, or where `just web` writes it when the program is in `target/release`.
+/// The page in the program's folder, or where `just web` writes it if the program is in `target/release`.
 fn found() -> Result<PathBuf, Report> {
     let program = std::env::current_exe();
     let beside = program.as_deref().ok().and_then(Path::parent);
-    let places = beside.map(|folder| [folder.join(PAGE), folder.join("../web").join(PAGE)]);
-    let mut places = places.into_iter().flatten();
+    let mut places = beside
+        .map(|folder| [folder.join(PAGE), folder.join("../web").join(PAGE)])
+        .into_iter()
+        .flatten();
     places.find(|path| path.is_file()).ok_or_else(|| {
         miette!(
             help = "build it with `just web` (it needs the target wasm32-unknown-unknown of Rust), or give its file with --page",
@@ -80,14 +84,13 @@ fn found() -> Result<PathBuf, Report> {
 fn text(scene: &Path) -> Result<String, Report> {
     let shown = scene.display();
     let mut bytes = Vec::new();
-    let read = match scene == Path::new(STANDARD_INPUT) {
-        true => std::io::stdin()
+    let read = if scene == Path::new(STANDARD_INPUT) {
+        std::io::stdin()
             .lock()
             .take(MAX_BYTES + 1)
-            .read_to_end(&mut bytes),
-        false => {
-            fs::File::open(scene).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes))
-        }
+            .read_to_end(&mut bytes)
+    } else {
+        fs::File::open(scene).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes))
     };
     read.map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound => miette!(
@@ -115,7 +118,7 @@ fn text(scene: &Path) -> Result<String, Report> {
     })
 }
 
-/// Opens a file in the browser. Where that cannot be done, the path that was printed is what there is.
+/// Opens a file in the browser. If that fails, the printed path remains.
 fn open(path: &Path) {
     let program = match std::env::consts::OS {
         "macos" => "open",

@@ -1,4 +1,4 @@
-//! What an assembled mechanism computes, whether it is in the plane or in space.
+//! The computations of an assembled mechanism, in the plane or in space.
 
 use crate::equation::{EquationSource, SceneEquation};
 use crate::error::Error;
@@ -15,13 +15,13 @@ use dwell_study::{
 use std::fmt;
 use std::sync::Arc;
 
-/// What of a mechanism has a name, in the order of the scene.
+/// The named parts of a mechanism, in the order of the scene.
 #[derive(Debug)]
 pub(crate) struct Names {
     /// 2 in the plane, 3 in space.
     pub(crate) dimension: usize,
     pub(crate) actuators: Vec<String>,
-    /// Those of the actuators first.
+    /// Names of the coordinates, those of the actuators first.
     pub(crate) coordinates: Vec<String>,
     pub(crate) bodies: Vec<NamedBody>,
     pub(crate) reactions: Vec<NamedReaction>,
@@ -44,19 +44,19 @@ pub(crate) struct NamedReaction {
     /// `joint.component`.
     pub(crate) name: String,
     pub(crate) joint: String,
-    /// Its place among those of the model; none where redundant constraints leave it open.
+    /// Its index among those of the model; `None` if redundant constraints leave it undetermined.
     pub(crate) place: Option<usize>,
 }
 
 impl Names {
-    /// The number of a body.
+    /// The index of a body.
     pub(crate) fn body(&self, name: &str) -> Result<usize, Error> {
         let found = self.bodies.iter().position(|body| body.name == name);
         let names = self.bodies.iter().map(|body| body.name.as_str());
         found.ok_or_else(|| Error::unknown("body", "bodies", name, names))
     }
 
-    /// A point `body.point`: its body, and where it is in that body's frame, m.
+    /// A point `body.point`: the index of its body, and its position in that body's frame, m.
     pub(crate) fn point(&self, name: &str) -> Result<(usize, [f64; 3]), Error> {
         let (body, point) = name.split_once('.').unwrap_or((name, ""));
         let index = self.body(body)?;
@@ -74,22 +74,22 @@ pub(crate) trait Assembled: fmt::Debug + Send + Sync {
     /// The states of all bodies at coordinates, velocities and accelerations.
     fn states(&self, motion: [&[f64]; 3]) -> Result<FoundStates, Error>;
 
-    /// The same with the forces at time `t`, s.
+    /// The states and the forces at time `t`, s.
     fn forces(
         &self,
         t: f64,
         motion: [&[f64]; 3],
     ) -> Result<(FoundStates, InverseDynamics<f64>), Error>;
 
-    /// Where points of bodies are at many positions: by position, then by point.
+    /// Positions of points of bodies at many coordinates: by position, then by point.
     fn paths(&self, points: &[(usize, [f64; 3])], q: &[f64]) -> Result<Vec<[f64; 3]>, Error>;
 
-    /// The reduced model with some reactions, by their numbers.
+    /// The reduced model with some reactions, by index.
     fn reduced(&self, reactions: &[usize]) -> Result<Arc<dyn CoefficientSource>, Error>;
 
     fn equation(&self) -> Result<Box<dyn EquationSource>, Error>;
 
-    /// The mechanism at coordinates as SVG. Travels, cams and paths are those between the limits of the only coordinate.
+    /// The mechanism at given coordinates as SVG, with travels, cams and paths between the limits of the only coordinate.
     #[cfg(feature = "pictures")]
     fn svg(&self, q: &[f64], limits: Option<(f64, f64)>) -> Result<String, Error>;
 
@@ -124,20 +124,21 @@ impl SceneTask for Assemble {
 fn names<S: StudyScene>(scene: &S, assembled: &AssembledModel<S>) -> Names {
     let actuators = (0..).map_while(|k| scene.actuator(k));
     let owned = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect();
-    let bodies = scene.named_points().into_iter();
-    let bodies = bodies.map(|(name, points)| {
+    let bodies = scene.named_points().into_iter().map(|(name, points)| {
         let points = points.into_iter().map(|(point, at)| (point.to_owned(), at));
         NamedBody {
             name: name.to_owned(),
             points: points.collect(),
         }
     });
-    let reactions = assembled.reactions.iter();
-    let reactions = reactions.map(|&(reaction, place)| NamedReaction {
-        name: scene.name_of_reaction(reaction),
-        joint: scene.joint_of(reaction).to_owned(),
-        place,
-    });
+    let reactions = assembled
+        .reactions
+        .iter()
+        .map(|&(reaction, place)| NamedReaction {
+            name: scene.name_of_reaction(reaction),
+            joint: scene.joint_of(reaction).to_owned(),
+            place,
+        });
     Names {
         dimension: S::DIMENSION,
         actuators: actuators.map(|(name, _)| name.to_owned()).collect(),
@@ -182,8 +183,10 @@ impl<S: StudyScene> Assembled for AssembledScene<S> {
     ) -> Result<(FoundStates, InverseDynamics<f64>), Error> {
         let model = &self.assembled.model;
         let mut forces = model.result_buffer();
-        let found = self.scene.loaded_states(model, t, motion, &mut forces);
-        let found = found.map_err(|error| self.explain(&error))?;
+        let found = self
+            .scene
+            .loaded_states(model, t, motion, &mut forces)
+            .map_err(|error| self.explain(&error))?;
         Ok((found, forces))
     }
 
@@ -220,7 +223,7 @@ impl<S: StudyScene> Assembled for AssembledScene<S> {
             [first] => {
                 let (low, high) = limits.unwrap_or((*first, first + std::f64::consts::TAU));
                 let place = |k| low + (high - low) * k as f64 / INTERVALS as f64;
-                // What cannot be reached is not gone through; the limits themselves are singular.
+                // Positions that cannot be reached are skipped; the limits themselves are singular.
                 (0..=INTERVALS)
                     .filter_map(|k| at(&[place(k)]).ok())
                     .collect()

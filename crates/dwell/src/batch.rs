@@ -6,10 +6,10 @@ use rayon::prelude::*;
 
 /// Coordinates that one thread evaluates with one working memory.
 const BLOCK: usize = 1024;
-/// So few coordinates are evaluated one by one: working memory for lanes takes longer to allocate.
+/// Up to this number, coordinates are evaluated one by one: allocating memory for lanes would take longer.
 const FEW: usize = 16;
 
-/// The coefficients at many coordinates, each kind in one piece. Reactions are in the order of
+/// The coefficients at many coordinates, one array for each kind. Reactions are in the order of
 /// [`ReducedModel::reactions`], loads in that of [`ReducedModel::loads`].
 ///
 /// ```
@@ -31,13 +31,13 @@ pub struct CoefficientBatch {
     pub b: Vec<f64>,
     /// By coordinate, then by load: its generalised force per unit of its magnitude.
     pub w: Vec<f64>,
-    /// By coordinate, then by load, then by reaction: its share per unit of its magnitude.
+    /// By coordinate, then by load, then by reaction: the load's contribution to the reaction per unit of its magnitude.
     pub c: Vec<f64>,
 }
 
 impl ReducedModel {
-    /// The coefficients at many coordinates, rad or m, on all threads. Every value is that of [`ReducedModel::at`], to the
-    /// last bit.
+    /// The coefficients at many coordinates, rad or m, computed on all threads. Every value equals that of [`ReducedModel::at`] bit for
+    /// bit.
     ///
     /// # Errors
     /// [`Error::Study`] for the first coordinate that the mechanism cannot reach.
@@ -66,7 +66,7 @@ impl ReducedModel {
         })
     }
 
-    /// The coefficients at few coordinates, in memory that is there already.
+    /// The coefficients at few coordinates, with existing working memory.
     fn one_by_one(&self, q: &[f64]) -> Result<CoefficientBatch, Error> {
         let mut batch = CoefficientBatch::default();
         let mut evaluator = self.evaluator();

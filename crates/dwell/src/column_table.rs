@@ -1,4 +1,4 @@
-//! Rows of numbers under named columns: what motions and sweeps give.
+//! Rows of numbers under named columns: the results of motions and sweeps.
 
 use crate::error::Error;
 use dwell_findings::Column;

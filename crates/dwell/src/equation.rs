@@ -1,4 +1,4 @@
-//! The equation of a free motion as a function, for integrators of one's own.
+//! The equation of a free motion as a function, for your own integrators.
 
 use crate::error::Error;
 use dwell_dynamics::{DynamicsError, Machine, MachineWorkspace};
@@ -7,9 +7,9 @@ use dwell_study::StudyScene;
 use std::fmt;
 use std::sync::Arc;
 
-/// The equation of motion of a machine with the working memory of one thread.
+/// The equation of motion of a machine, with the working memory of one thread.
 ///
-/// Loads and drives are evaluated as they are at (t, y): an integrator that steps over their switches must find these itself.
+/// Loads and drives are evaluated at (t, y). Your integrator has to locate their switches itself.
 ///
 /// ```
 /// # let study = dwell::Scene::read("../../validation/single-dwell/scene.toml")?.assemble()?;
@@ -41,7 +41,7 @@ impl EquationOfMotion {
     /// ẏ at time t, s. In the plane it allocates nothing.
     ///
     /// # Errors
-    /// [`Error::State`] for a wrong number of states; [`Error::Study`] where there is no pose or no inertia, or a load has no value.
+    /// [`Error::State`] for a wrong number of states; [`Error::Study`] if there is no pose or no inertia at this state, or a load has no value.
     ///
     /// ```
     /// # let study = dwell::Scene::read("../../validation/single-dwell/scene.toml")?.assemble()?;
@@ -54,7 +54,7 @@ impl EquationOfMotion {
         self.0.rates(t, y)
     }
 
-    /// ∂ẏ/∂y at time t, s, row by row, by dual numbers: exact but for rounding.
+    /// ∂ẏ/∂y at time t, s, row by row, by dual numbers: exact to rounding.
     ///
     /// # Errors
     /// As [`EquationOfMotion::rates`].
@@ -159,7 +159,7 @@ impl<S: StudyScene> EquationSource for SceneEquation<S> {
         let mut states: Vec<Dual> = y.iter().map(|&value| Dual::from_f64(value)).collect();
         let mut rates = states.clone();
         let mut jacobian = vec![0.0; n * n];
-        // Nothing depends on the works.
+        // No rate depends on the works.
         for column in 0..self.machine.work_offset() {
             states[column] = Dual::variable(y[column]);
             match self.machine.evaluate(t, &states, &mut self.dual_workspace) {

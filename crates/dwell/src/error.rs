@@ -1,12 +1,12 @@
-//! Why a call fails.
+//! The errors of this crate.
 
 use dwell_scene::SceneError;
 use dwell_study::StudyError;
 use std::fmt;
 use thiserror::Error;
 
-/// Why a call of this crate fails. Its text names the bodies, joints and coordinates; [`Error::scene_error`] has the
-/// places in the scene's text.
+/// The error of a call. Its text names bodies, joints and coordinates; [`Error::scene_error`] has the
+/// places in the text of the scene.
 ///
 /// ```
 /// use dwell::{Joint, Mechanism};
@@ -20,25 +20,25 @@ use thiserror::Error;
 /// ```
 #[derive(Error)]
 pub enum Error {
-    /// The scene cannot be read or evaluated, or a sweep cannot be made.
+    /// The scene cannot be read or evaluated, or a sweep is invalid.
     #[error("{}", all_messages(.0))]
     Study(StudyError),
-    /// The mechanism has nothing of that name.
+    /// The mechanism has no such body, point, reaction, actuator, coordinate or column.
     #[error("there is no {what} `{name}`: {help}")]
     Unknown {
-        /// What was looked for: a body, a point, a reaction, an actuator, a coordinate, or a column.
+        /// The kind of the name: a body, a point, a reaction, an actuator, a coordinate, or a column.
         what: &'static str,
-        /// The name that was given.
+        /// The unknown name.
         name: String,
-        /// The nearest name, or all of them.
+        /// The nearest name, or all names.
         help: String,
     },
-    /// A vector that is taken as another number of components than it has.
+    /// A vector is read with a wrong number of components.
     #[error("a vector was taken as {asked} components, but it has {components}")]
     Components {
-        /// As how many it was taken.
+        /// The requested number of components.
         asked: usize,
-        /// How many it has.
+        /// Its number of components.
         components: &'static str,
     },
     /// A quantity that only planar mechanisms have.
@@ -46,20 +46,20 @@ pub enum Error {
     InSpace {
         /// The quantity.
         what: &'static str,
-        /// What there is instead.
+        /// The alternative in space.
         instead: &'static str,
     },
-    /// A list of coordinates, velocities or accelerations that does not have one number for each actuator.
+    /// A list of coordinates, velocities or accelerations does not have one number for each actuator.
     #[error("{given} numbers given as {what}, where {actuators} are needed: one for each actuator")]
     Count {
-        /// Which list.
+        /// The list.
         what: &'static str,
         /// How many numbers it has.
         given: usize,
         /// How many it needs.
         actuators: usize,
     },
-    /// A state that does not have one number for each state of the equation of motion.
+    /// A state vector does not have one number for each state of the equation of motion.
     #[error("{given} numbers given as a state, where the equation of motion has {states}")]
     State {
         /// How many numbers it has.
@@ -67,7 +67,7 @@ pub enum Error {
         /// How many it needs.
         states: usize,
     },
-    /// Two parts of one name in a section of a builder.
+    /// Two parts with the same name in a section of a builder.
     #[error("`{name}` is given twice among the {section}")]
     GivenTwice {
         /// The section: joints, loads, drives …
@@ -75,23 +75,23 @@ pub enum Error {
         /// The name.
         name: String,
     },
-    /// A table that cannot be made or written.
+    /// A table cannot be built or written.
     #[error("{0}")]
     Table(String),
-    /// Closed forms that do not agree with the reduced model, with the largest difference relative to the largest value.
+    /// Closed forms disagree with the reduced model; with the largest difference relative to the largest value.
     #[error("the closed forms differ from the reduced model by {difference:.1e}")]
     ClosedForm {
         /// The difference.
         difference: f64,
     },
-    /// A coordinate beyond a table's domain.
+    /// A coordinate outside the domain of a table.
     #[error("{q} is not in the table, which reaches from {from} to {to}")]
     OutOfTable {
         /// The coordinate, rad or m.
         q: f64,
-        /// Where the table begins.
+        /// Start of the domain.
         from: f64,
-        /// Where it ends.
+        /// End of the domain.
         to: f64,
     },
 }
@@ -120,7 +120,7 @@ impl Error {
         }
     }
 
-    /// Whether coordinates, velocities and accelerations are one for each actuator.
+    /// Checks that there is one coordinate, velocity and acceleration for each actuator.
     pub(crate) fn check_counts(lists: [&[f64]; 3], actuators: usize) -> Result<(), Self> {
         let names = ["coordinates", "velocities", "accelerations"];
         match lists
@@ -137,7 +137,7 @@ impl Error {
         }
     }
 
-    /// A reaction that redundant constraints leave open.
+    /// The error for a reaction that redundant constraints leave undetermined.
     pub(crate) fn shared_load(name: &str) -> Self {
         Self::Unknown {
             what: "statically determinate reaction",
@@ -160,7 +160,7 @@ impl Error {
     }
 }
 
-/// Its text, because that is what a program shows whose `main` returns this error.
+/// The message, which is printed if `main` returns this error.
 impl fmt::Debug for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{self}")

@@ -1,4 +1,4 @@
-//! A mechanism as code: its reduced model for controllers, and its closed forms.
+//! Mechanisms as code: reduced models for controllers, and closed forms.
 
 use crate::error::Error;
 use crate::mechanism::scene::Scene;
@@ -13,7 +13,7 @@ use dwell_study::{
     compute_export, compute_export_of_several_freedoms, fmu_archive, with_dimension,
 };
 
-/// What [`Scene::export`] writes, in double precision.
+/// The target of [`Scene::export`], in double precision.
 ///
 /// ```
 /// use dwell::{ExportTarget, FmiVersion};
@@ -21,17 +21,17 @@ use dwell_study::{
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExportTarget {
-    /// C99, a header and a source that need no library: the functions of the coordinate in cells of polynomials.
+    /// C99, a header and a source without libraries: functions of the coordinate as piecewise polynomials (cells).
     C,
-    /// The same with the model's own operations instead of cells: exact to rounding, with square roots, sines and cosines.
+    /// C99 with the model's own operations instead of cells: exact to rounding, with square roots, sines and cosines.
     ExactC,
     /// A crate without the standard library, allocation or unsafe code, in cells.
     Rust,
     /// A MAT-file with the cells, and functions for MATLAB and Octave.
     Matlab,
-    /// An FMU for model exchange and co-simulation, in cells: sources, and a library for this platform where a C compiler is found.
+    /// An FMU for model exchange and co-simulation, with cells: sources, and a library for this platform if a C compiler is found.
     Fmu(FmiVersion),
-    /// The same with the model's own operations.
+    /// An FMU with the model's own operations.
     ExactFmu(FmiVersion),
 }
 
@@ -47,13 +47,13 @@ impl ExportTarget {
 }
 
 impl Scene {
-    /// The machine as code: the path and content of each file, as `dwell export` writes them. In cells every function of the coordinate is
-    /// within `accuracy` of its largest value (1e-14 to 1e-2); exact code has that of rounding. A machine of several freedoms has exact code,
-    /// in C. Mechanisms in space are exported in cells and with one degree of freedom only.
+    /// The machine as code: the path and content of each file, as `dwell export` writes them. With cells, the error of every function of the
+    /// coordinate is at most `accuracy` (1e-14 to 1e-2) times its largest value; exact code has rounding errors only. Machines of several degrees of
+    /// freedom are exported as exact code in C, mechanisms in space with cells and one degree of freedom only.
     ///
     /// # Errors
-    /// [`Error::Study`] where the machine cannot be exported, with the reason and what to change: it has several freedoms and the target
-    /// is not C, or the mechanism is in space; it passes change points, or sticks. [`Error::Table`] for another accuracy.
+    /// [`Error::Study`] if the machine cannot be exported, with the reason and a suggestion: it has several degrees of freedom and the target
+    /// is not C, or the mechanism is in space; it passes change points, or has sticking friction. [`Error::Table`] for an invalid accuracy.
     ///
     /// ```
     /// use dwell::ExportTarget;
@@ -73,13 +73,13 @@ impl Scene {
         with_dimension(self.inner(), ExportScene { target, asked })
     }
 
-    /// The closed forms of a mechanism made of dyads: a function `reduced` of the coordinate in a language, that gives the positions, m, ½m′, and a
-    /// and b of a reaction (without a name, of the first that the scene requests). They agree with the reduced model to 1e-12 at 24
+    /// The closed forms of a mechanism made of dyads: a function `reduced` of the coordinate, in a programming language, that returns the positions, m, ½m′, and a
+    /// and b of a reaction (by default the first that the scene requests). They agree with the reduced model to 1e-12 at 24
     /// positions.
     ///
     /// # Errors
-    /// [`Error::Study`] where the mechanism is in space, is not made of dyads, has several actuators, or has no such reaction;
-    /// [`Error::ClosedForm`] where they do not agree.
+    /// [`Error::Study`] if the mechanism is in space, is not made of dyads, has several actuators, or has no such reaction;
+    /// [`Error::ClosedForm`] if the closed forms disagree with the reduced model.
     ///
     /// ```
     /// let scene = dwell::Scene::read("../../docs/slider.toml")?;
@@ -133,7 +133,7 @@ impl SceneTask for FindClosedForm<'_> {
     }
 }
 
-/// What a target asks for.
+/// The request of a target.
 fn request(target: ExportTarget, accuracy: f64) -> Result<ExportRequest, Error> {
     let exact = target.is_exact();
     if !exact && !(1e-14..=1e-2).contains(&accuracy) {

@@ -37,41 +37,40 @@
 //! |---|---|
 //! | where are the bodies? | [`Mechanism::positions`], [`Mechanism::kinematics`] |
 //! | which forces does a motion need? | [`Mechanism::inverse_dynamics`] at one instant, [`Mechanism::kinetostatics`] along the prescribed motion |
-//! | the same without forces, or at rest | [`Mechanism::kinematics_along_motion`], [`Mechanism::statics_along_motion`] |
+//! | … without forces, or at rest | [`Mechanism::kinematics_along_motion`], [`Mechanism::statics_along_motion`] |
 //! | the equation of motion | [`Mechanism::reduced`]: m, ½m′, w, and a, b, c of each reaction; [`ReducedModel::table`] |
 //! | how does it move under its loads and drives? | [`Mechanism::simulate`], [`Mechanism::period`] |
-//! | the same by an integrator of one's own | [`Mechanism::equation_of_motion`] |
+//! | … with your own integrator | [`Mechanism::equation_of_motion`] |
 //! | where does it rest, how does it vibrate? | [`Mechanism::equilibria`], [`Mechanism::linearise`] |
 //! | how steadily does it run, which flywheel does it need? | [`Mechanism::cycle`] |
 //! | what if its dimensions vary? | [`Sweep`] |
-//! | the same as code for a controller, or as formulas | [`Scene::export`], [`Scene::closed_form`] |
+//! | code for a controller, or formulas | [`Scene::export`], [`Scene::closed_form`] |
 //!
-//! # Loads of one's own
+//! # Your own loads
 //!
-//! A load may be a function of the program, [`Magnitude::function`], of time, coordinates and velocities. An expression is searched for its switches,
-//! a function cannot be: between its [breakpoints](Magnitude::breakpoints) it must be smooth in the signals that it is called with, and
-//! depend on nothing else. A breakpoint is a value of one signal at which the function jumps or has a kink. A motion stops there, goes on with
-//! the other side, or slides along it where both sides lead back; it is then the motion of the same expression. Next to a breakpoint the
-//! function is called on one side of it at a time; beyond it keeps the value that it has there.
+//! The magnitude of a load may be a function of your program, [`Magnitude::function`], of time, coordinates and velocities. Unlike an expression, a function
+//! cannot be searched for switches. Between its [breakpoints](Magnitude::breakpoints) it must be smooth in its signals and
+//! depend on nothing else. A breakpoint is a value of one signal at which the function jumps or has a kink. The integration of a motion stops there and restarts on
+//! the other side, or slides along the breakpoint if both sides lead back to it; the motion is that of the equivalent expression. Near a breakpoint the
+//! function is called on one side of it only; beyond the breakpoint its value there is used.
 //!
-//! A jump that is not named makes the steps of every method too short to go on: [`MotionResults::early_stop`] then names the load. A kink costs accuracy and
-//! steps, and a pulse shorter than a step may be missed. Switches that depend on several signals at once (`x > y`) need a coordinate of
-//! their own, or an expression.
+//! An unnamed jump makes the steps of every method too short to continue; [`MotionResults::early_stop`] then names the load. An unnamed kink costs accuracy and
+//! steps, and a pulse shorter than a step may be missed. A switch that depends on several signals at once (`x > y`) needs a named coordinate,
+//! or an expression.
 //!
 //! # Conventions
 //!
-//! SI everywhere: m, rad, kg, s, N. Right-handed plane, angles counter-clockwise. Points with three numbers make a mechanism one in space;
-//! the type that a vector is assigned to says [how many components](Kinematics) it has. A reaction is the force or moment of the
+//! SI units: m, rad, kg, s, N. Right-handed plane, angles counter-clockwise. A mechanism whose points have three numbers is in space;
+//! the type to which a vector is assigned determines [its number of components](Kinematics). A reaction is the force or moment of the
 //! joint's first-named body on the second. Points are written `body.point`, reactions `joint.component`. Coordinates are those of
 //! the actuators, in their order. A [`Mechanism`] and a [`ReducedModel`] are constant and shared between threads.
 //!
-//! A mechanism that is built in a program is a scene: [`MechanismBuilder::to_toml`] writes it for the `dwell` command, and
-//! every key of a joint, load, law, drive or friction
-//! that has no function here is set with its `with`. Sections without a function, such as `[coordinate-sweep]`, are given as text
+//! A mechanism built in a program is a scene: [`MechanismBuilder::to_toml`] writes it for the `dwell` command. Keys of joints, loads, laws,
+//! drives and friction without a function of their own are set by `with`. Sections without a function, such as `[coordinate-sweep]`, are given as text
 //! to [`MechanismBuilder::toml`].
 //!
 //! More programs are in the folder `examples`: reactions of a four-bar, the single-dwell study, the flywheel of a press,
-//! equilibrium and eigenfrequencies, a tolerance study, and loads of one's own.
+//! equilibrium and natural frequencies, a tolerance study, and your own loads.
 
 mod assembled;
 mod batch;
@@ -146,7 +145,7 @@ pub use sweep::{Sweep, SweepResults};
 pub use table::Table;
 pub use value::Value;
 
-/// The fragment of the README is a program that runs.
+/// Runs the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 struct Readme;

@@ -90,9 +90,9 @@ fn heading(column: &Column) -> String {
 pub struct Equilibrium {
     /// The free coordinates, rad or m.
     pub coordinates: Vec<f64>,
-    /// What a small disturbance does.
+    /// Whether a small disturbance grows or decays.
     pub stability: Stability,
-    /// The vibration modes of the linearised motion, the lowest frequency first.
+    /// The vibration modes of the linearised motion, by increasing frequency.
     pub modes: Vec<dwell_dynamics::Mode>,
     /// The eigenvalues, 1/s, as real and imaginary parts.
     pub eigenvalues: Vec<[f64; 2]>,
@@ -111,9 +111,9 @@ pub struct Equilibrium {
 pub struct StateSpace {
     /// Names and units of the states x.
     pub states: Vec<String>,
-    /// Of the inputs u: one for each drive.
+    /// Names and units of the inputs u: one for each drive.
     pub inputs: Vec<String>,
-    /// Of the outputs z: coordinates, velocities, reactions, drives' forces.
+    /// Names and units of the outputs z: coordinates, velocities, reactions, forces of drives.
     pub outputs: Vec<String>,
     /// The states about which it is linearised.
     pub operating_point: Vec<f64>,
@@ -142,13 +142,13 @@ pub struct Cycle {
     pub period: f64,
     /// Mean speed, rad/s.
     pub mean_speed: f64,
-    /// Coefficient of fluctuation: largest less smallest speed, over the mean speed.
+    /// Coefficient of fluctuation: (largest − smallest speed) / mean speed.
     pub fluctuation: f64,
     /// Whether a small disturbance decays.
     pub is_stable: bool,
     /// The work of each load and drive in a cycle, J, and their sum.
     pub works: Vec<(String, f64)>,
-    /// The moment of inertia to be added along the coordinate for the coefficient of fluctuation that was asked for,
+    /// The moment of inertia to be added along the coordinate for the requested coefficient of fluctuation,
     /// kg·m².
     pub flywheel: Option<f64>,
 }

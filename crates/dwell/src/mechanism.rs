@@ -1,4 +1,4 @@
-//! An assembled mechanism, and what can be asked of it at one position.
+//! An assembled mechanism, and its results at one position.
 
 pub(crate) mod builder;
 mod equations;
@@ -20,8 +20,8 @@ use std::sync::Arc;
 
 /// An assembled mechanism, in the plane or in space: constant, cheap to clone, and shared between threads.
 ///
-/// It is [built](Mechanism::builder) or [read](Scene::read), and then asked. Coordinates are those of its
-/// [actuators](Mechanism::actuators), in their order, in rad or m; everything is in SI.
+/// It is [built](Mechanism::builder) or [read](Scene::read). Coordinates are those of its
+/// [actuators](Mechanism::actuators), in their order, in rad or m; all units are SI.
 ///
 /// ```
 /// use dwell::{Actuator, Joint, Load, Mechanism};
@@ -67,7 +67,7 @@ impl Mechanism {
         })
     }
 
-    /// A picture of it at coordinates, rad or m, as an SVG document.
+    /// A picture of the mechanism at the coordinates `q`, rad or m, as an SVG document.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -76,13 +76,13 @@ impl Mechanism {
     /// ```
     ///
     /// # Errors
-    /// [`Error`] where the mechanism cannot reach them.
+    /// [`Error`] if the mechanism cannot reach them.
     #[cfg(feature = "pictures")]
     pub fn svg(&self, q: &[f64]) -> Result<String, Error> {
         self.assembled.svg(q, self.names.limits)
     }
 
-    /// The scene it was assembled from.
+    /// The scene from which it was assembled.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -117,7 +117,7 @@ impl Mechanism {
         all.map(|reaction| reaction.name.clone()).collect()
     }
 
-    /// Those of them that redundant constraints do not leave open.
+    /// The reactions that equilibrium determines, also with redundant constraints.
     ///
     /// ```
     /// # let bricard = dwell::Scene::read("../../validation/spatial/bricard-a04.toml")?.assemble()?;
@@ -146,7 +146,7 @@ impl Mechanism {
         named.collect()
     }
 
-    /// How many numbers a point has: 2 in the plane, 3 in space.
+    /// The number of coordinates of a point: 2 in the plane, 3 in space.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -157,7 +157,7 @@ impl Mechanism {
         self.names.dimension
     }
 
-    /// Where the actuators' coordinates are at assembly, rad or m.
+    /// The coordinates of the actuators at assembly, rad or m.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -168,7 +168,7 @@ impl Mechanism {
         self.names.start.clone()
     }
 
-    /// The limits of the only coordinate, rad or m, where it has limits: limit positions of the mechanism.
+    /// The limits of the only coordinate, rad or m, if it has limits: limit positions of the mechanism.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -182,7 +182,7 @@ impl Mechanism {
     /// The positions of all bodies at the coordinates `q`.
     ///
     /// # Errors
-    /// [`Error::Count`]; [`Error::Study`] where the mechanism cannot reach them.
+    /// [`Error::Count`]; [`Error::Study`] if the mechanism cannot reach them.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -219,11 +219,11 @@ impl Mechanism {
         Ok(Kinematics::new(Arc::clone(&self.names), found))
     }
 
-    /// Inverse dynamics under all loads at time `t` (s): the actuators' forces and all reactions that the motion with
-    /// coordinates `q`, velocities and accelerations needs. At rest it is statics.
+    /// Inverse dynamics under all loads at time `t` (s): the actuator forces and all reactions for the motion with the
+    /// coordinates `q`, velocities and accelerations. At rest this is statics.
     ///
     /// # Errors
-    /// As [`Mechanism::positions`]; [`Error::Study`] where a load has no value or friction locks the mechanism.
+    /// As [`Mechanism::positions`]; [`Error::Study`] if a load has no value or friction locks the mechanism.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;

@@ -1,4 +1,4 @@
-//! Motions in time: along a prescribed motion, and free.
+//! Motions in time, prescribed and free.
 
 use crate::column_table::ColumnTable;
 use crate::error::Error;
@@ -22,7 +22,7 @@ pub struct Period {
     pub energy: f64,
 }
 
-/// How a free motion is integrated.
+/// The integration method of a free motion, and its accuracy.
 ///
 /// ```
 /// use dwell::{Method, Solver};
@@ -33,7 +33,7 @@ pub struct Period {
 pub struct Solver(pub(crate) MotionSolver);
 
 impl Solver {
-    /// The cheapest method that reaches an accuracy: it bounds the error of angles in rad, of lengths relative to their
+    /// The cheapest method that reaches an accuracy: a bound of the error of angles in rad, of lengths relative to their
     /// largest change, and of energy and reactions relative to their largest value.
     ///
     /// ```
@@ -60,7 +60,7 @@ impl Solver {
         }))
     }
 
-    /// The same with this time between samples, s; otherwise it is a thousandth of the duration.
+    /// Sets the time between samples, s; the default is a thousandth of the duration.
     ///
     /// ```
     /// let solver = dwell::Solver::accuracy(1e-9).sample_interval(0.01);
@@ -102,11 +102,11 @@ impl Solver {
 #[derive(Debug)]
 pub struct MotionResults {
     table: ColumnTable,
-    /// The events that happened: time, s, and name.
+    /// The events: time, s, and name.
     pub events: Vec<(f64, String)>,
-    /// The estimated error, where an accuracy was required.
+    /// The estimated error, if an accuracy was required.
     pub estimated_error: Option<f64>,
-    /// Why the motion ended early, or is less accurate than required, if so.
+    /// The reason if the motion ended early or is less accurate than required.
     pub early_stop: Option<Error>,
 }
 

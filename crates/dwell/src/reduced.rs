@@ -33,12 +33,12 @@ pub struct ReducedModel {
     idle: IdleWorkspaces,
 }
 
-/// Evaluators that nobody has at present: to allocate their memory takes longer than to evaluate a position. Copies of a model share them.
+/// Unused evaluators, kept because allocating their memory takes longer than evaluating a position. Copies of a model share them.
 #[derive(Debug, Clone, Default)]
 struct IdleWorkspaces(Arc<Mutex<Vec<Box<dyn CoefficientEvaluator>>>>);
 
 impl IdleWorkspaces {
-    /// A thread that panicked with the lock left whole memory.
+    /// A thread that panicked while holding the lock left intact memory.
     fn all(&self) -> MutexGuard<'_, Vec<Box<dyn CoefficientEvaluator>>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -65,7 +65,7 @@ pub struct Coefficients {
     pub b: Vec<f64>,
     /// By load: its generalised force per unit of its magnitude F.
     pub w: Vec<f64>,
-    /// By load, then by reaction: its share in the reaction per unit of F.
+    /// By load, then by reaction: its contribution to the reaction per unit of F.
     pub c: Vec<Vec<f64>>,
 }
 
@@ -105,10 +105,10 @@ impl ReducedModel {
         self.loads.iter().map(String::as_str).collect()
     }
 
-    /// The coefficients at `q`, rad or m. For many positions an [`evaluator`](Self::evaluator) allocates nothing at all.
+    /// The coefficients at `q`, rad or m. For many positions, an [`evaluator`](Self::evaluator) avoids all allocations.
     ///
     /// # Errors
-    /// [`Error::Study`] where the mechanism cannot reach `q`.
+    /// [`Error::Study`] if the mechanism cannot reach `q`.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -153,7 +153,7 @@ pub(crate) trait CoefficientSource: fmt::Debug + Send + Sync {
     /// m, ½m′, a and b at many coordinates.
     fn inertial_batch(&self, q: &[f64]) -> Result<Batch, Error>;
 
-    /// The model as a table. Reactions that friction needs follow those that are asked for.
+    /// The model as a table. Reactions that friction needs follow the requested ones.
     fn table(&self, accuracy: f64) -> Result<(TabulatedModel, Labels), Error>;
 }
 
@@ -165,7 +165,7 @@ pub(crate) trait CoefficientEvaluator: fmt::Debug + Send {
 pub(crate) struct SceneCoefficients<S: StudyScene> {
     scene: Arc<S>,
     models: UnitModels<S::Model>,
-    /// How many were asked for; those of the loaded model may be followed by some that friction needs.
+    /// Number of requested reactions; in the model with loads, reactions that friction needs may follow.
     reactions: usize,
 }
 
@@ -234,7 +234,7 @@ impl<S: StudyScene> CoefficientSource for SceneCoefficients<S> {
 type Memory<S> =
     <<S as dwell_study::machines::MachineScene>::Model as ReducibleModel>::Workspace<f64>;
 
-/// A full period; without one a revolution.
+/// A period of the range, or else one revolution.
 fn domain(range: Range) -> TableDomain {
     match range {
         Range::Unbounded => TableDomain::Between(0.0, TAU),
@@ -276,9 +276,9 @@ impl<S: StudyScene> CoefficientEvaluator for SceneEvaluator<S> {
         let (Some(model), Some((workspace, response))) = (&models.loaded, &mut self.loaded) else {
             return Ok(found);
         };
-        // At unit speed, so that a damper has a direction.
-        let state = KinematicState::new(model, [&[q], &[1.0]], workspace);
-        let mut state = state.map_err(|e| scene.explain(model, &e.into()))?;
+        // At unit velocity, so that a damper has a direction.
+        let mut state = KinematicState::new(model, [&[q], &[1.0]], workspace)
+            .map_err(|e| scene.explain(model, &e.into()))?;
         found.w.resize(model.loads().len(), 0.0);
         found.c.resize(model.loads().len(), Vec::new());
         for load in 0..model.loads().len() {
@@ -309,7 +309,7 @@ pub struct Evaluator<'m> {
 }
 
 impl Evaluator<'_> {
-    /// Leaves its memory to the next.
+    /// Returns its memory to the model.
     pub(crate) fn release(self) {
         self.reduced.idle.all().push(self.own);
     }

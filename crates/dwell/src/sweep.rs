@@ -7,7 +7,7 @@ use dwell_study::sweep::compute_sweep;
 use dwell_study::{Progress, SceneTask, Step, StudyScene, with_dimension};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// A parameter sweep: numbers of a scene over grids, lists or at random, and results of every combination, computed on all
+/// A parameter sweep: numbers of a scene over grids, lists or random samples, and the results of every combination, computed on all
 /// cores. The results are those of `dwell sweep`: `m.min`, `m.max`, `period`, `phi.actuator_force.max_abs`,
 /// `guide.normal.max_abs` …
 ///
@@ -47,7 +47,7 @@ impl Sweep {
         }
     }
 
-    /// The same with a number that varies, in the scene's unit: `=FROM:TO:COUNT`, `=A,B,C`, `~normal(MEAN,SD)`,
+    /// Varies a number, in the scene's unit: `=FROM:TO:COUNT`, `=A,B,C`, `~normal(MEAN,SD)`,
     /// `~uniform(FROM,TO)`, `±TOLERANCE` or `±PERCENT%`.
     ///
     /// ```
@@ -61,7 +61,7 @@ impl Sweep {
         self
     }
 
-    /// The same with a number of random samples and the seed of the random numbers.
+    /// Sets the number of random samples and the seed.
     ///
     /// ```
     /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
@@ -75,7 +75,7 @@ impl Sweep {
         self
     }
 
-    /// The same with a result to compute; without any, all that the scene has are computed.
+    /// Adds a result to compute; by default all results that the scene has are computed.
     ///
     /// ```
     /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
@@ -91,7 +91,7 @@ impl Sweep {
     /// Computes all combinations.
     ///
     /// # Errors
-    /// [`Error::Study`] where the sweep is not valid, or the unchanged scene cannot be assembled.
+    /// [`Error::Study`] if the sweep is invalid, or the unchanged scene cannot be assembled.
     ///
     /// ```
     /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
@@ -103,8 +103,8 @@ impl Sweep {
         self.run_with_progress(&|_, _| {})
     }
 
-    /// The same, calling `progress` after each block of combinations, from any thread, with the number of blocks that are done and that of
-    /// all.
+    /// Computes all combinations, and calls `progress` after each block, from any thread, with the number of completed blocks and of
+    /// all blocks.
     ///
     /// # Errors
     /// As of [`run`](Self::run).
@@ -164,7 +164,7 @@ impl SceneTask for ComputeSweep<'_> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepResults {
     table: ColumnTable,
-    /// By row: why results are missing.
+    /// By row: the reason if results are missing.
     pub messages: Vec<Option<String>>,
 }
 

@@ -6,11 +6,11 @@ use dwell_kinetostatics::table::Labels;
 use dwell_kinetostatics::{ReducedModel as _, TabulatedModel};
 
 impl ReducedModel {
-    /// The reduced model as a table, over the range or one revolution: every coefficient to an accuracy relative to its
-    /// largest value.
+    /// The reduced model as a table over the range or one revolution, with the error of every coefficient relative to its
+    /// largest value bounded by `accuracy`.
     ///
     /// # Errors
-    /// [`Error::Table`] where no table reaches that accuracy.
+    /// [`Error::Table`] if no table reaches this accuracy.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -31,7 +31,7 @@ impl ReducedModel {
     }
 }
 
-/// A reduced model as piecewise polynomials: it does not need the mechanism any more.
+/// A reduced model as piecewise polynomials, independent of the mechanism.
 ///
 /// ```
 /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -44,7 +44,7 @@ impl ReducedModel {
 pub struct Table {
     tabulated: TabulatedModel,
     labels: Labels,
-    /// How many of the reactions were asked for.
+    /// Number of requested reactions.
     reactions: usize,
 }
 
@@ -52,7 +52,7 @@ impl Table {
     /// The coefficients at `q`, rad or m.
     ///
     /// # Errors
-    /// [`Error::OutOfTable`] beyond the table's domain.
+    /// [`Error::OutOfTable`] outside the table's domain.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -90,7 +90,7 @@ impl Table {
         })
     }
 
-    /// The largest error of a coefficient, relative to its largest value: a bound.
+    /// An upper bound of the error of a coefficient, relative to its largest value.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -105,7 +105,7 @@ impl Table {
     /// The table as the text that `docs/table-format.md` describes, for other programs.
     ///
     /// # Errors
-    /// [`Error::Table`] where a name cannot be written.
+    /// [`Error::Table`] if a name cannot be written.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-/// A value of a key of a scene: a number, a switch, a text (a name, a point `body.point`, an expression), a list, or a
-/// table of keys. Everything that a scene can hold converts into it.
+/// A value of a key of a scene: a number, a boolean, a text (a name, a point `body.point`, an expression), a list, or a
+/// table of keys. All types of values in a scene convert into it.
 ///
 /// ```
 /// use dwell::Value;
@@ -15,7 +15,7 @@ use std::fmt;
 pub enum Value {
     /// A number, in SI.
     Number(f64),
-    /// Yes or no.
+    /// True or false.
     Switch(bool),
     /// A name, a point, an expression.
     Text(String),
@@ -61,7 +61,7 @@ impl<T: Into<Value>> From<Vec<T>> for Value {
     }
 }
 
-/// As TOML writes it, in one line.
+/// Formats the value as TOML, in one line.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -83,7 +83,7 @@ impl fmt::Display for Value {
     }
 }
 
-/// A text as a basic string of TOML; a key too, unless it may stand without quotes.
+/// A text as a basic string of TOML.
 pub(crate) fn quoted(text: &str) -> String {
     let mut quoted = String::from('"');
     for c in text.chars() {
@@ -97,7 +97,7 @@ pub(crate) fn quoted(text: &str) -> String {
     quoted
 }
 
-/// A key: without quotes where it may.
+/// A key, without quotes if TOML permits.
 pub(crate) fn key(text: &str) -> String {
     let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
     if !text.is_empty() && text.chars().all(bare) {

@@ -12,7 +12,7 @@ pub enum Check {
     KineticEnergy,
     /// Half the derivative of the inertia, and Lagrange's equations, by differences of the energy.
     EnergySlope,
-    /// Reactions from the constraint released as a coordinate.
+    /// Reactions, by the constraint released as a coordinate.
     ReleasedConstraint,
     /// Power of actuators and loads is the rate of the kinetic energy.
     Power,
@@ -26,7 +26,7 @@ pub enum Check {
     NewtonEuler,
     /// Published values, and values computed by other programs.
     ReferenceValues,
-    /// The same evaluation in single precision and in double-double numbers.
+    /// The evaluation repeated in single precision and in double-double numbers.
     Rounding,
     /// Closed forms.
     ClosedForms,
@@ -40,13 +40,13 @@ pub enum Check {
     WrittenTotals,
     /// Written values of laws, expressions and tables against a second reading of the scene.
     WrittenLaws,
-    /// Numbers that several commands or files write, each by another path.
+    /// Numbers that several commands or files write by different computations.
     WrittenTwice,
     /// The same scene written in another system of units.
     WrittenUnits,
     /// Printed sentences against the numbers of the files.
     WrittenSentences,
-    /// Between written rows of a motion: energy with the power of all forces.
+    /// Changes of energy between written rows of a motion against the power of all forces.
     WrittenEnergy,
 }
 

@@ -1,5 +1,5 @@
 //! Plain results of a check: what was compared, where, how far apart, the tolerance and the verdict.
-//! The type belongs to the crates that make findings and to those that print them, and knows neither.
+//! The types are shared by the crates that make findings and those that print them, and depend on neither.
 //!
 //! ```
 //! use dwell_findings::{Check, Finding, all_pass};
@@ -33,9 +33,9 @@ pub struct Finding {
     pub key: String,
     /// The independent check that it belongs to.
     pub check: Check,
-    /// What was compared with what.
+    /// The compared quantities.
     pub comparison: String,
-    /// Over which positions or times.
+    /// The positions or times of the comparison.
     pub domain: String,
     /// The largest absolute difference, in `unit`.
     pub absolute_difference: f64,
@@ -43,15 +43,15 @@ pub struct Finding {
     pub unit: String,
     /// The largest difference relative to `scale`.
     pub relative_difference: f64,
-    /// What the relative difference is relative to.
+    /// The quantity to which the difference is relative.
     pub scale: String,
     /// Where the largest difference occurred, such as `phi = 1.3 rad, slide.normal`.
     pub worst_at: String,
     /// The bound on the compared difference (the relative one unless `scale` says otherwise).
     pub tolerance: f64,
-    /// Why the tolerance is what it is.
+    /// The reason for the tolerance.
     pub tolerance_reason: String,
-    /// Condition number of the scaled constraint Jacobian there; 1 where it has no meaning.
+    /// Condition number of the scaled constraint Jacobian there; 1 if it does not apply.
     pub condition_number: f64,
     /// Whether the checked value was integrated in time: its error is then a factor times the integrator's
     /// tolerance, not rounding.
@@ -60,8 +60,8 @@ pub struct Finding {
     pub pass: bool,
 }
 
-/// The largest admissible tolerance, in measured differences and in condition numbers times the machine epsilon: a
-/// larger one would let errors pass that the check can detect.
+/// The largest admissible tolerance, in multiples of the measured difference, and of the machine epsilon times the condition number. With
+/// a larger one the check would miss errors that it can detect.
 const MAX_TOLERANCE_FACTOR: f64 = 100.0;
 const MAX_ROUNDINGS: f64 = 50.0;
 
@@ -88,8 +88,8 @@ impl Default for Finding {
 }
 
 impl Finding {
-    /// The finding of an absolute and a relative difference, which passes where the relative one is within the
-    /// tolerance; its texts are still empty.
+    /// The finding of an absolute and a relative difference, which passes if the relative one is within the
+    /// tolerance; its texts are empty.
     pub fn new(key: &str, check: Check, [absolute, relative]: [f64; 2], tolerance: f64) -> Self {
         Self {
             key: key.to_owned(),
@@ -115,7 +115,7 @@ impl Finding {
         !self.integrated && self.tolerance > self.max_tolerance()
     }
 
-    /// Replaces the tolerance, with the reason for it, and the verdict. What could not be compared still fails.
+    /// Replaces the tolerance and its reason, and updates the verdict. A finding that compared nothing still fails.
     pub fn set_tolerance(&mut self, tolerance: f64, reason: &str) {
         self.tolerance = tolerance;
         self.tolerance_reason = reason.to_owned();
@@ -145,7 +145,7 @@ mod tests {
     fn a_tolerance_is_loose_above_a_hundred_differences_and_fifty_roundings() {
         assert!(!finding_of(1e-12, 1e-10).is_loose());
         assert!(finding_of(1e-12, 1.1e-10).is_loose());
-        // No difference, but 50 roundings are allowed: 1.1e-14, times the condition number.
+        // Without a difference, 50 rounding errors are allowed: 1.1e-14 times the condition number.
         assert!(!finding_of(0.0, 1e-14).is_loose() && finding_of(0.0, 1.2e-14).is_loose());
         let ill_conditioned = Finding {
             condition_number: 1e3,

@@ -1,7 +1,7 @@
 //! A table that is too long for memory: its rows are in a temporary file.
 //!
-//! The file is removed from its folder as soon as it is open, where the system allows that, so that a killed process
-//! leaves nothing behind.
+//! If the system allows it, the file is removed from its folder as soon as it is open, so that a killed process leaves
+//! no file.
 
 use crate::table::Column;
 use std::fs::{self, File, OpenOptions};
@@ -10,22 +10,22 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Rows of a part, which is in memory at once.
+/// Rows of a part; one part at a time is in memory.
 const ROWS_OF_PART: usize = 4096;
 /// Bytes of a number.
 const NUMBER: usize = 8;
-/// Names that are tried for the temporary file.
+/// Maximum number of names tried for the temporary file.
 const MAX_NAMES: usize = 1000;
 
-/// Numbers in columns, of which only some rows are in memory at a time.
+/// A table in a file, with only some rows in memory.
 #[derive(Debug)]
 pub struct LongTable {
     columns: Vec<Column>,
     rows: usize,
-    /// The rows that are not in the file yet, one behind another.
+    /// The rows not yet in the file, one after another.
     recent: Vec<f64>,
     file: Mutex<File>,
-    /// Where the file still has a name.
+    /// The path, if the file still has one.
     named: Option<PathBuf>,
 }
 
@@ -33,7 +33,7 @@ impl LongTable {
     /// A table without rows.
     ///
     /// # Errors
-    /// The system's reason why there is no temporary file.
+    /// The temporary file cannot be created.
     pub fn new(columns: Vec<Column>) -> io::Result<Self> {
         let (file, path) = temporary_file()?;
         let named = fs::remove_file(&path).is_err().then_some(path);
@@ -61,10 +61,10 @@ impl LongTable {
         self.rows == 0
     }
 
-    /// Adds a row, as long as there are columns; a shorter one is filled with NaN.
+    /// Adds a row with one number for each column; missing numbers become NaN.
     ///
     /// # Errors
-    /// The system's reason why it cannot be stored.
+    /// The row cannot be written.
     pub fn push(&mut self, row: &[f64]) -> io::Result<()> {
         let width = self.columns.len();
         self.recent.extend(row.iter().take(width));
@@ -86,15 +86,15 @@ impl LongTable {
         Ok(())
     }
 
-    /// Number of parts that are read at once.
+    /// Number of parts.
     pub fn parts(&self) -> usize {
         self.rows.div_ceil(ROWS_OF_PART)
     }
 
-    /// Some columns of a part, one value a row each.
+    /// A column of a part, one value for each row.
     ///
     /// # Errors
-    /// The system's reason why it cannot be read.
+    /// The file cannot be read.
     pub fn part(&self, part: usize, column: usize) -> io::Result<Vec<f64>> {
         let width = self.columns.len();
         if (part + 1) * ROWS_OF_PART > self.rows {
@@ -122,7 +122,7 @@ impl LongTable {
         Ok(values)
     }
 
-    /// A value.
+    /// The value of a column in a row.
     ///
     /// # Errors
     /// As [`part`](Self::part).
@@ -136,8 +136,10 @@ impl LongTable {
     /// # Errors
     /// As [`part`](Self::part).
     pub fn rows_of_part(&self, part: usize, columns: &[usize]) -> io::Result<Vec<Vec<f64>>> {
-        let columns = columns.iter().map(|&k| self.part(part, k));
-        let columns: Vec<Vec<f64>> = columns.collect::<io::Result<_>>()?;
+        let columns: Vec<Vec<f64>> = columns
+            .iter()
+            .map(|&k| self.part(part, k))
+            .collect::<io::Result<_>>()?;
         let rows = columns.first().map_or(0, Vec::len);
         let row = |i: usize| columns.iter().map(|values| values[i]).collect();
         Ok((0..rows).map(row).collect())
@@ -147,13 +149,13 @@ impl LongTable {
 impl Drop for LongTable {
     fn drop(&mut self) {
         if let Some(path) = &self.named {
-            // Where an open file cannot be removed, the system's own clearing of the folder has to do.
+            // If an open file cannot be removed, the system clears its temporary folder later.
             let _ = fs::remove_file(path);
         }
     }
 }
 
-/// The bytes of rows, column behind column.
+/// The bytes of rows, column after column.
 fn by_columns(rows: &[f64], width: usize) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(rows.len() * NUMBER);
     for k in 0..width {
@@ -163,7 +165,7 @@ fn by_columns(rows: &[f64], width: usize) -> Vec<u8> {
     bytes
 }
 
-/// A new file in the system's folder for such.
+/// A new file in the system's temporary folder.
 fn temporary_file() -> io::Result<(File, PathBuf)> {
     static NUMBER: AtomicU64 = AtomicU64::new(0);
     let mut options = OpenOptions::new();

@@ -1,17 +1,17 @@
-//! What a command prints, as plain data: the numbers with all their digits, extrema, events and files.
+//! The printed results of a command as plain data: numbers with all digits, extrema, events and files.
 
 use crate::Column;
 
 /// A printed number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedNumber {
-    /// Its name, such as `period`: no other number of a record has it.
+    /// Its name, such as `period`, unique within a record.
     pub name: String,
     /// Its unit; empty where it has none.
     pub unit: String,
     /// The number, with all its digits.
     pub value: f64,
-    /// Its estimated error in the same unit, where one is known.
+    /// Its estimated error in the same unit, if known.
     pub error: Option<f64>,
 }
 
@@ -22,7 +22,7 @@ pub struct RecordedExtrema {
     pub column: Column,
     /// The smallest and the largest value, each with the abscissa where it occurs.
     pub ends: [[f64; 2]; 2],
-    /// The estimated error of the values; `None` where nothing is known of it.
+    /// The estimated error of the values, if known.
     pub error: Option<f64>,
 }
 
@@ -31,11 +31,11 @@ pub struct RecordedExtrema {
 pub struct RecordedEvent {
     /// Its name.
     pub name: String,
-    /// When it happened, s.
+    /// Its time, s.
     pub t: f64,
 }
 
-/// What a command prints, for programs that read it.
+/// The printed results of a command, for programs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Record {
     /// The printed numbers, in their order.
@@ -51,7 +51,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// Adds a number, under a name that no other has, of which no error is known.
+    /// Adds a number without a known error, under a name that is unique within the record.
     pub fn add(&mut self, name: impl Into<String>, unit: &str, value: f64) {
         self.push(name.into(), unit, value, None);
     }
@@ -76,7 +76,7 @@ impl Record {
         });
     }
 
-    /// Adds what another record holds.
+    /// Appends another record.
     pub fn extend(&mut self, other: Self) {
         self.numbers.extend(other.numbers);
         self.abscissa = other.abscissa.or(self.abscissa.take());

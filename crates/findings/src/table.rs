@@ -3,7 +3,7 @@
 /// A column of a table.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Column {
-    /// What it holds.
+    /// Its name, such as `phi.velocity`.
     pub name: String,
     /// Its unit; empty if there is none.
     pub unit: String,

@@ -6,7 +6,7 @@ mod frame_vectors;
 use crate::assembly::initial_guess::InitialGuess;
 use crate::error::{AssemblyError, StructureError};
 use crate::mechanism::{
-    ActuatorId, ActuatorKind, BodyId, Coordinate, JointId, JointKind, Mechanism,
+    ActuatorId, ActuatorKind, BodyId, Condition, Coordinate, JointId, JointKind, Mechanism,
 };
 use crate::mobility::{Mobility, mobility};
 use crate::plan::Pose;
@@ -152,8 +152,16 @@ impl Plan {
                 vec2(x, y) + joint.points[i].rotate(Vec2::from_angle(angle))
             });
             let rotation = Vec2::from_angle(frames[joint.bodies[0].0][2]);
-            let (distance, required) = match joint.kind {
-                JointKind::Gear { radii, internal } => {
+            let Some(condition) = joint
+                .kind
+                .conditions()
+                .next()
+                .filter(|_| joint.kind.has_teeth())
+            else {
+                continue;
+            };
+            let (distance, required) = match condition {
+                Condition::Meshed { radii, internal } => {
                     let sum = if internal {
                         radii[0] - radii[1]
                     } else {
@@ -161,16 +169,10 @@ impl Plan {
                     };
                     ((two - one).norm(), sum.abs())
                 }
-                JointKind::Rack { axis, radius } => {
+                Condition::Rolled { axis, radius } => {
                     (axis.rotate(rotation).perp().dot(two - one), radius)
                 }
-                JointKind::Revolute
-                | JointKind::Prismatic { .. }
-                | JointKind::Slot { .. }
-                | JointKind::Weld { .. }
-                | JointKind::Rolling { .. }
-                | JointKind::Distance { .. }
-                | JointKind::Coupling(_) => continue,
+                _ => continue,
             };
             if (distance - required).abs() > MESHING_TOLERANCE * required.abs() {
                 return Err(AssemblyError::NotMeshing {

@@ -63,7 +63,7 @@ pub enum AssemblyError {
     NoAssembly {
         /// Bodies of the group.
         bodies: Vec<BodyId>,
-        /// Joints that stay open.
+        /// The joints that cannot be closed.
         joints: Vec<JointId>,
         /// The length that is missing, m.
         gap: f64,
@@ -79,24 +79,24 @@ pub enum AssemblyError {
         /// or direction (rad) of each of `joints`.
         modes: Vec<Vec<f64>>,
     },
-    /// Redundant joints contradict each other.
-    #[error("redundant joints contradict each other: {gap:.3e} m stay open")]
+    /// Redundant joints are inconsistent.
+    #[error("redundant joints are inconsistent: a gap of {gap:.3e} m remains")]
     Inconsistent {
         /// Those joints.
         joints: Vec<JointId>,
         /// How many constraints are too many.
         redundant_count: usize,
-        /// What stays open, m.
+        /// The gap that remains, m.
         gap: f64,
     },
     /// Redundant constraints agree at the assembly, but not along the range.
-    #[error("redundant constraints agree at assembly, but {gap:.3e} m stay open at q = {q}")]
+    #[error("redundant constraints agree at assembly, but leave a gap of {gap:.3e} m at q = {q}")]
     NotThroughout {
         /// The joints of their loops.
         joints: Vec<JointId>,
-        /// Where they stay open, rad or m.
+        /// The coordinate there, rad or m.
         q: f64,
-        /// What stays open, m.
+        /// The gap that remains, m.
         gap: f64,
         /// Two joints whose axes are nearly parallel, and the angle between the axes, rad.
         nearly_parallel: Option<([JointId; 2], f64)>,

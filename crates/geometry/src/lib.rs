@@ -56,8 +56,8 @@ mod variants;
 
 pub use error::{AssemblyError, PositionError, StructureError};
 pub use mechanism::{
-    Actuator, ActuatorId, ActuatorKind, Body, BodyId, BranchHint, Component, Coordinate, Coupling,
-    Guide, Joint, JointId, JointKind, Mechanism, Reaction,
+    Actuator, ActuatorId, ActuatorKind, Body, BodyId, BranchHint, Component, Condition, Coordinate,
+    Coupling, Guide, Joint, JointId, JointKind, Mechanism, Reaction,
 };
 pub use motion::{ForceBalance, Motion};
 pub use plan::range::{NearBranch, Range, RangeLimit};

@@ -2,8 +2,11 @@
 //! whose coordinates are the independent ones. Lengths in m, angles in rad.
 
 mod guessed_length;
+mod joint_kind;
 mod parts;
 mod size;
+
+pub use joint_kind::{BranchHint, Component, Condition, JointKind};
 
 use crate::plane::Vec2;
 use dwell_laws::Law;
@@ -54,62 +57,6 @@ pub struct Joint {
     pub points: [Vec2; 2],
     /// Its kind: which relative motion it allows.
     pub kind: JointKind,
-}
-
-/// Which relative motion a joint allows. With P₁, P₂ the joint's points on its two bodies, θ₁, θ₂ the angles of
-/// their frames, t the axis in the first body (in the plane's directions) and n that axis turned +90°.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum JointKind {
-    /// The two points coincide.
-    Revolute,
-    /// The second body's point stays on the line through the first body's point along the axis,
-    /// and the two axes keep the same direction.
-    Prismatic {
-        /// Unit vector of the axis in each body's frame.
-        axes: [Vec2; 2],
-    },
-    /// A pin of the second body in a straight slot of the first: n·(P₂ − P₁) = 0.
-    Slot {
-        /// Unit vector of the slot in the first body's frame.
-        axis: Vec2,
-    },
-    /// The two points coincide and the second body keeps an angle to the first.
-    Weld {
-        /// Angle of the second body's frame from the first's, rad.
-        angle: f64,
-    },
-    /// Two gears with their centres at the points; other joints keep these at their distance. With
-    /// ψ the direction of P₂ − P₁: r₂ (θ₂ − ψ) ± r₁ (θ₁ − ψ) keeps its value at assembly (+ for an
-    /// external pair, − for an internal one).
-    Gear {
-        /// Pitch radii, m, both above zero.
-        radii: [f64; 2],
-        /// Whether one gear is a ring around the other.
-        internal: bool,
-    },
-    /// A straight rack (first body) whose pitch line passes through P₁ along the axis, and a pinion
-    /// centred at P₂: t·(P₂ − P₁) + r (θ₂ − θ₁) = 0. Other joints keep their distance.
-    Rack {
-        /// Unit vector of the pitch line in the first body's frame.
-        axis: Vec2,
-        /// Pitch radius r, m: positive with the pinion on the side of n, negative on the other.
-        radius: f64,
-    },
-    /// A disc (second body, centred at P₂) rolls on a straight track of the first, through P₁ along
-    /// the axis: n·(P₂ − P₁) = r and t·(P₂ − P₁) + r (θ₂ − θ₁) = 0.
-    Rolling {
-        /// Unit vector of the track in the first body's frame.
-        axis: Vec2,
-        /// Radius r, m: positive with the disc on the side of n, negative on the other.
-        radius: f64,
-    },
-    /// The two points keep their distance, as if by a massless link.
-    Distance {
-        /// The distance, m, above zero.
-        length: f64,
-    },
-    /// Two coordinates are coupled by a law (a cam, a table): [`Mechanism::couplings`] of this index.
-    Coupling(usize),
 }
 
 /// The line along which a joint slides, in the plane or in [space](crate::space).
@@ -200,114 +147,6 @@ impl Actuator {
             ActuatorKind::Length(points) => Coordinate::Length {
                 bodies: self.bodies,
                 points,
-            },
-        }
-    }
-}
-
-/// One component of a joint's reaction, conjugate to one row of the joint's constraint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Component {
-    /// Force along the ground's x axis, N (revolute).
-    X,
-    /// Force along the ground's y axis, N (revolute).
-    Y,
-    /// Force along the normal, the first body's axis turned +90°, N (prismatic, slot, rolling).
-    Normal,
-    /// Couple, N·m: about the second body's point (prismatic, weld), or of an angular coupling.
-    Moment,
-    /// Tangential tooth force at the pitch point, N: positive when it turns the second body
-    /// counter-clockwise (gear), or pushes the pinion along the axis (rack).
-    Tooth,
-    /// Force along the axis at the point of contact, N (rolling).
-    Tangent,
-    /// Force along the line from the first point to the second, N: positive when it pushes the
-    /// points apart (distance).
-    Axial,
-    /// Force along a coupled travel or length, N (coupling).
-    Force,
-}
-
-impl Component {
-    /// The name used in scenes and tables.
-    pub fn name(self) -> &'static str {
-        self.name_and_unit().0
-    }
-
-    /// Unit of the reaction.
-    pub fn unit(self) -> &'static str {
-        self.name_and_unit().1
-    }
-
-    fn name_and_unit(self) -> (&'static str, &'static str) {
-        match self {
-            Self::X => ("x", "N"),
-            Self::Y => ("y", "N"),
-            Self::Normal => ("normal", "N"),
-            Self::Moment => ("moment", "N m"),
-            Self::Tooth => ("tooth", "N"),
-            Self::Tangent => ("tangent", "N"),
-            Self::Axial => ("axial", "N"),
-            Self::Force => ("force", "N"),
-        }
-    }
-}
-
-/// The coordinate of a joint that an approximate value at assembly is about
-/// ([`AssemblyConfiguration::branch_hints`](crate::AssemblyConfiguration::branch_hints)).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BranchHint {
-    /// The travel t·(P₂ − P₁) of a prismatic joint or a slot, m.
-    Travel,
-    /// The angle of the line from P₁ to P₂ of a distance, rad.
-    Direction,
-}
-
-impl JointKind {
-    /// The coordinate of such a joint by which an approximate value can select an assembly mode, if there is one.
-    pub fn branch_hint(self) -> Option<BranchHint> {
-        match self {
-            Self::Distance { .. } => Some(BranchHint::Direction),
-            other => other.travel_axis().map(|_| BranchHint::Travel),
-        }
-    }
-
-    /// The axis t, in the first body's frame, along which [`Coordinate::Travel`] of such a joint is measured; none where
-    /// the joint has no travel.
-    pub fn travel_axis(self) -> Option<Vec2> {
-        match self {
-            Self::Prismatic { axes } => Some(axes[0]),
-            Self::Slot { axis } => Some(axis),
-            Self::Revolute
-            | Self::Weld { .. }
-            | Self::Gear { .. }
-            | Self::Rack { .. }
-            | Self::Rolling { .. }
-            | Self::Distance { .. }
-            | Self::Coupling(_) => None,
-        }
-    }
-
-    /// Whether its two points coincide in every position: by a force in every direction.
-    pub(crate) fn holds_points_together(self) -> bool {
-        self.components(&[])
-            .starts_with(&[Component::X, Component::Y])
-    }
-
-    /// The components of the reaction, in the order of the constraint rows.
-    pub fn components(self, couplings: &[Coupling]) -> &'static [Component] {
-        use Component::{Axial, Force, Moment, Normal, Tangent, Tooth, X, Y};
-        match self {
-            Self::Revolute => &[X, Y],
-            Self::Prismatic { .. } => &[Normal, Moment],
-            Self::Slot { .. } => &[Normal],
-            Self::Weld { .. } => &[X, Y, Moment],
-            Self::Gear { .. } | Self::Rack { .. } => &[Tooth],
-            Self::Rolling { .. } => &[Normal, Tangent],
-            Self::Distance { .. } => &[Axial],
-            Self::Coupling(r) => match couplings.get(r) {
-                Some(coupling) if coupling.dependent.is_angle() => &[Moment],
-                _ => &[Force],
             },
         }
     }

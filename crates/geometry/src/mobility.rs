@@ -7,7 +7,7 @@
 
 use crate::body_states::BodyStates;
 use crate::constraint_rows::ConstraintRows;
-use crate::mechanism::{BodyId, Joint, JointKind, Mechanism};
+use crate::mechanism::{BodyId, Condition, Joint, JointKind, Mechanism};
 use crate::plan::AssemblyConfiguration;
 use crate::plane::{Vec2, vec2};
 use dwell_numerics::dense::{Matrix, Svd};
@@ -114,19 +114,16 @@ pub fn mobility_at(mechanism: &Mechanism, states: &BodyStates) -> Option<Mobilit
 
 /// How far the two points of a joint are apart, m; none where they meet or lie on a line of both bodies.
 fn points_apart(kind: JointKind) -> Option<f64> {
-    match kind {
-        JointKind::Revolute
-        | JointKind::Prismatic { .. }
-        | JointKind::Slot { .. }
-        | JointKind::Weld { .. } => None,
-        JointKind::Gear { radii, internal } => {
+    kind.conditions().find_map(|condition| match condition {
+        Condition::Together | Condition::OnLine { .. } | Condition::Turned { .. } => None,
+        Condition::Meshed { radii, internal } => {
             let sign = if internal { -1.0 } else { 1.0 };
             Some((radii[0] + sign * radii[1]).abs())
         }
-        JointKind::Rack { radius, .. } | JointKind::Rolling { radius, .. } => Some(radius.abs()),
-        JointKind::Distance { length } => Some(length),
-        JointKind::Coupling(_) => Some(0.0),
-    }
+        Condition::Rolled { radius, .. } => Some(radius.abs()),
+        Condition::Apart { length } => Some(length),
+        Condition::Coupled(_) => Some(0.0),
+    })
 }
 
 impl DenseConstraints {

@@ -46,6 +46,7 @@ mod follow;
 mod frames;
 mod gears;
 mod groups;
+mod joint_kinds;
 mod lower;
 mod mechanism;
 mod motion;
@@ -66,9 +67,8 @@ pub use branch_fit::{BranchFit, BranchFitWorkspace};
 pub use change_points::ChangePoint;
 pub use coordinate::{Coordinate, CoordinateFunction, Counting};
 pub use frames::{BodyMotion, Frame};
-pub use mechanism::{
-    Actuator, ActuatorKind, Assembly, Joint, JointKind, Mechanism, Placement, Side,
-};
+pub use joint_kinds::{Condition, JointKind};
+pub use mechanism::{Actuator, ActuatorKind, Assembly, Joint, Mechanism, Placement, Side};
 pub use multipliers::Forces;
 pub use plan::{GroupDescription, Plan, Pose, PoseMotion};
 pub use planar_equivalent::PlanarEquivalent;

@@ -1,9 +1,9 @@
-//! What can be wrong with the numbers that a law is built from.
+//! Errors in the parameters of a law.
 
-/// Why a law could not be built. Points are counted from 0; the messages count them from 1.
+/// Why a law cannot be built. Indices of points start at 0; messages count points from 1.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum LawError {
-    /// A quantity of that name is infinite or not a number.
+    /// A parameter is infinite or NaN.
     #[error("`{name}` is {value}, and must be a finite number")]
     NotFinite {
         /// The parameter's name.
@@ -11,7 +11,7 @@ pub enum LawError {
         /// Its value.
         value: f64,
     },
-    /// A quantity of that name must be greater than zero.
+    /// A parameter must be greater than zero.
     #[error("`{name}` is {value}, and must be greater than 0")]
     NotPositive {
         /// The parameter's name.
@@ -19,7 +19,7 @@ pub enum LawError {
         /// Its value.
         value: f64,
     },
-    /// The two ramps of a trapezoidal speed do not fit into its duration.
+    /// The two ramps of a trapezoidal velocity exceed its duration.
     #[error("two ramps of {ramp} s are longer than the duration of {duration} s")]
     RampTooLong {
         /// Length of one ramp, s.
@@ -27,28 +27,28 @@ pub enum LawError {
         /// Duration of the motion, s.
         duration: f64,
     },
-    /// A table needs two points at least.
+    /// A table needs at least two points.
     #[error("a table needs at least 2 points, and this one has {found}")]
     TooFewPoints {
-        /// How many there are.
+        /// Number of points.
         found: usize,
     },
-    /// A point has a coordinate that is infinite or not a number.
+    /// A coordinate of a point is infinite or NaN.
     #[error("point {} of the table is not finite", index + 1)]
     PointNotFinite {
-        /// Which point.
+        /// The point.
         index: usize,
     },
-    /// A point does not lie beyond the one before it.
+    /// The x of a point does not exceed that of the point before.
     #[error("point {} of the table does not come after point {index}: the first column must ascend", index + 1)]
     NotAscending {
-        /// Which point: the later one of the two.
+        /// The later one of the two points.
         index: usize,
     },
     /// Two neighbours are so close, or so far apart, that the spline between them overflows.
     #[error("points {index} and {} of the table are too close or too large for a spline", index + 1)]
     TooSteep {
-        /// Which point: the later one of the two.
+        /// The later one of the two points.
         index: usize,
     },
 }

@@ -1,9 +1,9 @@
-//! Where functions of one variable — time — are not smooth, and how fast they vary elsewhere.
+//! Where functions of time are not smooth, and how fast they vary elsewhere.
 //!
-//! A step of an integrator sees a load at a few instants only. So all instants at which a load, drive or prescribed motion
-//! switches, jumps or has a kink are located, and between them pieces of time are found on each of which everything is
-//! smooth: its second derivative changes so little that a parabola is as good. Both by interval arithmetic, which
-//! bounds a function over a whole interval, so that no pulse is missed, however narrow.
+//! A step of an integrator evaluates a load at a few instants only. Therefore all instants at which a load, drive or prescribed motion
+//! switches, jumps or has a kink are located, and the time between them is divided into pieces on which every function is
+//! close to a parabola. Both use interval arithmetic, which
+//! bounds a function over a whole interval, so no pulse is missed, however narrow.
 //!
 //! ```
 //! use dwell_laws::{Expression, Features};
@@ -34,20 +34,20 @@ pub use scan::{Piece, Scan, Unresolved};
 use crate::{Expression, Law, Polynomial, Sinusoid};
 use switching::Pieces;
 
-/// The functions of time of a problem, each from a source that has a number.
+/// The functions of time of a problem; each belongs to a numbered source.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Features {
     expressions: Vec<(usize, Pieces)>,
-    /// Instants at which a law's pieces meet, in order.
+    /// Instants at which pieces of laws meet, in order.
     knots: Vec<Knot>,
-    /// By law: the intervals in which it varies, and the length over which it is smooth there, in order.
+    /// By law: the intervals in which it varies, with the length over which it is smooth, in order.
     bands: Vec<Vec<Band>>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Knot {
     x: f64,
-    /// Whether value, slope or curvature may jump there, so that an integration starts again.
+    /// Whether value, slope or curvature may jump there, so that an integration must restart.
     restart: bool,
 }
 
@@ -59,10 +59,10 @@ struct Band {
     width: f64,
 }
 
-/// Parts of a rise, or of a piece of a spline, over each of which it is smooth.
+/// Number of parts of a rise, or of a piece of a spline, over each of which it is smooth.
 const PARTS_OF_A_RISE: f64 = 8.0;
 const PARTS_OF_A_PIECE: f64 = 4.0;
-/// The same of a sinusoid: radians.
+/// Phase over which a sinusoid is smooth, rad.
 const PART_OF_A_WAVE: f64 = 0.25;
 
 impl Features {
@@ -113,7 +113,7 @@ impl Features {
         }
     }
 
-    /// Adds instants (s) at which pieces of a function meet, that is otherwise not known; whether an integration starts again there.
+    /// Adds the instants (s) at which pieces of an unknown function meet; `restart` states whether an integration must restart there.
     pub fn add_knots(&mut self, at: &[f64], restart: bool) {
         self.knots.extend(at.iter().map(|&x| Knot { x, restart }));
         self.knots.sort_by(|a, b| a.x.total_cmp(&b.x));
@@ -129,14 +129,14 @@ impl Features {
         Scan::new(self, from, to, true)
     }
 
-    /// The largest absolute value of a source's terms from one instant to another, or somewhat more.
+    /// An upper bound of the absolute values of a source's terms between two instants.
     pub fn largest(&self, source: usize, from: f64, to: f64) -> f64 {
         let of = self.expressions.iter().filter(|(s, _)| *s == source);
         of.map(|(_, pieces)| scan::term_scales(pieces, from, to).iter().sum::<f64>())
             .sum()
     }
 
-    /// The pieces between switches, jumps and kinks alone, in order.
+    /// The pieces between switches, jumps and kinks only, in order.
     pub fn scan_switches(&self, from: f64, to: f64) -> Scan<'_> {
         Scan::new(self, from, to, false)
     }

@@ -2,7 +2,7 @@
 
 use crate::{Expression, Polynomial, Profile, Sinusoid, Spline};
 
-/// A function of one variable that a mechanism or a load can hold: of time, s, or of a
+/// A function of one variable in a mechanism or a load: of time, s, or of a
 /// coordinate, rad or m. All units are SI.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Law {
@@ -14,13 +14,13 @@ pub enum Law {
     Spline(Spline),
     /// A sinusoid.
     Sinusoid(Sinusoid),
-    /// An expression of one variable, the first that it was parsed with. (If others occur in it,
+    /// An expression of one variable, the first with which it was parsed. (If others occur in it,
     /// the law is NaN.)
     Expression(Expression),
 }
 
 impl Law {
-    /// The value and its first three derivatives at `x`, by analysis, not by differences.
+    /// The value and its exact first three derivatives at `x`.
     pub fn eval(&self, x: f64) -> [f64; 4] {
         match self {
             Self::Polynomial(polynomial) => polynomial.eval(x),
@@ -31,8 +31,8 @@ impl Law {
         }
     }
 
-    /// The end of its table that `x` is beyond; none where it is no table, or its table covers `x`. What rounding adds to a sum of
-    /// angles or travels is not beyond.
+    /// The end of its table beyond which `x` is; `None` if it has no table, or the table covers `x` within the rounding error of a sum of
+    /// angles or travels.
     pub fn end_passed(&self, x: f64) -> Option<f64> {
         let Self::Spline(spline) = self else {
             return None;
@@ -46,7 +46,7 @@ impl Law {
         }
     }
 
-    /// The largest absolute value from one x to another, of those at equal distances and at the points of a table.
+    /// The largest absolute value between two x, sampled at equally spaced x and at the points of a table.
     pub fn largest(&self, from: f64, to: f64) -> f64 {
         let parts = 64;
         let part = |k: usize| from + (to - from) * k as f64 / parts as f64;
@@ -61,21 +61,21 @@ impl Law {
 
     /// Where the value jumps between one number and another, which should be close: the last
     /// number before the jump and the first after it. Only an expression can jump (`floor`, `sign`,
-    /// `step`, `if`); of several jumps it is the one that shows most. A jump of less than
-    /// 10⁻⁶ of the value is none, nor is what cannot be distinguished from it, a slope of 10⁹ and more.
+    /// `step`, `if`); of several jumps the most distinct one is returned. A jump of less than
+    /// 10⁻⁶ of the value is ignored; a slope of 10⁹ or more counts as a jump.
     pub fn discontinuity(&self, from: f64, to: f64) -> Option<[f64; 2]> {
         let Self::Expression(_) = self else {
             return None;
         };
-        // What is left of a difference of values when both ends' derivatives have explained
-        // theirs: for a smooth law of the fifth order in the step, for a jump never less.
+        // The difference of values that the derivatives at both ends do not explain: of fifth order
+        // in the step for a smooth law, and never small for a jump.
         let unexplained = |a: f64, b: f64| {
             let ([p, v, c, _], [q, w, d, _], h) = (self.eval(a), self.eval(b), b - a);
             (q - p - 0.5 * h * (v + w) - h * h / 12.0 * (c - d)).abs()
         };
         let min_jump = JUMP_TOLERANCE * self.eval(from)[0].abs().max(self.eval(to)[0].abs());
         let (mut a, mut b) = (from, to);
-        // What is not a number is no jump.
+        // A NaN is no jump.
         let may_jump = unexplained(a, b) > min_jump;
         if !may_jump {
             return None;
@@ -95,12 +95,12 @@ impl Law {
     }
 }
 
-/// Smallest jump, as a part of the value.
+/// Smallest jump, relative to the value.
 const JUMP_TOLERANCE: f64 = 1e-6;
-/// What a sum of angles or travels may pass the end of a table by, as a part of that end: more than an end that is found by halving
-/// steps may fall short by.
+/// Relative distance by which a sum of angles or travels may exceed the end of a table: more than the error of an end that is found
+/// by bisection.
 const TABLE_ROUNDING: f64 = 1e-12;
-/// Halvings of a step, down to the rounding of numbers of its size.
+/// Maximum number of bisections, down to the rounding of numbers of its size.
 const MAX_HALVINGS: usize = 60;
 
 #[cfg(test)]
@@ -140,7 +140,7 @@ mod tests {
         laws
     }
 
-    /// Each derivative against the differences of the one before it. Sixth order with a step of
+    /// Each derivative against the differences of the previous one. Sixth order with a step of
     /// 0.01: truncation h⁶ f⁗‴/140, for the sinusoid 1e-12 × 0.7 × 3¹⁰/140 = 3e-10 in the third.
     #[test]
     fn every_derivative_is_that_of_the_entry_before_it() {

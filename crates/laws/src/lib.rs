@@ -1,9 +1,9 @@
 //! Functions of one variable with three derivatives, and expressions of named variables.
 //!
-//! A [`Law`] gives a quantity with its first three derivatives, exactly: a prescribed motion is
-//! needed as q, q̇ and q̈ at once, a coupling (such as a cam's) one derivative further. An
-//! [`Expression`] is a formula of several names, as a load has it. Everything is checked when it
-//! is built; evaluation allocates nothing, cannot fail, and shows what is undefined as NaN or ±∞.
+//! A [`Law`] gives a quantity with its exact first three derivatives: a prescribed motion
+//! needs q, q̇ and q̈, a coupling (such as a cam) one derivative more. An
+//! [`Expression`] is a formula of several variables, for the magnitude of a load. Parameters are checked when a function
+//! is built; evaluation allocates nothing, cannot fail, and returns NaN or ±∞ where the function is undefined.
 //!
 //! ```
 //! use dwell_laws::{Expression, Law, Profile, Rise, Shape};

@@ -9,14 +9,14 @@ pub struct Polynomial {
 }
 
 impl Polynomial {
-    /// The quantity that never changes.
+    /// The constant polynomial.
     pub fn constant(value: f64) -> Self {
         Self {
             coefficients: vec![value],
         }
     }
 
-    /// The motion that passes at t = 0 through `q` with speed `q_dot`, and keeps the acceleration
+    /// The motion with the value `q` and the velocity `q_dot` at t = 0 and the constant acceleration
     /// `q_ddot`: q + q̇ t + ½ q̈ t².
     pub fn motion(q: f64, q_dot: f64, q_ddot: f64) -> Self {
         Self {
@@ -73,7 +73,7 @@ mod tests {
         assert_eq!(Polynomial::default().eval(1.0), [0.0; 4]);
     }
 
-    /// An infinite or missing time is not hidden.
+    /// An infinite or NaN time is not hidden.
     #[test]
     fn not_a_number_stays_visible() {
         assert!(Polynomial::motion(0.0, 1.0, 0.0).eval(f64::NAN)[0].is_nan());

@@ -24,16 +24,16 @@ pub enum Shape {
     },
 }
 
-/// From where to where, and when.
+/// Start value, rise and timing of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rise {
     /// The value before the motion.
     pub start: f64,
-    /// By how much the value changes, upwards or downwards.
+    /// The change of the value, positive or negative.
     pub rise: f64,
-    /// How long the motion takes, s.
+    /// Duration, s.
     pub duration: f64,
-    /// When it begins, s.
+    /// Start, s.
     pub delay: f64,
 }
 
@@ -46,7 +46,7 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// The motion of that shape.
+    /// The motion of a shape.
     ///
     /// # Errors
     /// [`LawError::NotFinite`], [`LawError::NotPositive`] for the duration or the ramp,
@@ -64,7 +64,7 @@ impl Profile {
         Ok(Self { shape, rise })
     }
 
-    /// Where its derivatives may jump: its ends, and the corners of a trapezium.
+    /// Where its derivatives may jump: its ends, and the corners of a trapezoidal velocity.
     pub fn corners(&self) -> Vec<f64> {
         let Rise {
             duration, delay, ..
@@ -97,7 +97,7 @@ impl Profile {
         if x.is_nan() {
             return [f64::NAN; 4];
         }
-        // The second half is the first backwards: as exact near its end as near the start.
+        // The second half is the reversed first half, so it is as accurate near its end as near the start.
         let passed = (x - delay) / duration;
         let [s, v, a, j] = if passed <= 0.5 {
             self.shape.first_half(passed, duration)
@@ -248,7 +248,7 @@ mod tests {
         assert!((84.0 / 125_f64.sqrt() - 7.5132_f64).abs() < 5e-5);
     }
 
-    /// Half of the rise at half of the time, and as much before as after. Values are below 2.
+    /// Half the rise at half the time, and symmetry about it. Values are below 2.
     #[test]
     fn both_halves_are_alike() {
         for shape in SHAPES {
@@ -263,7 +263,7 @@ mod tests {
         }
     }
 
-    /// A triangle of speed is the limit: twice the mean speed at its top.
+    /// The limit is a triangular velocity: its maximum is twice the mean.
     #[test]
     fn ramps_may_fill_the_duration() {
         let law = profile(Shape::Trapezoidal { ramp: 0.25 });

@@ -2,11 +2,11 @@
 
 use crate::error::LawError;
 
-/// How a curve goes from one point of a table to the next.
+/// The curve between the points of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Interpolation {
-    /// A cubic spline: value, first and second derivative are continuous. Between points that change abruptly it goes
-    /// beyond them.
+    /// A cubic spline: value, first and second derivative are continuous. It overshoots points that change
+    /// abruptly.
     #[default]
     Spline,
     /// Cubic pieces that rise where the points rise and fall where they fall: never beyond neighbouring points. Value and
@@ -14,7 +14,7 @@ pub enum Interpolation {
     Monotone,
     /// Straight lines.
     Linear,
-    /// The value of the point before.
+    /// The value of the previous point.
     Step,
 }
 
@@ -35,13 +35,13 @@ impl Interpolation {
 /// exact at the ends as elsewhere. A natural spline would bend every motion and force to zero
 /// curvature there. Three points make a parabola, two a line.
 ///
-/// Outside its range a spline or a line goes on along the tangent of its end: the speed of a motion does not
-/// jump, and [`range`](Self::range) gives its ends. Monotone and stepped curves keep the value of their end.
+/// Outside its [`range`](Self::range) a spline or a line continues along the tangent of its end, so that the velocity of a motion does not
+/// jump. Monotone and stepped curves keep the value of their end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spline {
-    /// Where the pieces begin, and where the last ends.
+    /// The x at which the pieces begin, and the end of the last.
     knots: Vec<f64>,
-    /// Each piece: its Taylor polynomial at its beginning, value first. Behind them the tangent
+    /// By piece: its Taylor polynomial at its beginning, value first. The last entry is the tangent
     /// at the end.
     pieces: Vec<[f64; 4]>,
     interpolation: Interpolation,
@@ -130,7 +130,7 @@ impl Spline {
         self.interpolation != Interpolation::Spline
     }
 
-    /// Where it goes farthest beyond the range of its points: x, the value, and by which part of that range.
+    /// The largest overshoot beyond the range of its points: x, the value, and the overshoot relative to that range.
     pub fn overshoot(&self) -> Option<[f64; 3]> {
         let values = self.pieces.iter().map(|piece| piece[0]);
         let low = values.clone().fold(f64::INFINITY, f64::min);
@@ -165,7 +165,7 @@ impl Spline {
             return [f64::NAN; 4];
         }
         let [first, last] = self.range();
-        // A time summed up from steps may pass the end by a few roundings, and is still the end's.
+        // A time summed from steps may exceed the end by a few rounding errors, and still belongs to the end.
         let tolerance = 4.0 * f64::EPSILON * first.abs().max(last.abs());
         let is_step = self.interpolation == Interpolation::Step;
         let i = if x > last + tolerance || (is_step && x >= last) {
@@ -180,7 +180,7 @@ impl Spline {
         self.eval_on(i, x)
     }
 
-    /// The same of one piece, wherever `x` is: the number of points before it is `piece`.
+    /// The value and three derivatives of one piece, whatever `x` is; `piece` is the number of points before it.
     pub(crate) fn eval_piece(&self, piece: f64, x: f64) -> [f64; 4] {
         if piece < 1.0 {
             return self.eval_before(x);
@@ -225,8 +225,8 @@ fn check(points: &[[f64; 2]]) -> Result<(), LawError> {
     }
 }
 
-/// The first derivatives at all points, by Fritsch and Butland: zero where the points turn, else a weighted harmonic mean
-/// of both slopes; at the ends the parabola's, held within the same bounds.
+/// The first derivatives at all points, by Fritsch and Butland: zero at extrema, otherwise a weighted harmonic mean
+/// of both slopes; at the ends the slope of the parabola, limited in the same way.
 fn monotone_tangents(steps: &[f64], slopes: &[f64]) -> Vec<f64> {
     let last = steps.len();
     if last == 1 {
@@ -273,7 +273,7 @@ fn second_derivatives(steps: &[f64], slopes: &[f64]) -> Vec<f64> {
         _ => {}
     }
     let mut second = vec![0.0; last + 1];
-    // What is left of each row's right neighbour, once its left one has been eliminated.
+    // The coefficient of each row's right neighbour, after elimination of the left one.
     let mut right = vec![0.0; last + 1];
     for i in 1..last {
         let [before, after] = [steps[i - 1], steps[i]];
@@ -395,7 +395,7 @@ mod tests {
         }
     }
 
-    /// Data with a jump: a spline goes far beyond them, the others never; all pass through them, and monotone
+    /// Data with a jump: a spline overshoots, the other curves do not. All pass through the points, and monotone
     /// curves have a continuous slope.
     #[test]
     fn only_a_spline_goes_beyond_its_points() {

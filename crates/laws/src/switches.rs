@@ -1,9 +1,9 @@
-//! Where functions of coordinates and speeds switch, and their pieces held across a switch.
+//! Switches of functions of coordinates and speeds, and evaluation on held pieces.
 //!
-//! A switch of time alone is known before a motion ([`Features`](crate::Features)). One of coordinates and speeds is met
-//! on the way: until then an integrator must see one smooth piece, also in a trial step that leads beyond. So the
-//! pieces are held, the functions whose zeros separate them are watched, and where one passes a bound the next piece
-//! is held instead.
+//! A switch in time is known before a motion ([`Features`](crate::Features)). A switch of coordinates and speeds occurs
+//! during the motion: until then an integrator must evaluate one smooth piece, also in a trial step that leads beyond. Therefore the
+//! pieces are held, and the functions whose zeros separate them are monitored. When one passes a bound, the next piece
+//! is held.
 //!
 //! ```
 //! use dwell_laws::{Expression, HeldPieces, Switches};
@@ -30,26 +30,26 @@ use crate::features::switching::{Operands, Switch, switches_of};
 use crate::law::Law;
 use crate::windows::{Course, NarrowTerm, Pulse, Traced, UNDERFLOW, first_outside, may_hide};
 
-/// A function is beyond a bound if it is by more than this part of its values.
+/// A function is beyond a bound if it exceeds it by more than this fraction of its values.
 const ROUNDING: f64 = 1e-12;
 
 /// The functions of a magnitude whose values separate its pieces.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Switches {
     kinds: Vec<SwitchKind>,
-    /// By function: whether it may be beyond a bound between points at which it is not.
+    /// By function: whether it may exceed a bound between points at which it does not.
     may_hide: Vec<bool>,
-    /// The terms that may be narrow pulses.
+    /// The terms that may have narrow pulses.
     terms: Vec<NarrowTerm>,
     source: Source,
 }
 
-/// At which values a function switches.
+/// The values at which a function switches.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SwitchKind {
     /// At zero.
     Zero,
-    /// At every whole value.
+    /// At every integer.
     Integers,
     /// At these values, in order.
     Knots(Vec<f64>),
@@ -57,7 +57,7 @@ pub enum SwitchKind {
 
 #[derive(Debug, Clone, PartialEq)]
 enum Source {
-    /// Some of the variables themselves, by their indices: of a law its only one.
+    /// Variables themselves, by index; for a law its only variable.
     Variables(Vec<usize>),
     Expression {
         ops: Vec<Op>,
@@ -73,9 +73,9 @@ impl Default for Source {
 }
 
 impl SwitchKind {
-    /// The piece at a value of the function: the sign, or the number of the interval. None where it is undecided: at
-    /// zero, or where the value is no number. (A function that rests on zero is held on a third piece, 0, which is what the
-    /// operation yields there: `sign` 0, `step` 1, `if` what its comparison says.)
+    /// The piece at a value of the function: the sign, or the number of the interval. `None` if it is undecided: at
+    /// zero, or for NaN. (A function that rests on zero is held on a third piece, 0, with the value of the
+    /// operation there: `sign` 0, `step` 1, `if` by its comparison.)
     pub fn piece_at(&self, value: f64) -> Option<f64> {
         match self {
             _ if value.is_nan() => None,
@@ -85,7 +85,7 @@ impl SwitchKind {
         }
     }
 
-    /// The values between which a piece holds.
+    /// The bounds of a piece.
     pub fn bounds(&self, piece: f64) -> [f64; 2] {
         match self {
             Self::Zero if piece == 0.0 => [0.0; 2],
@@ -101,7 +101,7 @@ impl SwitchKind {
         }
     }
 
-    /// The piece beyond the upper or the lower bound of one.
+    /// The piece beyond the upper or the lower bound of `piece`.
     pub fn next(&self, piece: f64, upward: bool) -> f64 {
         let step = if upward { 1.0 } else { -1.0 };
         match self {
@@ -112,7 +112,7 @@ impl SwitchKind {
 }
 
 impl Switches {
-    /// Those of an expression that depend on more than `time`, its variable of that index.
+    /// The switches of an expression that depend on more than its variable `time`.
     pub fn of_expression(expression: &Expression, time: Option<usize>) -> Self {
         let ops = expression.ops().to_vec();
         let tree = Operands::of(&ops, time);
@@ -132,9 +132,12 @@ impl Switches {
             let is_one = |last: usize| may_hide(&ops, &tree, last);
             is_one(switch.left) || switch.right.is_some_and(is_one)
         };
-        let kind = |(switch, _): &(Switch, _)| match switch.at_integers {
-            true => SwitchKind::Integers,
-            false => SwitchKind::Zero,
+        let kind = |(switch, _): &(Switch, _)| {
+            if switch.at_integers {
+                SwitchKind::Integers
+            } else {
+                SwitchKind::Zero
+            }
         };
         Self {
             kinds: switches.iter().map(kind).collect(),
@@ -144,10 +147,11 @@ impl Switches {
         }
     }
 
-    /// Of a function that is not known but for the values of its variables, each by its index, between which it is smooth.
+    /// The switches of an unknown function that is smooth between given values of its variables (index and values).
     pub fn at_values<'v>(values: impl IntoIterator<Item = (usize, &'v [f64])>) -> Self {
-        let all = values.into_iter();
-        let all = all.map(|(variable, values)| (variable, SwitchKind::Knots(values.to_vec())));
+        let all = values
+            .into_iter()
+            .map(|(variable, values)| (variable, SwitchKind::Knots(values.to_vec())));
         let (variables, kinds): (Vec<usize>, Vec<SwitchKind>) = all.unzip();
         Self {
             may_hide: vec![false; kinds.len()],
@@ -157,7 +161,7 @@ impl Switches {
         }
     }
 
-    /// Those of a law of a coordinate or speed.
+    /// The switches of a law of a coordinate or speed.
     pub fn of_law(law: &Law) -> Self {
         let knots = match law {
             Law::Expression(expression) => return Self::of_expression(expression, None),
@@ -173,7 +177,7 @@ impl Switches {
         &self.kinds
     }
 
-    /// Whether a function has another one's operation among its operands, so that its value depends on that one's piece.
+    /// Whether the value of a function depends on the piece of another one, whose operation is among its operands.
     pub fn depends(&self, function: usize, on: usize) -> bool {
         match &self.source {
             Source::Variables(_) => false,
@@ -186,20 +190,20 @@ impl Switches {
         }
     }
 
-    /// Whether something may happen between points at which its value and its functions are seen.
+    /// Whether a switch or a pulse may be hidden between points of evaluation.
     pub fn may_hide(&self) -> bool {
         !self.terms.is_empty() || self.may_hide.contains(&true)
     }
 
-    /// The variables that must turn for something to happen there; none where that is not all.
+    /// The variables of which one must reverse for such an event; `None` if other causes exist.
     pub fn followed(&self) -> Option<Vec<usize>> {
         let all = self.terms.iter().map(|term| term.follows);
         let own = (!self.may_hide.contains(&true)).then_some(all)?;
         own.collect()
     }
 
-    /// Over a course of the variables, on the pieces that are held: the first function that is beyond a bound of its piece
-    /// and where, in parts of the time.
+    /// The first function that exceeds a bound of its held piece over a course of the variables, and the fraction of the time at
+    /// which it does.
     pub fn hidden_passage(
         &self,
         course: &Course,
@@ -231,7 +235,7 @@ impl Switches {
             let sizes = [0.0, 0.5, 1.0].map(size);
             let rounding = (ROUNDING * sizes.into_iter().fold(0.0, f64::max)).max(UNDERFLOW);
             let start = value(0.0);
-            // Where the motion begins anew it is beyond its bound by rounding.
+            // At a restart the function exceeds its bound by rounding.
             let bounds = [low.min(start) - rounding, high.max(start) + rounding];
             let at = (low < high).then(|| first_outside(bounds, value, enclose))?;
             at.map(|at| (k, at))
@@ -239,7 +243,7 @@ impl Switches {
         passages.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// The first narrow pulse over a course of the variables, on the pieces that are held, that its ends do not show.
+    /// The first narrow pulse over a course of the variables, on the held pieces, that the ends do not show.
     pub fn hidden_pulse(&self, course: &Course, held: &HeldPieces) -> Option<Pulse> {
         let Source::Expression { ops, .. } = &self.source else {
             return None;
@@ -251,7 +255,7 @@ impl Switches {
         all.min_by(|a, b| a.at.total_cmp(&b.at))
     }
 
-    /// The value of each function at these variables, on the pieces that are held.
+    /// The value of each function at these variables, on the held pieces.
     pub fn values(&self, variables: &[f64], held: &HeldPieces, out: &mut [f64]) {
         match &self.source {
             Source::Variables(which) => {
@@ -275,7 +279,7 @@ impl Switches {
         }
     }
 
-    /// The value of each function and its rate, where the variables have rates.
+    /// The value and the rate of each function, from values and rates of the variables.
     pub fn rates(&self, variables: &[[f64; 2]], held: &HeldPieces, out: &mut [[f64; 2]]) {
         match &self.source {
             Source::Variables(which) => {
@@ -304,7 +308,7 @@ impl Switches {
         }
     }
 
-    /// Holds these pieces, one for each function; what is none is not held.
+    /// Holds these pieces, one for each function; functions with `None` are not held.
     pub fn hold(&self, pieces: &[Option<f64>], held: &mut HeldPieces) {
         held.sides.clear();
         if pieces.iter().all(Option::is_none) {
@@ -322,19 +326,20 @@ impl Switches {
     }
 }
 
-/// The difference of two values; its bound where it is within their rounding of it: rounding does not switch.
+/// The difference of two values, or the bound if the difference equals it within rounding: rounding does not switch.
 fn unrounded(
     [minuend, subtrahend]: [f64; 2],
     (ops, (switch, [left, right])): (&[Op], &(Switch, [usize; 2])),
     variable: impl Fn(usize) -> f64,
     held: &HeldPieces,
 ) -> f64 {
-    /// Beyond this part of a value nothing is rounding.
+    /// Differences above this fraction of a value are no rounding errors.
     const NEAR: f64 = 1e-10;
     let value = minuend - subtrahend;
-    let bound = match switch.at_integers {
-        true => value.round(),
-        false => 0.0,
+    let bound = if switch.at_integers {
+        value.round()
+    } else {
+        0.0
     };
     let distance = (value - bound).abs();
     if distance == 0.0 || distance > NEAR * (1.0 + minuend.abs()) {
@@ -350,14 +355,15 @@ fn unrounded(
         .error
     };
     let subtracted = switch.right.map_or(0.0, |last| error(*right, last));
-    match distance <= error(*left, switch.left) + subtracted {
-        true => bound,
-        false => value,
+    if distance <= error(*left, switch.left) + subtracted {
+        bound
+    } else {
+        value
     }
 }
 
 impl Law {
-    /// The value and its first three derivatives at `x` where a piece is held ([`Switches::hold`]).
+    /// The value and its first three derivatives at `x` on a held piece ([`Switches::hold`]).
     pub fn eval_held(&self, x: f64, held: &HeldPieces) -> [f64; 4] {
         match (self, held.sides.first()) {
             (Self::Expression(expression), Some(_)) => expression.derivatives_held(&[x], 0, held),
@@ -399,8 +405,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases.max(1000), failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// The pieces that hold at a point have its value and slope, and go on smoothly: up to a switch they are the
-        /// function, and no function that is watched passes a bound before the function leaves them.
+        /// The held pieces at a point have the value and slope of the function and equal it up to a switch; no monitored
+        /// function passes a bound before that.
         #[test]
         fn held_pieces_are_the_function_up_to_its_switches(
             text in prop::sample::select(TEXTS.to_vec()),
@@ -422,8 +428,8 @@ mod tests {
                 let part = f64::from(k) / 200.0;
                 let at = [0, 1, 2].map(|i| from[i] + part * (to[i] - from[i]));
                 switches.values(&at, &held, &mut values);
-                let inside = switches.kinds().iter().zip(values.iter().zip(&first));
-                let inside = inside.map(|(kind, (value, first))| {
+                let watched = switches.kinds().iter().zip(values.iter().zip(&first));
+                let inside = watched.map(|(kind, (value, first))| {
                     kind.piece_at(*first).is_none_or(|piece| {
                         let [low, high] = kind.bounds(piece);
                         (low..=high).contains(value)

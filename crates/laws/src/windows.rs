@@ -1,64 +1,64 @@
-//! What functions do between the points of a short time at which they are seen: windows of their conditions, and pulses.
+//! Switches and pulses of functions between the points of a step at which they are evaluated.
 //!
-//! An integrator's step sees a function at a few points. Over the step its variables are polynomials as good as the
-//! integration, so that interval arithmetic bounds the function everywhere in it: a condition that cannot change is excluded at once, and
-//! one that does so in a window however narrow is found by halving.
+//! An integrator evaluates a function at a few points of a step. Over the step, polynomials represent its variables as accurately as the
+//! integration, so interval arithmetic bounds the function in the whole step. A condition that cannot change is excluded immediately;
+//! one that changes, in a window of any width, is found by bisection.
 
 use crate::expression::{Binary, HeldPieces, Op, Sides, Unary, run_held_parts};
 use crate::features::enclosure::Enclosure;
 use crate::features::interval::Interval;
 use crate::features::switching::{Operands, enclose_ops};
 
-/// Most parts of a step that are looked at for one function.
+/// Maximum number of parts of a step that are examined for one function.
 const MAX_CELLS: usize = 256;
-/// The narrowest of them, as a part of the step: what is narrower is not looked for.
+/// Smallest part, relative to the step: narrower windows are not searched.
 const MIN_WIDTH: f64 = 1e-9;
-/// Polynomials up to this degree are seen by the points of a step and a parabola through them.
+/// Polynomials up to this degree need no search: the points of a step and a parabola through them show their extrema.
 const PARABOLA_DEGREE: u32 = 2;
-/// Changes below this part of a term's largest value are no pulse.
+/// Changes below this fraction of a term's largest value are no pulse.
 const NEGLIGIBLE: f64 = 1e-9;
-/// What is smaller is a tail that underflows, of which only the rounding of its bounds is left.
+/// Smaller values are a tail that underflows; only the rounding of its bounds remains.
 pub(crate) const UNDERFLOW: f64 = 1e-290;
-/// A pulse that is higher than what the step's ends show by this part of their difference is looked at.
+/// A pulse is examined if it exceeds the values at the step's ends by this fraction of their difference.
 const UNSEEN: f64 = 0.5;
-/// Where a pulse begins, as a part of its height: what lies before is lost.
+/// Fraction of its height at which a pulse begins.
 const BEGINS: f64 = 1e-12;
-/// The part of a step over which a feature that the method has seen extends at least, to either side of its top.
+/// A feature that extends over this fraction of a step on both sides of its maximum is resolved by the method.
 const RESOLVED: f64 = 0.25;
 
-/// Variables over a short time: polynomials through their values at five equally spaced instants.
+/// The variables over a step: polynomials through their values at five equally spaced instants.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Course {
     /// By variable: powers of the time, whose unit is a quarter of the whole.
     coefficients: Vec<[f64; 5]>,
 }
 
-/// A pulse between the points at which it would be seen, in parts of the time.
+/// A pulse between points of evaluation; times are fractions of the step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pulse {
-    /// Where it is.
+    /// Its position.
     pub at: f64,
-    /// From where it begins to there.
+    /// Distance from its beginning to there.
     pub width: f64,
 }
 
-/// A term of an expression that may be a narrow pulse.
+/// A term of an expression that may have a narrow pulse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct NarrowTerm {
     start: usize,
     last: usize,
-    /// Its largest value, not finite where that is unknown.
+    /// Its largest value; not finite if unknown.
     scale: f64,
-    /// The variable with which it rises or falls throughout, if it depends on no other: while that one goes on in one direction, the
-    /// ends of a step show all of it.
+    /// The only variable on which it depends, if the dependence is monotone: as long as this variable is monotone, the
+    /// ends of a step show the largest value.
     pub(crate) follows: Option<usize>,
 }
 
-/// The variable with which a part rises (1) or falls (−1) throughout; none with 0: it is constant.
+/// The variable of which a part is an increasing (1) or decreasing (−1) function; `None` with 0 for a constant.
 type Trend = (Option<usize>, f64);
 
 impl Course {
-    /// Through the values of all variables at five equally spaced instants.
+    /// The course through the values of all variables at five equally spaced instants.
     pub fn through(samples: &[&[f64]; 5]) -> Self {
         let of = |i: usize| {
             let mut difference: [f64; 5] = std::array::from_fn(|k| samples[k][i]);
@@ -81,7 +81,7 @@ impl Course {
         }
     }
 
-    /// These variables of it alone.
+    /// The course of some of the variables.
     pub fn of(&self, variables: std::ops::Range<usize>) -> Self {
         let own = self.coefficients.get(variables).unwrap_or_default();
         Self {
@@ -96,7 +96,7 @@ impl Course {
         })
     }
 
-    /// Whether a variable goes in one direction, from start to end.
+    /// Whether a variable is monotone over the step.
     fn has_one_direction(&self, variable: usize) -> bool {
         let [_, slope, _] = self.enclose(variable, [0.0, 1.0]).0;
         slope.lo > 0.0 || slope.hi < 0.0
@@ -106,7 +106,7 @@ impl Course {
         let Some(coefficients) = self.coefficients.get(variable) else {
             return Enclosure::UNKNOWN;
         };
-        // About the middle, where the powers of what is left are small.
+        // Expanded about the middle, where the powers of the remaining distance are small.
         let middle = 2.0 * (from + to);
         let mut shifted = *coefficients;
         for k in 0..4 {
@@ -116,7 +116,7 @@ impl Course {
         }
         let half = 2.0 * (to - from);
         let [c0, c1, c2, c3, c4] = shifted;
-        // No more than the powers of the half add to the value in the middle, and their sum errs by less than this.
+        // Bound by the powers of the half width, with the rounding error of their sum.
         let about = |middle: f64, others: &[f64]| {
             let sum = |sum: f64, c: &f64| (sum + c.abs()) * half;
             let radius = others.iter().rev().fold(0.0, sum) * (1.0 + 16.0 * f64::EPSILON);
@@ -161,8 +161,8 @@ impl<'a> Traced<'a> {
     }
 }
 
-/// Where in a step a function is outside of an interval: soon behind where it first is, as far as so many parts show; with nothing before it
-/// but what is inside.
+/// Where in a step a function is outside an interval: shortly after the first such instant that the examined parts show, with no
+/// earlier instant outside.
 pub(crate) fn first_outside(
     bounds: [f64; 2],
     value: impl Fn(f64) -> f64,
@@ -171,7 +171,7 @@ pub(crate) fn first_outside(
     outside(bounds, value, enclose, true)
 }
 
-/// A time in a step at which a function is outside of an interval, where one is found: the first that is met, or soon behind the `first`.
+/// An instant of a step at which a function is outside an interval, if found: any, or shortly after the first if `first` is set.
 fn outside(
     [low, high]: [f64; 2],
     value: impl Fn(f64) -> f64,
@@ -188,14 +188,14 @@ fn outside(
             continue;
         }
         let middle = 0.5 * (from + to);
-        // What grows or falls throughout is between its ends, and so is what stands still.
+        // A monotone or constant function lies between its end values.
         let turns = slope.contains(0.0) && slope.magnitude() > 0.0;
         let at = [from, middle, to].into_iter().find(|&at| is_outside(at));
         if let Some(at) = at {
             if !(first && turns && at > from && at - from > MIN_WIDTH) {
                 return Some(at);
             }
-            // Between the points it may be outside before.
+            // It may be outside earlier, between the points.
             found = Some(at);
             open.clear();
             if at < to {
@@ -211,7 +211,7 @@ fn outside(
 }
 
 impl NarrowTerm {
-    /// Those of an expression that depend on more than `time`.
+    /// The terms of an expression that depend on more than `time`.
     pub(crate) fn all(ops: &[Op], tree: &Operands) -> Vec<Self> {
         let mut found = Vec::new();
         let mut open: Vec<usize> = ops.len().checked_sub(1).into_iter().collect();
@@ -240,7 +240,7 @@ impl NarrowTerm {
         found
     }
 
-    /// A pulse of it that a step between two points does not show.
+    /// A pulse of the term between two points that the step does not show.
     pub(crate) fn hidden(&self, ops: &[Op], held: &HeldPieces, course: &Course) -> Option<Pulse> {
         if self.follows.is_some_and(|of| course.has_one_direction(of)) {
             return None;
@@ -263,7 +263,7 @@ impl NarrowTerm {
         let at = top_near(at, excess);
         let top = excess(at);
         let is_low = |at: f64| !(0.0..=1.0).contains(&at) || excess(at) < 0.5 * top;
-        // A periodic one has other tops at some distances.
+        // A periodic function has other maxima at some distance.
         let is_narrow = |part: &f64| is_low(at - part * RESOLVED) && is_low(at + part * RESOLVED);
         if ![1.0, 0.77, 0.41].iter().any(is_narrow) {
             return None;
@@ -276,7 +276,7 @@ impl NarrowTerm {
     }
 }
 
-/// The top of a pulse in a step, from a place on it.
+/// The maximum of a pulse in a step, starting from a point on it.
 fn top_near(mut at: f64, height: impl Fn(f64) -> f64) -> f64 {
     const MAX_MOVES: usize = 200;
     let (mut top, mut reach) = (height(at), RESOLVED);
@@ -293,8 +293,8 @@ fn top_near(mut at: f64, height: impl Fn(f64) -> f64) -> f64 {
     at
 }
 
-/// Whether an operation can make a narrow feature of what varies slowly. A quotient by what does not vary is a multiple, and a low power a
-/// product: they cannot.
+/// Whether an operation can turn a slowly varying operand into a narrow feature. A quotient by a constant is a multiple, and a low power a
+/// product; neither can.
 fn is_narrow(ops: &[Op], tree: &Operands, i: usize) -> bool {
     match ops[i] {
         Op::Unary(
@@ -316,14 +316,14 @@ fn is_narrow(ops: &[Op], tree: &Operands, i: usize) -> bool {
     }
 }
 
-/// How a part of an expression follows a single variable, if it does so monotonically.
+/// The trend of a part of an expression that is a monotone function of a single variable.
 fn trend(ops: &[Op], tree: &Operands, last: usize) -> Option<Trend> {
     if tree.depends[last] == [false; 2] {
         return Some((None, 0.0));
     }
     let of = &tree.operands[last];
     let operand = |i: usize| trend(ops, tree, of[i]);
-    // Of an operand over all values of the variable: 0 where it has both signs.
+    // Sign of an operand over all values of the variable: 0 if it has both signs.
     let sign = |i: usize| {
         let part = &ops[tree.starts[of[i]]..=of[i]];
         let range = enclose_ops(part, &[], |_| Enclosure::UNKNOWN).value();
@@ -347,7 +347,7 @@ fn trend(ops: &[Op], tree: &Operands, last: usize) -> Option<Trend> {
         Op::Binary(operation @ (Binary::Multiply | Binary::Divide)) => {
             match (operand(0)?, operand(1)?) {
                 ((None, _), other) if operation == Binary::Multiply => times(other, sign(0)),
-                // A quotient by what keeps its sign.
+                // A quotient by an operand of constant sign.
                 ((None, _), other) => times(other, -sign(0) * sign(1).abs()),
                 (one, (None, _)) => times(one, sign(1)),
                 _ => None,
@@ -357,12 +357,12 @@ fn trend(ops: &[Op], tree: &Operands, last: usize) -> Option<Trend> {
     }
 }
 
-/// Whether a function may be beyond a bound between points at which it is not.
+/// Whether a function may exceed a bound between points at which it does not.
 pub(crate) fn may_hide(ops: &[Op], tree: &Operands, last: usize) -> bool {
     degree(ops, tree, last) > PARABOLA_DEGREE
 }
 
-/// The degree of a part as a polynomial; beyond all, what is none.
+/// The degree of a part as a polynomial; 1000 or more if it is none.
 fn degree(ops: &[Op], tree: &Operands, last: usize) -> u32 {
     const NONE: u32 = 1000;
     let of: Vec<u32> = tree.operands[last]

@@ -1,4 +1,4 @@
-//! What a page is answered.
+//! Answers to requests of the page.
 
 use crate::diagnostics::{self, MessageInText};
 use crate::request::{Command, Request};
@@ -10,10 +10,10 @@ use serde::Serialize;
 /// An answer: JSON, and the numbers that it refers to.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Answer {
-    /// An object. `messages` are errors and warnings; `page` is there where the scene could be evaluated: the description that
-    /// [`dwell_page`] documents; `files` are pairs of a name and a text; `schema` is the schema.
+    /// An object with `messages` (errors and warnings); `page`, if the scene could be evaluated (the description that
+    /// [`dwell_page`] documents); `files` (pairs of name and text); `schema` (the JSON schema).
     pub text: String,
-    /// The rows of `page`: one column after the other.
+    /// The rows of `page`, column after column.
     pub numbers: Vec<f64>,
 }
 
@@ -48,7 +48,7 @@ pub fn answer(request: &str) -> Answer {
     }
 }
 
-/// The name of the text in messages that name it.
+/// The name of the text in messages.
 const SOURCE_NAME: &str = "scene.toml";
 
 fn run(command: Command, text: &str) -> Answer {
@@ -56,7 +56,7 @@ fn run(command: Command, text: &str) -> Answer {
     match page(command, text, &mut messages) {
         Ok(page) => {
             let Answer { mut text, .. } = of_messages(messages, Vec::new());
-            // The description is JSON already: it becomes the last member of the object.
+            // The description is already JSON: it becomes the last member of the object.
             text.pop();
             Answer {
                 text: format!(r#"{text},"page":{}}}"#, page.description),
@@ -70,7 +70,7 @@ fn run(command: Command, text: &str) -> Answer {
     }
 }
 
-/// What a command shows of a scene; warnings, and why a motion ended early, are further messages.
+/// The page of a command. Warnings, and the reason why a motion ended early, become messages.
 fn page(
     command: Command,
     text: &str,
@@ -96,7 +96,7 @@ fn exported(text: &str) -> Answer {
 fn of_messages(messages: Vec<MessageInText>, files: Vec<(String, String)>) -> Answer {
     let text = serde_json::to_string(&AnswerText { messages, files });
     Answer {
-        // Text and numbers always have a form in JSON.
+        // Text and numbers can always be written as JSON.
         text: text.unwrap_or_else(|_| r#"{"messages":[]}"#.to_owned()),
         numbers: Vec::new(),
     }

@@ -1,4 +1,4 @@
-//! Errors and warnings as an editor shows them: the words of the command line, and where in the text they belong.
+//! Errors and warnings for an editor: the messages of the command line with their places in the text.
 
 use dwell_scene::{SceneError, SceneWarning};
 use serde::Serialize;
@@ -8,28 +8,28 @@ use serde::Serialize;
 pub struct MessageInText {
     /// `error` or `warning`.
     pub severity: &'static str,
-    /// What is wrong.
+    /// The message.
     pub message: String,
-    /// What to try.
+    /// A suggestion.
     pub help: Option<String>,
-    /// Where, the main place first.
+    /// Its places, the main one first.
     pub labels: Vec<LabelInText>,
 }
 
 /// A place in the text of a scene, with a remark.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct LabelInText {
-    /// The first character, and the one after the last, in units of UTF-16, as JavaScript counts.
+    /// Start of the place, in UTF-16 code units, as in JavaScript.
     pub from: usize,
-    /// See [`from`](Self::from).
+    /// End of the place (exclusive), in UTF-16 code units.
     pub to: usize,
     /// Its line, from 1.
     pub line: usize,
-    /// The remark, or nothing.
+    /// The remark, or an empty text.
     pub remark: String,
 }
 
-/// The errors that one reports, in the order of the file.
+/// The individual errors, in the order of the file.
 pub(crate) fn errors(error: &SceneError) -> Vec<MessageInText> {
     let errors = error.errors();
     errors.iter().map(|one| message("error", one)).collect()
@@ -56,12 +56,14 @@ fn message(severity: &'static str, error: &SceneError) -> MessageInText {
         severity,
         message: error.message.clone(),
         help: error.help.clone(),
-        labels: spans.map(|span| label(text, span)).collect(),
+        labels: spans
+            .map(|(offset, length, remark)| label(text, offset, length, remark))
+            .collect(),
     }
 }
 
-/// A span of bytes of the text as a place in it.
-fn label(text: &str, (offset, length, remark): (usize, usize, &str)) -> LabelInText {
+/// A byte span of the text as a place in it.
+fn label(text: &str, offset: usize, length: usize, remark: &str) -> LabelInText {
     let before = text.get(..offset).unwrap_or(text);
     let within = text.get(offset..offset + length).unwrap_or_default();
     let units = |part: &str| part.encode_utf16().count();
@@ -79,8 +81,8 @@ mod tests {
 
     #[test]
     fn places_count_as_a_browser_does() {
-        // Two bytes and one unit; four bytes and two units.
-        let found = label("é\n𝜑 = 1", (3, 4, "here"));
+        // Two bytes are one code unit; four bytes are two.
+        let found = label("é\n𝜑 = 1", 3, 4, "here");
         assert_eq!((found.from, found.to, found.line), (2, 4, 2));
     }
 }

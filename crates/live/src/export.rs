@@ -4,10 +4,10 @@ use dwell_export::{Precision, Request, c_files as c_files_of};
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{ExportRequest, compute_export_in_cells};
 
-/// The accuracy that `dwell export` takes where none is given.
+/// The default accuracy of `dwell export`.
 const ACCURACY: f64 = 1e-9;
 
-/// Header and source: name and text of each.
+/// Name and text of header and source.
 pub(crate) fn c_files(scene: &Scene) -> Result<Vec<(String, String)>, SceneError> {
     let Scene::Plane(scene) = scene else {
         let message = "this page exports mechanisms in the plane only".to_owned();

@@ -1,10 +1,10 @@
-//! The module as a browser calls it: five functions over plain memory.
+//! The interface of the WebAssembly module: five functions over plain memory.
 //!
-//! A caller asks for [`room`] for its request, writes it there, calls [`respond`], and copies the answer out before its next call: text
+//! A caller gets memory for its request from [`room`], writes the request there, calls [`respond`], and copies the answer before its next call: text
 //! of [`text_bytes`] bytes at the address that `respond` returns, and [`number_count`] numbers at [`numbers`].
 //!
-//! This is unsafe code: symbols of fixed names. Without them a generator of bindings would write the same, as a program to be
-//! installed in exactly one version, with generated JavaScript beside it. Memory is handed over by addresses alone: nothing here
+//! Exported symbols with fixed names are unsafe code. A generator of bindings (wasm-bindgen) would be a tool to be
+//! installed in exactly one version, with generated JavaScript. Memory is passed by addresses only: nothing here
 //! dereferences one, and the buffers live until the next call of the same thread.
 #![allow(unsafe_code, reason = "symbols that a browser finds by their names")]
 
@@ -21,7 +21,7 @@ thread_local! {
     static BUFFERS: RefCell<Buffers> = RefCell::default();
 }
 
-/// Makes room for a request of so many bytes, and returns its address.
+/// Allocates memory for a request of `bytes` bytes, and returns its address.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn room(bytes: usize) -> *mut u8 {
     BUFFERS.with_borrow_mut(|buffers| {
@@ -31,7 +31,7 @@ pub(crate) extern "C" fn room(bytes: usize) -> *mut u8 {
     })
 }
 
-/// Answers the request that was written, and returns the address of the answer's text.
+/// Answers the written request, and returns the address of the answer's text.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn respond() -> *const u8 {
     BUFFERS.with_borrow_mut(|buffers| {
@@ -40,7 +40,7 @@ pub(crate) extern "C" fn respond() -> *const u8 {
     })
 }
 
-/// Bytes of the answer's text.
+/// Length of the answer's text, bytes.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn text_bytes() -> usize {
     BUFFERS.with_borrow(|buffers| buffers.answer.text.len())
@@ -52,7 +52,7 @@ pub(crate) extern "C" fn numbers() -> *const f64 {
     BUFFERS.with_borrow(|buffers| buffers.answer.numbers.as_ptr())
 }
 
-/// How many numbers the answer has.
+/// Number of numbers in the answer.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn number_count() -> usize {
     BUFFERS.with_borrow(|buffers| buffers.answer.numbers.len())

@@ -1,6 +1,6 @@
 //! Dwell in a browser.
 //!
-//! [`answer`] takes a [request](Request) as JSON and gives an [`Answer`]: JSON again, and a block of numbers where there are rows.
+//! [`answer`] takes a [request](Request) as JSON and returns an [`Answer`]: JSON, and a block of numbers if there are rows.
 //! Built for `wasm32-unknown-unknown`, the crate is a module of five functions without imports (`interface`), which the page in
 //! `page/` calls from a worker. The same call works in any Rust program:
 //!
@@ -21,7 +21,7 @@
 //! assert!(dwell_live::answer(&request.to_string()).text.contains("bib"));
 //! ```
 //!
-//! No text makes it panic. Should it panic nevertheless, in WebAssembly the instance is lost and the page starts another.
+//! No text should make it panic. If it does, in WebAssembly the instance is lost and the page starts another.
 
 mod answer;
 mod diagnostics;

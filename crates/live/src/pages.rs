@@ -1,4 +1,4 @@
-//! Pages of results that are no trajectories, and what the live page adds to one.
+//! Pages of cycles and equilibria, and additions of the live page to other pages.
 
 use dwell_findings::{Column, Record, Table};
 use dwell_page::{Page, PageColumn};
@@ -82,7 +82,7 @@ fn static_forces(results: &EquilibriaResults<'_, impl MachineScene>) -> Option<T
     Some(table)
 }
 
-/// Adds m and ½m′ at the coordinate of each row, where there is one actuator.
+/// Adds m and ½m′ at the coordinate of each row, if there is one actuator.
 pub(crate) fn add_reduced_inertia<S: StudyScene>(scene: &S, page: &mut Page) {
     let Ok(prepared) = scene.prepared_without_loads() else {
         return;
@@ -92,13 +92,16 @@ pub(crate) fn add_reduced_inertia<S: StudyScene>(scene: &S, page: &mut Page) {
         return;
     };
     let mut inertia = prepared.inertia();
-    let rows = coordinate.values.iter();
-    let rows = rows.map(|&q| inertia(q).unwrap_or((f64::NAN, f64::NAN)));
+    let rows = coordinate
+        .values
+        .iter()
+        .map(|&q| inertia(q).unwrap_or((f64::NAN, f64::NAN)));
     let (m, half_dm) = rows.unzip();
     drop(inertia);
-    let units = match prepared.is_angle() {
-        true => ["kg m2", "kg m2/rad"],
-        false => ["kg", "kg/m"],
+    let units = if prepared.is_angle() {
+        ["kg m2", "kg m2/rad"]
+    } else {
+        ["kg", "kg/m"]
     };
     for ((key, values), unit) in [("m", m), ("half_dm", half_dm)].into_iter().zip(units) {
         let (group, description) = match key {
@@ -113,7 +116,7 @@ pub(crate) fn add_reduced_inertia<S: StudyScene>(scene: &S, page: &mut Page) {
     }
 }
 
-/// Adds the period of the free motion, where it is conservative and repeats itself.
+/// Adds the period of the free motion, if it is conservative and periodic.
 pub(crate) fn add_period<S: StudyScene>(scene: &S, page: &mut Page) {
     if !scene.has_motion() {
         return;

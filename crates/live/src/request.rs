@@ -1,8 +1,8 @@
-//! What a page asks.
+//! Requests of the page.
 
 use serde::Deserialize;
 
-/// What a page asks.
+/// A request of the page.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case")]
 pub enum Request {
@@ -26,7 +26,7 @@ pub enum Request {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Command {
-    /// Forces of the motion that the scene prescribes or sweeps; where it does neither, positions and velocities over the range.
+    /// Forces along the prescribed motion or the coordinate sweep of the scene; if it has neither, positions and velocities over the range.
     Motion,
     /// Positions, velocities and accelerations along the motion or the range.
     Kinematics,

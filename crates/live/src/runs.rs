@@ -1,4 +1,4 @@
-//! A command on a scene: what the page shows of it.
+//! Runs a command on a scene, for the page.
 
 use crate::pages;
 use crate::request::Command;
@@ -9,7 +9,7 @@ use dwell_study::{
     free_motion_page, no_progress, reduction_page, trajectory_page, with_dimension,
 };
 
-/// Runs a command, with the options that the command line takes where none is given.
+/// Runs a command with the default options of the command line.
 pub(crate) fn run(command: Command, scene: &Scene) -> Result<PageAndStop, StudyError> {
     with_dimension(scene, command)
 }
@@ -19,10 +19,13 @@ impl SceneTask for Command {
 
     fn run<S: StudyScene>(self, scene: &S) -> Self::Output {
         match self {
-            Self::Motion => match scene.prescribes_positions() {
-                true => along_motion(scene, Analysis::Kinetostatics),
-                false => along_motion(scene, Analysis::Kinematics),
-            },
+            Self::Motion => {
+                if scene.prescribes_positions() {
+                    along_motion(scene, Analysis::Kinetostatics)
+                } else {
+                    along_motion(scene, Analysis::Kinematics)
+                }
+            }
             Self::Kinematics => along_motion(scene, Analysis::Kinematics),
             Self::Statics => along_motion(scene, Analysis::Statics),
             Self::Kinetostatics => along_motion(scene, Analysis::Kinetostatics),
@@ -46,7 +49,7 @@ impl SceneTask for Command {
     }
 }
 
-/// An analysis along the motion, with m and ½m′ of each row where there is a reduced model, and the period where there is one.
+/// An analysis along the motion, with m and ½m′ of each row if there is a reduced model, and the period if there is one.
 fn along_motion<S: StudyScene>(scene: &S, analysis: Analysis) -> Result<PageAndStop, StudyError> {
     let (mut page, early_stop) = trajectory_page(scene, analysis, None, &no_progress)?;
     page.printed = describe_scene(scene)? + &page.printed;

@@ -1,7 +1,7 @@
-//! Numbers of two words, about 32 digits: the rounding of an `f64` evaluation is seen by evaluating again in them.
+//! Double-double numbers, about 32 digits. A second evaluation in these numbers gives the rounding error of an `f64` evaluation.
 //!
-//! A [`DoubleDouble`] is an unevaluated sum `hi + lo` with |lo| ≤ ½ ulp(hi). Sums and products keep their rounding
-//! errors by error-free transformations; one operation errs by a few 2⁻¹⁰⁴ of its result.
+//! A [`DoubleDouble`] is an unevaluated sum `hi + lo` with |lo| ≤ ½ ulp(hi). Sums and products use error-free transformations; the
+//! relative error of one operation is a few 2⁻¹⁰⁴.
 //!
 //! Source: T. J. Dekker, *A floating-point technique for extending the available precision*, Numer. Math. 18
 //! (1971); Y. Hida, X. S. Li, D. H. Bailey, *Algorithms for quad-double precision floating point arithmetic*,
@@ -10,12 +10,12 @@
 use crate::scalar::Scalar;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// A number of two words, `hi + lo`.
+/// A double-double number, `hi + lo`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DoubleDouble {
-    /// The nearest plain number.
+    /// The nearest `f64`.
     pub hi: f64,
-    /// The rest.
+    /// The remainder.
     pub lo: f64,
 }
 
@@ -52,8 +52,8 @@ fn two_product(a: f64, b: f64) -> (f64, f64) {
 #[cfg(target_family = "wasm")]
 use split_product as two_product;
 
-/// The same without a fused operation, which WebAssembly does not have, by products of halves (Dekker 1971): exact below 2⁹⁹⁶ and
-/// where no product of halves underflows.
+/// a × b and its rounding error without a fused multiply-add, which WebAssembly lacks, by products of halves (Dekker 1971). Exact for
+/// numbers below 2⁹⁹⁶ if no product of halves underflows.
 #[cfg(any(target_family = "wasm", test))]
 #[inline]
 fn split_product(a: f64, b: f64) -> (f64, f64) {
@@ -82,7 +82,7 @@ impl DoubleDouble {
         Self { hi, lo }
     }
 
-    /// A plain number times a plain number, exactly.
+    /// The exact product of two `f64`.
     pub fn exact_product(a: f64, b: f64) -> Self {
         let (hi, lo) = two_product(a, b);
         Self { hi, lo }
@@ -124,7 +124,7 @@ impl Scalar for DoubleDouble {
         self.hi
     }
 
-    /// One step of Newton's method from the plain root doubles its digits.
+    /// One step of Newton's method from the `f64` root doubles its digits.
     fn sqrt(self) -> Self {
         let root = self.hi.sqrt();
         if root == 0.0 || !root.is_finite() {
@@ -151,7 +151,7 @@ impl Scalar for DoubleDouble {
         }
     }
 
-    /// The plain angle, and the small angle that is still between it and the vector.
+    /// The `f64` angle plus the small angle between it and the vector.
     fn atan2(self, other: Self) -> Self {
         let angle = self.hi.atan2(other.hi);
         let (sin, cos) = Self::from_f64(angle).sin_cos();
@@ -160,7 +160,7 @@ impl Scalar for DoubleDouble {
         if along.hi == 0.0 {
             return Self::from_f64(angle);
         }
-        // Of 1e-16 the cube is below the last digit.
+        // The angle is about 1e-16; its cube is below the last digit.
         Self::from_f64(angle) + across / along
     }
 
@@ -169,15 +169,15 @@ impl Scalar for DoubleDouble {
             + Self::exact_product(4.0 * count, HALF_PI_PARTS[1])
     }
 
-    /// The function's own values are plain: its rounding is not seen, but what its argument's second word
-    /// does to it is.
+    /// The values of the function are `f64`, so its own rounding is ignored; the effect of the argument's
+    /// second word is included.
     fn compose(self, derivatives: &[f64; 4]) -> Self {
         let [value, slope, ..] = *derivatives;
         Self::from_f64(value) + Self::exact_product(slope, self.lo)
     }
 }
 
-// In WebAssembly these are calls: evaluations in these numbers would otherwise be most of the module.
+// Not inlined in WebAssembly: evaluations in these numbers would otherwise be most of the module.
 impl Add for DoubleDouble {
     type Output = Self;
     #[cfg_attr(not(target_family = "wasm"), inline)]
@@ -210,7 +210,7 @@ impl Mul for DoubleDouble {
 
 impl Div for DoubleDouble {
     type Output = Self;
-    /// Long division: three quotients, each of what the ones before leave.
+    /// Long division: three quotients, each of the remainder of the previous ones.
     #[cfg_attr(not(target_family = "wasm"), inline)]
     #[cfg_attr(target_family = "wasm", inline(never))]
     fn div(self, o: Self) -> Self {

@@ -3,8 +3,8 @@
 use crate::scalar::Scalar;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// A value with its derivative: v + d ε with ε² = 0. Evaluating a plan at q + ε gives the exact
-/// derivative of everything with respect to q, to rounding.
+/// A value with its derivative: v + d ε with ε² = 0. The evaluation of a function at q + ε gives its derivative
+/// with respect to q, exact to rounding.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Dual {
     /// The value.

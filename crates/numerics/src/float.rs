@@ -1,4 +1,4 @@
-//! The plain numbers `f64` and `f32` as [`Scalar`]s.
+//! `f64` and `f32` as [`Scalar`]s.
 
 use crate::scalar::Scalar;
 use crate::sin_cos::sin_cos;

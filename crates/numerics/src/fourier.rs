@@ -1,22 +1,22 @@
-//! Fourier series of smooth periodic functions through their values at equally spaced points. The trapezoidal
-//! rule gains digits as fast as the Fourier coefficients decay, so the number of points is doubled until they have
+//! Fourier series of smooth periodic functions from values at equally spaced points. The error of the trapezoidal
+//! rule decreases as fast as the Fourier coefficients, so the number of points is doubled until the coefficients have
 //! decayed to rounding.
 
 use std::f64::consts::TAU;
 
-/// Number of points from which on what looks resolved is.
+/// Minimum number of points for a function to count as resolved.
 pub const MIN_POINTS: usize = 32;
-/// Number of points beyond which a function counts as not resolved.
+/// Maximum number of points; a function that needs more is not resolved.
 pub const MAX_POINTS: usize = 8192;
-/// Number of points from which on a function that is still not resolved counts as sharp: panels suit it better.
+/// Number of points from which an unresolved function counts as sharp; panels are more efficient then.
 pub const SHARP_POINTS: usize = 2048;
-/// Coefficients below this part of the largest are rounding.
+/// Coefficients below this fraction of the largest are rounding errors.
 const COEFFICIENT_ROUNDING: f64 = 1e-16;
-/// Coefficients below this part, of which the last quarter is not below this part of the quarter before,
-/// are rounding too, of values that carry more of it. (Those of a smooth function fall by 100 there.)
+/// Below this fraction, coefficients that no longer decrease from the third to the last quarter are also rounding errors,
+/// of less accurate values. (Those of a smooth function fall by a factor of 100 there.)
 const NOISY_TAIL: f64 = 1e-8;
 const FLATNESS: f64 = 0.25;
-/// Where a series is held against its function, in parts of a period: no fractions of any small number of points.
+/// Phases at which a series is compared with its function, as fractions of a period; no fractions with a small denominator.
 const BETWEEN: [f64; 5] = [
     0.107_295_316,
     0.290_743_847,
@@ -24,7 +24,7 @@ const BETWEEN: [f64; 5] = [
     0.668_620_151,
     0.886_441_529,
 ];
-/// There the sum of what a series leaves out may be so many times the largest of its last coefficients, or of a rounding.
+/// The truncation error there may be this many times the largest of the last coefficients, or of a rounding error.
 const LEFT_OUT: f64 = 1e4;
 
 /// A function of a phase s from 0 to 2π: c₀ + Σ c_k cos ks + s_k sin ks.
@@ -34,14 +34,14 @@ pub struct FourierSeries {
     pub mean: f64,
     /// (c_k, s_k) for k = 1, 2, …
     pub harmonics: Vec<[f64; 2]>,
-    /// The largest of the last coefficients as a part of `size`.
+    /// The largest of the last coefficients relative to `size`.
     pub tail: f64,
-    /// Whether the last coefficients are rounding.
+    /// Whether the last coefficients are rounding errors.
     pub is_resolved: bool,
 }
 
 impl FourierSeries {
-    /// The series through values at equally spaced phases; coefficients are small or large beside
+    /// The series through values at equally spaced phases; coefficients are judged relative to
     /// `size`.
     pub fn new(values: &[f64], size: f64) -> Self {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
@@ -52,7 +52,7 @@ impl FourierSeries {
         let tail = match (mean.is_finite(), tail == 0.0) {
             (true, true) => 0.0,
             (true, false) => tail / size,
-            // A value that is no number is in every coefficient.
+            // A NaN enters every coefficient.
             (false, _) => f64::INFINITY,
         };
         let sum = |of: &[[f64; 2]]| of.iter().flatten().map(|c| c.abs()).sum::<f64>();
@@ -66,17 +66,17 @@ impl FourierSeries {
             mean,
             harmonics,
             tail,
-            // Sixteen roundings of a point remain in a coefficient.
+            // A coefficient contains up to sixteen rounding errors of a value.
             is_resolved: tail < 16.0 * COEFFICIENT_ROUNDING || is_rounding,
         }
     }
 
-    /// Holds the series against its function between the points: harmonics beyond the points, of 32 waves at 32 points
-    /// for instance, look like lower ones or like none at them. Where it differs, it is not resolved, and its tail is
-    /// the difference as a part of `size`.
+    /// Compares the series with its function between the points: aliased harmonics, such as 32 waves at 32 points,
+    /// appear at the points as lower harmonics or as none. If they differ, the series is marked as unresolved, and its tail is
+    /// the difference relative to `size`.
     ///
     /// # Errors
-    /// The first error of `at`, the function of the part (0 … 1) of a period.
+    /// The first error of `at`, the function of the fraction (0 … 1) of a period.
     pub fn check_between<E>(
         &mut self,
         size: f64,
@@ -85,10 +85,11 @@ impl FourierSeries {
         let mut difference = 0.0_f64;
         for part in BETWEEN {
             let error = (at(part)? - self.eval(TAU * part)[0]).abs() / size;
-            // A value that is no number differs.
-            difference = match error.is_nan() {
-                true => f64::INFINITY,
-                false => difference.max(error),
+            // A NaN counts as a difference.
+            difference = if error.is_nan() {
+                f64::INFINITY
+            } else {
+                difference.max(error)
             };
         }
         if difference > LEFT_OUT * self.tail.max(COEFFICIENT_ROUNDING) {
@@ -112,8 +113,8 @@ impl FourierSeries {
     }
 }
 
-/// Samples at twice as many equally spaced parts (0 … 1) of a period as `known` holds, which are kept; without
-/// any, the samples at `first` parts, a power of two from 16.
+/// Samples at twice as many equally spaced fractions (0 … 1) of a period as `known` holds; the known ones are reused. If `known`
+/// is empty, the samples at `first` fractions, a power of two from 16.
 ///
 /// # Errors
 /// The first error of `at`.
@@ -134,7 +135,7 @@ pub fn refine_samples<V, E>(
     Ok(finer)
 }
 
-/// Fourier coefficients (c_k, s_k), k = 1 … below half the number of points, which is a power of two (Cooley and
+/// Fourier coefficients (c_k, s_k) for k from 1 to below half the number of points, which is a power of two (Cooley and
 /// Tukey 1965).
 pub fn fourier_coefficients(values: &[f64]) -> Vec<[f64; 2]> {
     let n = values.len();
@@ -167,7 +168,7 @@ pub fn fourier_coefficients(values: &[f64]) -> Vec<[f64; 2]> {
 mod tests {
     use super::*;
 
-    /// Of 16, 32 or 64 waves in a period nothing is seen at 32 points, but between them; of 15 all is.
+    /// 16, 32 or 64 waves in a period are invisible at 32 points, but not between them; 15 waves are resolved.
     #[test]
     fn waves_beyond_the_points_are_seen_between_them() {
         for (waves, resolved) in [(3.0, true), (16.0, false), (32.0, false), (64.0, false)] {

@@ -1,17 +1,17 @@
-//! Several plain numbers side by side: generic code evaluated in them gives as many results at once.
+//! Several `f64` side by side: generic code evaluated in them gives several results at once.
 //!
-//! Every operation is done in each lane as it is done to a plain number, so each lane's results are those
-//! of the plain evaluation to the last bit. The compiler makes vector instructions of it.
+//! Every operation acts on each lane as on an `f64`, so the results of each lane equal those of the
+//! single evaluation bit for bit. The compiler generates vector instructions.
 //!
-//! A decision must hold in all lanes alike: whoever decides by a value asks every lane ([`uniform`](crate::uniform), [`Scalar::exceeds`]), and
-//! where lanes disagree each value is to be evaluated alone.
+//! A decision must be the same in all lanes: code that branches on a value tests every lane ([`uniform`](crate::uniform), [`Scalar::exceeds`]).
+//! If lanes disagree, each value must be evaluated alone.
 
 use crate::scalar::Scalar;
 use crate::sin_cos::sin_cos;
 use std::array;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// `N` plain numbers side by side.
+/// `N` numbers of type `f64` side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lanes<const N: usize>(pub [f64; N]);
 
@@ -45,7 +45,7 @@ impl<const N: usize> Scalar for Lanes<N> {
         Self([value; N])
     }
 
-    /// The first lane's.
+    /// The value of the first lane.
     #[inline(always)]
     fn value(self) -> f64 {
         self.0[0]
@@ -71,7 +71,7 @@ impl<const N: usize> Scalar for Lanes<N> {
         self.zip_with(other, f64::atan2)
     }
 
-    /// Derivatives at one value do not hold for others: lanes with another value become NaN, so that code which
+    /// The derivatives are valid at one value only: lanes with another value become NaN, so code that
     /// composes functions must not be evaluated in lanes.
     #[inline(always)]
     fn compose(self, derivatives: &[f64; 4]) -> Self {

@@ -1,5 +1,5 @@
-//! Number types, small dense algebra, series and root finding that know nothing of mechanisms. Code written once for any
-//! [`Scalar`] is evaluated in plain numbers, exact derivatives, twice the digits, or several values at once.
+//! Number types, small dense linear algebra, series and root finding, independent of mechanisms. Code that is generic over
+//! [`Scalar`] is evaluated in `f64` or `f32`, with exact derivatives, with twice the digits, or for several values at once.
 //!
 //! ```
 //! use dwell_numerics::{Dual, DoubleDouble, Scalar};

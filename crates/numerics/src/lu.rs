@@ -1,31 +1,31 @@
-//! LU factors with partial pivoting for a few unknowns, in any number type.
+//! LU factorisation with partial pivoting for few unknowns, in any number type.
 
 use crate::factor_outcome::FactorOutcome;
 #[cfg(not(target_family = "wasm"))]
 use crate::lu_faer;
 use crate::scalar::{Scalar, uniform};
 
-/// Whether plain numbers of so many unknowns are factored by faer, which allocates its scratch memory.
+/// Whether `f64` matrices of so many unknowns are factored by faer, which allocates scratch memory.
 #[cfg(not(target_family = "wasm"))]
 #[inline]
 pub fn uses_faer(unknowns: usize) -> bool {
     unknowns >= lu_faer::FAER_MIN_UNKNOWNS
 }
 
-/// Whether plain numbers of so many unknowns are factored by faer: in WebAssembly never.
+/// Whether `f64` matrices of so many unknowns are factored by faer: never in WebAssembly.
 #[cfg(target_family = "wasm")]
 #[inline]
 pub fn uses_faer(_unknowns: usize) -> bool {
     false
 }
 
-/// Whether loops over few unknowns are unrolled: in WebAssembly, where size counts, only those of plain numbers.
+/// Whether loops over few unknowns are unrolled; in WebAssembly, where size matters, only for `f64`.
 const fn unrolls<T: Scalar>() -> bool {
     let is_plain = !T::HAS_DERIVATIVES && T::EPSILON == f64::EPSILON && T::LANES == 1;
     is_plain || !cfg!(target_family = "wasm")
 }
 
-/// The number of unknowns where loops are unrolled, else none that is.
+/// The number of unknowns if loops are unrolled for it, otherwise a number without unrolled loops.
 #[inline(always)]
 pub(crate) fn unrolled<T: Scalar>(unknowns: usize) -> usize {
     if unrolls::<T>() { unknowns } else { usize::MAX }
@@ -42,9 +42,9 @@ pub fn factor<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> FactorOutcome {
     eliminate(a, pivots)
 }
 
-/// The same by elimination written out.
+/// [`factor`] by our own elimination, without faer.
 pub(crate) fn eliminate<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> FactorOutcome {
-    // Of few unknowns the loops are unrolled.
+    // Loops over few unknowns are unrolled.
     match unrolled::<T>(pivots.len()) {
         2 => eliminate_inline(a, pivots, 2),
         3 => eliminate_inline(a, pivots, 3),
@@ -88,7 +88,7 @@ fn eliminate_inline<T: Scalar>(a: &mut [T], pivots: &mut [usize], n: usize) -> F
             0.0
         };
         for size in (0..T::LANES).map(|lane| pivot.lane(lane)) {
-            // `min` would discard a NaN; a pivot that is no number must end as "singular".
+            // `min` would discard a NaN; a NaN pivot must be reported as singular.
             min_pivot = if size.is_nan() {
                 0.0
             } else {
@@ -96,7 +96,7 @@ fn eliminate_inline<T: Scalar>(a: &mut [T], pivots: &mut [usize], n: usize) -> F
             };
             max_pivot = max_pivot.max(size.abs());
         }
-        // Divisions take longest: one for each pivot.
+        // Divisions are slow: one for each pivot.
         let inverse = T::from_f64(1.0) / pivot;
         for i in k + 1..n {
             let ratio = a[i * n + k] * inverse;
@@ -144,7 +144,7 @@ pub(crate) fn solve_upper<T: Scalar>(a: &[T], n: usize, b: &mut [T]) {
             let change = a[i * n + j] * b[j];
             b[i] -= change;
         }
-        // The reciprocal does not wait for the sum.
+        // The reciprocal does not depend on the sum.
         b[i] = b[i] * (T::from_f64(1.0) / a[i * n + i]);
     }
 }
@@ -157,7 +157,7 @@ pub(crate) fn solve_upper_transposed<T: Scalar>(a: &[T], n: usize, b: &mut [T]) 
             let change = a[j * n + i] * b[j];
             b[i] -= change;
         }
-        // The reciprocal does not wait for the sum.
+        // The reciprocal does not depend on the sum.
         b[i] = b[i] * (T::from_f64(1.0) / a[i * n + i]);
     }
 }

@@ -1,12 +1,12 @@
-//! The smallest value of a function between two points.
+//! Minimum of a function on an interval.
 
 /// The golden section of an interval.
 const GOLDEN: f64 = 0.381_966_011_250_105_1;
 /// Highest number of evaluations.
 const MAX_EVALUATIONS: usize = 60;
 
-/// Where `f` is smallest between `a` and `b`, and its value there, by parabolas and golden sections (Brent 1973). It
-/// stops at the first value of `enough` or less, or where the place is known to `resolution`.
+/// The minimum [x, f(x)] of `f` between `a` and `b`, by parabolas and golden sections (Brent 1973). The search
+/// stops at the first value of at most `enough`, or when x is known to `resolution`.
 ///
 /// # Errors
 /// The first error of `f`.
@@ -19,13 +19,13 @@ pub fn find<E>(
 ) -> Result<[f64; 2], E> {
     let mut x = a + GOLDEN * (b - a);
     let mut fx = f(x)?;
-    // The second and the third best place, and the last two changes of the best.
+    // The second and third best x, and the last two changes of the best.
     let ([mut w, mut v], [mut fw, mut fv]) = ([x; 2], [fx; 2]);
     let (mut change, mut change_before) = (0.0_f64, 0.0_f64);
     for _ in 1..MAX_EVALUATIONS {
         let middle = 0.5 * (a + b);
         let is_found = (x - middle).abs() + 0.5 * (b - a) <= 2.0 * resolution;
-        // A value that is no number is no minimum.
+        // A NaN is no minimum.
         if fx <= enough || is_found || fx.is_nan() {
             break;
         }
@@ -42,7 +42,7 @@ pub fn find<E>(
             };
             let to = x + parabolic;
             if parabolic.abs() < 0.5 * change_before.abs() && a < to && to < b {
-                // Next to an end the other side of the best place is tried.
+                // Near an end, the other side of the best x is tried.
                 let is_at_end = to - a < 2.0 * resolution || b - to < 2.0 * resolution;
                 let inwards = resolution.copysign(middle - x);
                 step = Some(if is_at_end { inwards } else { parabolic });
@@ -101,7 +101,7 @@ mod tests {
             (value + 1.0).abs() < 1e-10 && evaluations < 15,
             "{evaluations}"
         );
-        // The end of a slope; and what is deep enough at once.
+        // A minimum at an end; and a first value that is already small enough.
         let [at, _] = find(|x: f64| Ok::<_, Infallible>(x), [1.0, 2.0], 1e-6, 0.5).unwrap();
         assert!((at - 1.0).abs() < 1e-5, "{at}");
         let [_, value] = find(

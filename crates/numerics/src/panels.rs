@@ -1,50 +1,53 @@
-//! Functions of a phase that are smooth but have sharp peaks: Chebyshev series on panels, each of which is halved
-//! until its series is resolved. A peak of width w takes about log₂ 1/w panels, but 1/w equally spaced points.
+//! Smooth functions of a phase with sharp peaks: Chebyshev series on panels, which are halved
+//! until the series are resolved. A peak of width w takes about log₂ 1/w panels, compared with 1/w equally spaced points.
 
 use std::f64::consts::{PI, TAU};
 
-/// Points of a panel.
+/// Number of points of a panel.
 const PANEL_POINTS: usize = 24;
-/// Most panels, and how often one is halved at most.
+/// Maximum number of panels.
 const MAX_PANELS: usize = 2048;
 const MAX_HALVINGS: u32 = 50;
-/// Coefficients below this part of the panel's largest value are rounding.
+/// Coefficients below this fraction of the panel's largest value are rounding errors.
 const COEFFICIENT_ROUNDING: f64 = 2e-15;
-/// Coefficients below this part, of which the last third is not below a quarter of the third before, are
-/// rounding too, of values that carry more of it.
+/// Below this fraction, coefficients whose last third is not below a quarter of the third before are also
+/// rounding errors, of less accurate values.
 const NOISY_TAIL: f64 = 1e-4;
 const FLATNESS: f64 = 0.25;
 
-/// So many times the last coefficients of a panel, or this part of its largest value, may separate its series from the function at its ends.
+/// At its ends, the series of a panel may differ from the function by this many times its last coefficients,
 const END_TAILS: f64 = 100.0;
+/// or by this fraction of its largest value.
 const END_ERROR: f64 = 1e-6;
-/// Last coefficients below this part of the largest value need no proof that they are rounding.
+/// Last coefficients below this fraction of the largest value are accepted as rounding errors without further test.
 const SURELY_NOISE: f64 = 1e-12;
-/// Nor do those of narrower panels: roundings of positions are alike at neighbouring points there. Else the largest difference
-/// between neighbours at so many places, at this part of the panel from each other, must be this part of them.
+/// So are those of narrower panels, where rounding errors of positions are equal at neighbouring points.
 const PROVEN_WIDTH: f64 = 1e-4;
+/// Otherwise the largest difference between neighbours is measured at this many points,
 const NOISE_POINTS: usize = 8;
+/// of neighbours at this fraction of the panel's width,
 const NEIGHBOUR: f64 = 1e-9;
+/// and must be at least this fraction of the last coefficients.
 const NOISE_PART: f64 = 0.1;
 
-/// A function that the highest number of panels does not resolve.
+/// A function that the maximum number of panels does not resolve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NotResolved {
     /// Number of points at which it was evaluated.
     pub points: usize,
-    /// What is left of its integral in the last coefficients of a panel, as a part of it.
+    /// Truncation error of its integral by the last coefficients of a panel, relative to the integral.
     pub tail: f64,
 }
 
-/// A function of a phase from 0 to 2π, by panels.
+/// A function of a phase from 0 to 2π on panels.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Panels {
     panels: Vec<Panel>,
-    /// Its integral over a period, over 2π.
+    /// Its mean: the integral over a period divided by 2π.
     pub mean: f64,
-    /// What is left of its integral in the last coefficients of the panels, as a part of it.
+    /// Truncation error of its integral by the last coefficients of the panels, relative to the integral.
     pub tail: f64,
-    /// Points at which it was evaluated.
+    /// Number of points at which it was evaluated.
     pub points: usize,
 }
 
@@ -54,15 +57,15 @@ struct Panel {
     to: f64,
     /// The integral up to `from`.
     integral_before: f64,
-    /// Of the function on −1 … 1.
+    /// Chebyshev coefficients of the function on −1 … 1.
     coefficients: Vec<f64>,
-    /// Of its integral there, from `from`.
+    /// Chebyshev coefficients of its integral from `from`.
     integral_coefficients: Vec<f64>,
     tail: f64,
 }
 
 impl Panels {
-    /// The panels of a function.
+    /// Approximates a function of the phase.
     ///
     /// # Errors
     /// [`NotResolved`], or the first error of the function.
@@ -70,9 +73,9 @@ impl Panels {
         Self::build(of, None)
     }
 
-    /// The same of a function that is smooth but for rounding. A panel whose series is resolved is halved all the same where the function
-    /// differs at its ends, where what looks like rounding is the same at neighbouring points, or where a check of the points that
-    /// were evaluated since the check before does not accept it.
+    /// Approximates a function that is smooth except for rounding, with additional checks. A panel whose series is resolved is nevertheless
+    /// halved if the series differs from the function at its ends, if apparent rounding errors are equal at neighbouring points, or if `check`,
+    /// called after the points of each panel, rejects it.
     ///
     /// # Errors
     /// As [`Panels::new`].
@@ -88,7 +91,7 @@ impl Panels {
         mut check: Option<&mut dyn FnMut() -> bool>,
     ) -> Result<Self, E> {
         let mut found = Self::default();
-        // The last is next: the panels come in order.
+        // The last panel is processed next, so panels are completed in order.
         let mut open = vec![(0.5 * TAU, TAU, 1), (0.0, 0.5 * TAU, 1)];
         let mut sum = 0.0;
         let mut tail = 0.0;
@@ -99,7 +102,7 @@ impl Panels {
             if let Some(check) = &mut check {
                 let holds = done && panel.holds_at_ends(&mut of)?;
                 done = check() && holds && panel.is_noise(&mut of)?;
-                // The points of the search for noise belong to no rule.
+                // The points of the noise test belong to no panel.
                 check();
             }
             if !done && (halvings >= MAX_HALVINGS || found.panels.len() + open.len() >= MAX_PANELS)
@@ -159,7 +162,7 @@ impl Panel {
         let coefficients: Vec<f64> = (0..PANEL_POINTS).map(coefficient).collect();
         let last = coefficients[PANEL_POINTS - 3..].iter();
         let tail = last.fold(0.0_f64, |max, c| max.max(c.abs()));
-        // ∫ T_k = (T_{k+1}/(k+1) − T_{k−1}/(k−1))/2, and T₀ counts twice in the sum below it.
+        // ∫ T_k = (T_{k+1}/(k+1) − T_{k−1}/(k−1))/2, and T₀ counts twice in the sum.
         let get = |k: usize| coefficients.get(k).copied().unwrap_or(0.0);
         let mut integral_coefficients: Vec<f64> = (0..=PANEL_POINTS)
             .map(|k| match k {
@@ -184,7 +187,7 @@ impl Panel {
         })
     }
 
-    /// The integral over all of it.
+    /// The integral over the panel.
     fn total_integral(&self) -> f64 {
         self.integral_coefficients.iter().sum()
     }
@@ -204,7 +207,7 @@ impl Panel {
         self.tail <= COEFFICIENT_ROUNDING * largest || (self.tail < NOISY_TAIL * largest && is_flat)
     }
 
-    /// Whether the series is the function at the ends, too: a peak there is beyond the outermost points.
+    /// Whether the series agrees with the function at the ends: a peak there is beyond the outermost points.
     fn holds_at_ends<E>(&self, of: &mut impl FnMut(f64) -> Result<f64, E>) -> Result<bool, E> {
         let largest = self.coefficients.iter().map(|c| c.abs()).sum::<f64>();
         let allowed = (END_TAILS * self.tail).max(END_ERROR * largest);
@@ -217,8 +220,8 @@ impl Panel {
         Ok(true)
     }
 
-    /// Whether its last coefficients are rounding: then so large a part of them is between neighbouring points, too. The tails of a peak
-    /// that no point shows are smooth.
+    /// Whether its last coefficients are rounding errors: then differences between neighbouring points have their size. The tails of a peak
+    /// between the points are smooth instead.
     fn is_noise<E>(&self, of: &mut impl FnMut(f64) -> Result<f64, E>) -> Result<bool, E> {
         let largest = self.coefficients.iter().map(|c| c.abs()).sum::<f64>();
         let width = self.to - self.from;
@@ -265,14 +268,14 @@ mod tests {
         for power in 1..=12 {
             let gap = 10.0_f64.powi(-power);
             let c = 1.0 - gap;
-            // 1 − c cos s without the difference of equals.
+            // 1 − c cos s without cancellation.
             let of = |s: f64| {
                 let sine = (0.5 * s).sin();
                 Ok::<f64, NotResolved>(1.0 / (gap + 2.0 * c * sine * sine))
             };
             let panels = Panels::new(of).expect("resolved");
             let root = (gap * (2.0 - gap)).sqrt();
-            // The cosines at the nodes are known to their rounding, at a peak of a width of √gap.
+            // The cosines at the nodes have rounding errors, and the peak has the width √gap.
             let tolerance = 1e-15 + 4e-16 / gap.sqrt();
             assert!((panels.mean * root - 1.0).abs() < tolerance, "{gap:e}");
             assert!(panels.points < 10_000, "{gap:e}: {}", panels.points);

@@ -1,17 +1,17 @@
-//! Polynomials of fifth degree with two continuous derivatives: the fast form of a function that is known at positions.
+//! Piecewise polynomials of degree five with two continuous derivatives: the fast form of a sampled function.
 
 use crate::sampled_curve::{SamplePositions, SampledCurve};
 
-/// A curve is refined until the polynomials differ from it by less than this part of its largest value or slope.
+/// Intervals are refined until the polynomials differ from the curve by less than this fraction of its largest value or slope.
 const DIFFERENCE: f64 = 1e-13;
-/// At most so many polynomials between two positions.
+/// Maximum number of polynomials between two positions.
 const MAX_PARTS: usize = 32;
-/// Where polynomials are compared with their curve, in parts of an interval: where their difference is about the largest.
+/// Where polynomials are compared with their curve, as fractions of an interval: close to the largest difference.
 const COMPARED: [f64; 2] = [0.28, 0.57];
-/// About so many intervals are compared.
+/// Approximate number of intervals compared.
 const COMPARED_INTERVALS: usize = 60;
 
-/// What of a curve the polynomials follow within a rounding.
+/// The derivatives of a curve that the polynomials approximate to rounding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Checked {
     /// Its value.
@@ -20,19 +20,19 @@ pub enum Checked {
     Slope,
 }
 
-/// Polynomials of fifth degree between nodes.
+/// Polynomials of degree five between nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PiecewiseQuintic {
     /// The nodes; with a period the last is the first of the next period.
     nodes: Vec<f64>,
     period: Option<f64>,
-    /// Of each interval: the coefficients of the powers of the distance from its first node.
+    /// By interval: coefficients of the powers of the distance from its first node.
     coefficients: Vec<[f64; 6]>,
 }
 
 impl PiecewiseQuintic {
-    /// The polynomials through a curve: those of a cubic curve are its own, those of a series follow it within a rounding of its
-    /// largest value, or as near as 32 polynomials in each interval come.
+    /// The polynomials through a curve. A cubic curve is reproduced; a series is approximated to rounding of its
+    /// largest value, or as closely as 32 polynomials per interval allow.
     pub fn through(positions: &SamplePositions, curve: &SampledCurve, checked: Checked) -> Self {
         let coarse = Self::with_parts(positions, curve, 1);
         if !matches!(curve, SampledCurve::Series(..)) {
@@ -67,7 +67,7 @@ impl PiecewiseQuintic {
                 [0, 1].map(|k| positions.eval(curve, pair[k])),
             ),
             SampledCurve::Linear(_) | SampledCurve::Cubic(_) => {
-                // Within the interval, for a cubic curve has two second derivatives at its ends.
+                // Within the interval, because a cubic curve has two second derivatives at its ends.
                 let middle = 0.5 * (pair[0] + pair[1]);
                 taylor(positions, curve, [pair[0], middle, pair[1]])
             }
@@ -79,7 +79,7 @@ impl PiecewiseQuintic {
         }
     }
 
-    /// The largest differences of value and slope from those of a curve in some intervals, as parts of the largest there.
+    /// The largest differences of value and slope from those of a curve in some intervals, relative to the largest there.
     fn differences(&self, positions: &SamplePositions, curve: &SampledCurve) -> [f64; 2] {
         let mut largest = [[0.0_f64; 2]; 2];
         let stride = (self.coefficients.len() / COMPARED_INTERVALS).max(1);
@@ -99,13 +99,13 @@ impl PiecewiseQuintic {
         })
     }
 
-    /// The first and the last place where it is defined; none if it repeats.
+    /// The first and last x where it is defined; `None` if it is periodic.
     pub fn ends(&self) -> Option<[f64; 2]> {
         let last = self.nodes.last().copied().unwrap_or(f64::NAN);
         self.period.is_none().then_some([self.nodes[0], last])
     }
 
-    /// Half the sum of the ends: angles are taken within half a revolution of it.
+    /// The centre of the interval: angles are taken within half a revolution of it.
     pub fn middle(&self) -> f64 {
         0.5 * (self.nodes[0] + self.nodes[self.nodes.len() - 1])
     }
@@ -119,7 +119,7 @@ impl PiecewiseQuintic {
         extent
     }
 
-    /// The value and the first four derivatives; none outside the ends. A periodic function has a value everywhere.
+    /// The value and the first four derivatives; `None` outside the ends. A periodic function has a value everywhere.
     pub fn eval(&self, x: f64) -> Option<[f64; 5]> {
         let first = self.nodes[0];
         let x = match self.period {
@@ -146,7 +146,7 @@ impl PiecewiseQuintic {
 
 /// The polynomial with these values, slopes and second derivatives at both ends of an interval of length `h`.
 fn hermite(h: f64, [[f, df, ddf], [g, dg, ddg]]: [[f64; 3]; 2]) -> [f64; 6] {
-    // What the end differs from the parabola of the start, in units of the interval.
+    // Difference of the end from the parabola of the start, in units of the interval.
     let value = g - f - h * df - 0.5 * h * h * ddf;
     let slope = h * (dg - df) - h * h * ddf;
     let bend = h * h * (ddg - ddf);

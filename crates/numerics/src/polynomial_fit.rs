@@ -1,4 +1,4 @@
-//! Least-squares fits of several functions by polynomials orthogonal on their nodes, as of functions that cannot be
+//! Least-squares fits of several functions by polynomials that are orthogonal on the nodes, for functions that cannot be
 //! evaluated within a gap between the nodes.
 
 use crate::scalar::Scalar;
@@ -36,11 +36,12 @@ impl OrthogonalBasis {
             alpha.push(dot(&moved, last) / square);
             beta.push(if k == 0 { 0.0 } else { square / before });
             before = square;
-            let next = (0..x.len()).map(|i| {
-                let earlier = if k == 0 { 0.0 } else { all[k - 1][i] };
-                (x[i] - alpha[k]) * last[i] - beta[k] * earlier
-            });
-            let next = next.collect();
+            let next = (0..x.len())
+                .map(|i| {
+                    let earlier = if k == 0 { 0.0 } else { all[k - 1][i] };
+                    (x[i] - alpha[k]) * last[i] - beta[k] * earlier
+                })
+                .collect();
             all.push(next);
         }
         (Self { scale, alpha, beta }, all)
@@ -71,8 +72,8 @@ impl OrthogonalBasis {
 }
 
 impl PolynomialFit {
-    /// Fits each function by its values on the nodes (`samples`: by node, by function) up to a degree, but no higher
-    /// than their rounding allows; `scale` is about the largest |node|.
+    /// Fits each function by its values at the nodes (`samples[node][function]`) with polynomials of at most the given degree, or less if
+    /// higher terms only fit rounding errors. `scale` is about the largest |node|.
     pub fn new(nodes: &[f64], samples: &[Vec<f64>], scale: f64, degree: usize) -> Self {
         let (basis, all) = OrthogonalBasis::new(nodes, scale, degree);
         let functions = samples.first().map_or(0, Vec::len);
@@ -90,7 +91,7 @@ impl PolynomialFit {
                 fit_function.push(c);
                 residuals.push(remainders.iter().map(|r| r * r).sum::<f64>());
             }
-            // What brings the rest down no further is rounding.
+            // Terms that do not reduce the residual further fit rounding errors.
             let min_residual = residuals.iter().copied().fold(f64::INFINITY, f64::min);
             let enough = residuals.iter().position(|&l| l <= 4.0 * min_residual);
             fit_function.truncate(enough.map_or(fit_function.len(), |e| e + 1));

@@ -1,4 +1,4 @@
-//! Householder QR factors of a matrix with more rows than columns: least-squares solutions of A x = b, and the smallest
+//! Householder QR factorisation of a matrix with more rows than columns: least-squares solutions of A x = b, and minimum-norm
 //! solutions of Aᵀ x = b.
 
 use crate::factor_outcome::FactorOutcome;
@@ -8,7 +8,7 @@ use crate::scalar::Scalar;
 /// Factors the row-major m × n matrix `a` (m > n) in place: R above, the reflections' vectors below, whose first components are
 /// one, and their factors in `factors` (n entries): each reflection is 1 − factor v vᵀ.
 pub fn factor<T: Scalar>(a: &mut [T], factors: &mut [T], m: usize) -> FactorOutcome {
-    // Of few unknowns the loops are unrolled.
+    // Loops over few unknowns are unrolled.
     match (m, lu::unrolled::<T>(factors.len())) {
         (4, 3) => factor_inline(a, factors, 4, 3),
         (5, 4) => factor_inline(a, factors, 5, 4),
@@ -39,7 +39,7 @@ fn factor_inline<T: Scalar>(a: &mut [T], factors: &mut [T], m: usize, n: usize) 
         }
         let length = square.sqrt();
         let first = a[k * n + k];
-        // Away from cancellation.
+        // The sign that avoids cancellation.
         let alpha = if first.value() > 0.0 { -length } else { length };
         let head = first - alpha;
         let (one, inverse) = (T::from_f64(1.0), T::from_f64(1.0) / head);
@@ -63,7 +63,7 @@ fn factor_inline<T: Scalar>(a: &mut [T], factors: &mut [T], m: usize, n: usize) 
         a[k * n + k] = alpha;
         factors[k] = factor;
     }
-    // The matrix is not square: it has no determinant. Without a column none depends on others.
+    // The matrix is not square and has no determinant. Without columns it is not singular.
     let (min_pivot, max_pivot) = if n == 0 {
         (1.0, 1.0)
     } else {
@@ -106,7 +106,7 @@ fn solve_inline<T: Scalar>(a: &[T], factors: &[T], [m, n]: [usize; 2], b: &mut [
     lu::solve_upper(a, n, b);
 }
 
-/// The smallest solution of Aᵀ x = b: `b` holds n entries of b, and then m of x.
+/// The minimum-norm solution of Aᵀ x = b: `b` holds n entries of b on input and m entries of x on return.
 pub fn solve_transposed<T: Scalar>(a: &[T], factors: &[T], m: usize, b: &mut [T]) {
     match (m, lu::unrolled::<T>(factors.len())) {
         (4, 3) => solve_transposed_inline(a, factors, [4, 3], b),
@@ -143,7 +143,7 @@ mod tests {
         solve(&a, &heads, 4, &mut b);
         assert!((b[0] - x[0]).abs() < 1e-15 && (b[1] - x[1]).abs() < 1e-15);
 
-        // λ = A (AᵀA)⁻¹ f is the smallest one with Aᵀ λ = f: it lies in the columns of A.
+        // λ = A (AᵀA)⁻¹ f is the minimum-norm solution of Aᵀ λ = f: it lies in the column space of A.
         let f = [1.0, 2.0];
         let mut b = [f[0], f[1], 9.0, 9.0];
         solve_transposed(&a, &heads, 4, &mut b);

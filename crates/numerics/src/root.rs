@@ -1,8 +1,8 @@
-//! A zero between two points of different sign.
+//! A root between two points of different sign.
 
-/// The zero of `f` between `a` and `b`, where `f` has different signs, by the Illinois variant of
-/// false position with a bisection wherever that stalls. It stops at an exact zero or when the
-/// bracket is down to rounding; none if the signs are equal or a value is no number.
+/// The root of `f` between `a` and `b`, where `f` has different signs, by the Illinois variant of
+/// false position, with a bisection where it stalls. The search stops at an exact zero or when the
+/// bracket has the size of rounding. `None` if the signs are equal or a value is NaN.
 ///
 /// # Errors
 /// The first error of `f`.
@@ -41,7 +41,7 @@ pub fn find<E>(
             return Ok(None);
         }
         if value.signum() == fb.signum() {
-            // The same end moves again: halving the other's value keeps it from standing still.
+            // The same end moves again: halving the value of the other end keeps it from staying fixed.
             fa *= 0.5;
         } else {
             (a, fa) = (b, fb);
@@ -62,7 +62,7 @@ mod tests {
         let found = find(cube, 0.0, 3.0).unwrap().unwrap();
         assert!((found - 2.0_f64.cbrt()).abs() < 1e-15);
         assert_eq!(find(cube, 2.0, 3.0).unwrap(), None);
-        // A step is bracketed down to neighbouring numbers.
+        // A step is bracketed to adjacent numbers.
         let step = |x: f64| Ok::<_, Infallible>(if x < 0.3 { -1.0 } else { 5.0 });
         assert!((find(step, 0.0, 1.0).unwrap().unwrap() - 0.3).abs() < 1e-15);
     }

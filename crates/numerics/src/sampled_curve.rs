@@ -1,18 +1,18 @@
-//! Functions that are known at positions: straight lines, cubic polynomials or a trigonometric series between them.
+//! Functions sampled at positions, interpolated by straight lines, cubic polynomials or a trigonometric series.
 
 use std::f64::consts::TAU;
 
-/// Terms at the end of a series are left out while their sum is below this part of the largest value.
+/// The last terms of a series are omitted as long as their sum is below this fraction of the largest value.
 const ROUNDING: f64 = 1e-17;
 
-/// The positions at which functions are known, in ascending order.
+/// The positions at which functions are sampled, in ascending order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SamplePositions {
     x: Vec<f64>,
     period: Option<f64>,
 }
 
-/// A function between its positions.
+/// An interpolated function.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SampledCurve {
     /// Straight lines between the values.
@@ -44,7 +44,7 @@ impl SamplePositions {
         self.period
     }
 
-    /// The same place within the positions; none beyond their ends.
+    /// `x` moved into the range of the positions by whole periods; `None` beyond their ends.
     pub fn within(&self, x: f64) -> Option<f64> {
         let [first, last] = self.ends();
         match self.period {
@@ -53,7 +53,7 @@ impl SamplePositions {
         }
     }
 
-    /// The positions on both sides of a place, and the indices of their values.
+    /// The positions on both sides of `x`, and the indices of their values.
     fn interval(&self, x: f64) -> ([usize; 2], [f64; 2]) {
         let count = self.x.len();
         let k = self.x.partition_point(|&at| at <= x).max(1) - 1;
@@ -64,7 +64,7 @@ impl SamplePositions {
         }
     }
 
-    /// Cubic polynomials through values, with slopes by differences of fourth order, at the ends by parabolas.
+    /// Cubic polynomials through values, with slopes by fourth-order differences, and by parabolas at the ends.
     pub fn cubic(&self, values: Vec<f64>) -> SampledCurve {
         let slopes = self.slopes(&values);
         let both = values.into_iter().zip(slopes);
@@ -95,7 +95,7 @@ impl SamplePositions {
         }
     }
 
-    /// Slopes by differences of fourth order over equal steps around, otherwise by the polynomial through the neighbours.
+    /// Slopes by fourth-order differences where the steps are equal, otherwise by the polynomial through the neighbours.
     fn slopes(&self, values: &[f64]) -> Vec<f64> {
         let count = self.x.len();
         let at = |k: isize| -> Option<[f64; 2]> {
@@ -129,7 +129,7 @@ impl SamplePositions {
 }
 
 impl SampledCurve {
-    /// The trigonometric series through values at equal distances over a revolution.
+    /// The trigonometric series through values that are equally spaced over a revolution.
     pub fn series(values: &[f64]) -> Self {
         let count = values.len();
         let mean = values.iter().sum::<f64>() / count as f64;
@@ -143,7 +143,7 @@ impl SampledCurve {
                 let [c, s] = table[(j * k) % count];
                 sum = [sum[0] + value * c, sum[1] + value * s];
             }
-            // Of an even number of values the last cosine is met twice.
+            // For an even number of values the last cosine is counted twice.
             let share = if 2 * k == count { 1.0 } else { 2.0 } / count as f64;
             [
                 sum[0] * share,
@@ -151,7 +151,7 @@ impl SampledCurve {
             ]
         };
         let mut terms: Vec<[f64; 2]> = (1..=count / 2).map(term).collect();
-        // What is left out at the end is below the rounding of a value.
+        // The omitted terms are below the rounding error of a value.
         let size = |[a, b]: &[f64; 2]| a.abs() + b.abs();
         let largest = values
             .iter()
@@ -167,8 +167,8 @@ impl SampledCurve {
         Self::Series(mean, terms)
     }
 
-    /// The function whose slope is twice a series, with the mean of these values: the mean of the slope is not that of a
-    /// periodic function, and is left out.
+    /// The function whose slope is twice a series, with the mean of `values`. The mean of the slope is
+    /// dropped, because the integral must be periodic.
     pub fn integral_of_twice(slope: &Self, values: &[f64]) -> Self {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let Self::Series(_, terms) = slope else {
@@ -181,8 +181,8 @@ impl SampledCurve {
         Self::Series(mean, integrated.collect())
     }
 
-    /// The largest coefficients of the last eighth of a series, summed: what the series leaves out is of that size. Zero
-    /// without a series.
+    /// Sum of the largest coefficients of the last eighth of a series, an estimate of the truncation error. Zero
+    /// for other curves.
     pub fn tail(&self) -> f64 {
         match self {
             Self::Series(_, terms) => {

@@ -1,11 +1,11 @@
-//! The number types that generic code is evaluated in: plain `f64`, [`Dual`](crate::Dual) for exact derivatives with
-//! respect to a coordinate, `f32` and [`DoubleDouble`](crate::DoubleDouble) to measure what rounding does.
+//! The number types of generic evaluations: `f64`, [`Dual`](crate::Dual) for exact derivatives with
+//! respect to a coordinate, `f32` and [`DoubleDouble`](crate::DoubleDouble) to measure rounding errors.
 
 use std::f64::consts::TAU;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// A number that positions, velocities, accelerations and reactions can be computed in.
+/// A number type in which positions, velocities, accelerations and reactions can be computed.
 pub trait Scalar:
     Copy
     + Debug
@@ -23,20 +23,20 @@ pub trait Scalar:
 {
     /// Whether such a number carries derivatives.
     const HAS_DERIVATIVES: bool;
-    /// The distance from one to the next larger number.
+    /// The distance from 1 to the next larger number.
     const EPSILON: f64;
     /// A constant.
     fn from_f64(value: f64) -> Self;
-    /// The value alone, on which every decision (pivot, convergence, limit) is made.
+    /// The value without derivatives, by which every decision (pivot, convergence, limit) is made.
     fn value(self) -> f64;
-    /// How many values such a number holds side by side.
+    /// Number of values that such a number holds side by side.
     const LANES: usize = 1;
-    /// The value in one of them.
+    /// The value in one lane.
     #[inline]
     fn lane(self, _lane: usize) -> f64 {
         self.value()
     }
-    /// Whether every value exceeds the one in the same lane of another number: where lanes disagree, the values must be
+    /// Whether the value in every lane exceeds that of the same lane of `other`. If lanes disagree, the values must be
     /// evaluated one by one.
     #[inline(always)]
     fn exceeds(self, other: Self) -> bool {
@@ -48,12 +48,12 @@ pub trait Scalar:
     fn sin_cos(self) -> (Self, Self);
     /// The angle of (x, y) = (`other`, `self`) from the x axis, in (−π, π].
     fn atan2(self, other: Self) -> Self;
-    /// The angle of whole revolutions, rad.
+    /// The angle of `count` revolutions, rad.
     #[inline]
     fn from_revolutions(count: f64) -> Self {
         Self::from_f64(TAU * count)
     }
-    /// The numbers as a slice of `f64`, if that is their type: for libraries that know no other.
+    /// The numbers as a slice of `f64`, if that is their type, for libraries that take `f64` only.
     fn as_f64_slice_mut(_numbers: &mut [Self]) -> Option<&mut [f64]> {
         None
     }
@@ -62,7 +62,7 @@ pub trait Scalar:
     fn compose(self, derivatives: &[f64; 4]) -> Self;
 }
 
-/// A function of each element of an array. (That of the standard library is not always inlined.)
+/// Applies a function to each element of an array. (The method of the standard library is not always inlined.)
 #[inline(always)]
 pub fn map_array<A: Copy, B: Copy, const N: usize>(of: [A; N], f: impl Fn(A) -> B) -> [B; N] {
     let mut out = [f(of[0]); N];
@@ -72,8 +72,8 @@ pub fn map_array<A: Copy, B: Copy, const N: usize>(of: [A; N], f: impl Fn(A) -> 
     out
 }
 
-/// The result of a test of each lane; none where lanes disagree, so that the values must be evaluated one by one.
-/// Every decision in generic code is made by this or by [`Scalar::exceeds`].
+/// The result of a test of each lane; `None` if lanes disagree, so that the values must be evaluated one by one.
+/// Generic code decides only by this or by [`Scalar::exceeds`].
 #[inline(always)]
 pub fn uniform<T: Scalar>(test: impl Fn(usize) -> bool) -> Option<bool> {
     let first = test(0);

@@ -1,8 +1,8 @@
-//! Sine and cosine of several numbers side by side, each to the bits of a number alone.
+//! Sine and cosine of several numbers side by side, with the bits of single evaluations.
 //!
-//! The library of the platform takes one number at a time, and other platforms give other bits. Here an
-//! angle is taken to r = x − k π/2 in |r| ≤ π/4, and two polynomials in r² give both; no lane takes a
-//! branch of its own, so the compiler makes vector instructions of it.
+//! The functions of the platform take one number at a time, and their bits differ between platforms. Here an
+//! angle is reduced to r = x − k π/2 with |r| ≤ π/4, and two polynomials in r² give both functions. No lane takes a
+//! branch of its own, so the compiler generates vector instructions.
 
 use crate::scalar::{Scalar, map_array};
 use std::f64::consts::FRAC_2_PI;
@@ -14,14 +14,14 @@ const HALF_PI_PARTS: [f64; 3] = [
     2.232_414_100_745_812e-25,
 ];
 
-/// Up to here k has at most 12 bits, rad: a thousand revolutions. Larger angles are left to the platform.
+/// Largest angle, rad, for which k has at most 12 bits: a thousand revolutions. Larger angles use the platform's functions.
 const MAX_REDUCED: f64 = 6.4e3;
 
-/// Added to a number below 2⁵¹, it rounds it to the nearest whole number, which is then in the last bits of the sum;
-/// subtracted again, it leaves that number.
+/// Adding this to a number below 2⁵¹ rounds it to the nearest integer, which is then in the last bits of the sum.
+/// Subtracting it again gives that integer.
 const ROUNDING_SHIFT: f64 = 1.5 * (1_u64 << 52) as f64;
 
-/// (sin r − r)/r³ as a polynomial in r²: the least relative error of the sine over |r| ≤ π/4 is 4e-18.
+/// (sin r − r)/r³ as the minimax polynomial in r²: the relative error of the sine over |r| ≤ π/4 is 4e-18.
 const SIN_COEFFICIENTS: [f64; 6] = [
     -0.166_666_666_666_666_3,
     0.008_333_333_333_321_84,
@@ -31,7 +31,7 @@ const SIN_COEFFICIENTS: [f64; 6] = [
     1.589_543_329_488_574_6e-10,
 ];
 
-/// (cos r − 1 + r²/2)/r⁴ likewise: 6e-20.
+/// (cos r − 1 + r²/2)/r⁴ as the minimax polynomial in r²: 6e-20.
 const COS_COEFFICIENTS: [f64; 6] = [
     0.041_666_666_666_666_595,
     -0.001_388_888_888_887_334_2,
@@ -57,9 +57,9 @@ pub fn sin_cos<T: Scalar, const N: usize>(
     (join(sin), join(cos))
 }
 
-/// Lanes in registers, which are not to be taken apart for their sines.
+/// Lanes in registers, whose sines are computed without splitting them.
 pub trait LanesInRegisters: Scalar {
-    /// Does to a sine, a cosine and a shifted k what `to_quadrants` does to them lane by lane.
+    /// Exchanges and signs a sine and a cosine by a shifted k, as `to_quadrants` does lane by lane.
     fn to_quadrants(reduced: [Self; 3]) -> (Self, Self);
     /// Sine and cosine lane by lane, by [`sin_cos_by_lane`].
     fn sin_cos_by_lane(self) -> (Self, Self);
@@ -74,7 +74,7 @@ pub fn sin_cos_in_registers<T: LanesInRegisters>(x: T) -> (T, T) {
     x.sin_cos_by_lane()
 }
 
-/// Sines and cosines of angles of which one is large, or NaN.
+/// Sines and cosines of angles if one of them is large or NaN.
 #[cold]
 #[inline(never)]
 pub fn sin_cos_by_lane<const N: usize>(x: [f64; N]) -> ([f64; N], [f64; N]) {
@@ -94,7 +94,7 @@ fn sin_cos_reduced<T: Scalar>(x: T) -> [T; 3] {
     let shifted = x * T::from_f64(FRAC_2_PI) + T::from_f64(ROUNDING_SHIFT);
     let k = shifted - T::from_f64(ROUNDING_SHIFT);
     let [one, two, three] = map_array(HALF_PI_PARTS, T::from_f64);
-    // Both exact but for the rounding of r, and that is in `rest`.
+    // Both are exact except for the rounding of r, which is in `rest`.
     let (first, second) = (x - k * one, k * two);
     let r = first - second;
     let rest = ((first - r) - second) - k * three;
@@ -128,7 +128,7 @@ fn to_quadrants<T: Scalar, const N: usize>(
     (join(sin), join(cos))
 }
 
-/// In pairs of terms (Estrin), which have less latency than Horner's rule.
+/// A polynomial in pairs of terms (Estrin), with less latency than Horner's rule.
 #[inline(always)]
 fn polynomial<T: Scalar>(of: [f64; 6], x: T) -> T {
     let of = map_array(of, T::from_f64);
@@ -148,7 +148,7 @@ mod tests {
         Scalar::sin_cos(x)
     }
 
-    /// Over the whole extent, and where a sine is next to zero or the quarters change.
+    /// Angles over the whole range, and near zeros of the sine and limits of the quadrants.
     fn angles() -> Vec<f64> {
         let mut all: Vec<f64> = (0..40_000)
             .map(|i| {
@@ -172,7 +172,7 @@ mod tests {
             let (sin, cos) = alone(x);
             let reference = DoubleDouble::from_f64(x).sin_cos();
             for (value, reference) in [(sin, reference.0), (cos, reference.1)] {
-                // Of a number with all its bits set the unit is half as large, relatively.
+                // For a number with all bits set, the unit in the last place is relatively half as large.
                 let unit = reference.hi.abs().next_up() - reference.hi.abs();
                 let error = (DoubleDouble::from_f64(value) - reference).value().abs() / unit;
                 max_error = max_error.max(error);

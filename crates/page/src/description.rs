@@ -1,4 +1,4 @@
-//! What a page shows of a run.
+//! The contents of a page.
 
 use crate::drawing::Drawing;
 use base64::Engine as _;
@@ -6,16 +6,16 @@ use base64::engine::general_purpose::STANDARD;
 use dwell_findings::{Finding, RecordedEvent, RecordedNumber};
 use serde::Serialize;
 
-/// A run of a command. What a command does not have stays empty, and the page leaves it out.
+/// A run of a command. Empty parts are omitted from the page.
 ///
-/// There is no date in it: the same run has the same page.
+/// It contains no date: equal runs have equal pages.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Page {
     /// The heading: the title of the scene.
     pub title: String,
     /// The name of the command.
     pub command: String,
-    /// What was computed, in a line, such as `361 positions over one revolution of phi`.
+    /// The computation in one line, such as `361 positions over one revolution of phi`.
     pub subtitle: String,
     /// A remark that is shown with all results.
     pub note: Option<String>,
@@ -23,27 +23,27 @@ pub struct Page {
     pub scene: Option<PageScene>,
     /// The version of the program.
     pub version: String,
-    /// How the numbers were computed: method and tolerance, or how they were evaluated.
+    /// The method of computation: integrator and tolerance, or the kind of evaluation.
     pub method: String,
-    /// What the scene calls its angles and lengths; everything in a page is in SI.
+    /// The scene's units of angles and lengths; the numbers of a page are in SI units.
     pub units: Vec<DisplayUnit>,
-    /// The column of the independent coordinate or time; none where there are no rows.
+    /// The column of the independent coordinate or time; `None` without rows.
     pub axis: Option<usize>,
     /// The columns, of equal lengths.
     pub columns: Vec<PageColumn>,
-    /// What is to be said about the rows, such as that only some of them are here.
+    /// A remark about the rows, such as that only some are included.
     pub rows_note: Option<String>,
     /// The mechanism.
     pub drawing: Option<Drawing>,
     /// The extrema of the columns.
     pub peaks: Vec<Peak>,
-    /// What is to be said about all of them.
+    /// A remark about the extrema.
     pub peaks_note: Option<String>,
     /// The results of checks.
     pub findings: Vec<Finding>,
     /// Warnings and errors, in full.
     pub messages: Vec<PageMessage>,
-    /// What the command prints.
+    /// The printed summary.
     pub printed: String,
     /// The printed numbers, with all their digits.
     pub numbers: Vec<RecordedNumber>,
@@ -51,7 +51,7 @@ pub struct Page {
     pub events: Vec<RecordedEvent>,
     /// Tables of text.
     pub tables: Vec<PageTable>,
-    /// Pictures, where there are no rows to draw curves of.
+    /// Pictures, if there are no rows for curves.
     pub pictures: Vec<FileLink>,
     /// Files beside the page.
     pub files: Vec<FileLink>,
@@ -60,7 +60,7 @@ pub struct Page {
 /// The scene of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct PageScene {
-    /// Its name, which the names of its files begin with.
+    /// Its name: the base name of its files.
     pub name: String,
     /// Its text.
     pub text: String,
@@ -68,37 +68,37 @@ pub struct PageScene {
     pub sha256: String,
 }
 
-/// A unit in which numbers of one unit of SI are shown.
+/// A unit in which numbers of an SI unit are displayed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DisplayUnit {
-    /// The unit of SI: `rad` or `m`.
+    /// The SI unit: `rad` or `m`.
     pub si: String,
     /// The unit of the scene, such as `deg` or `mm`.
     pub unit: String,
-    /// A number of SI times this is one in the unit of the scene.
+    /// Conversion factor from SI to the unit of the scene.
     pub factor: f64,
 }
 
-/// Numbers along the rows.
+/// A column of numbers.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct PageColumn {
-    /// Its name in tables: no other column has it.
+    /// Its unique name in tables.
     pub key: String,
-    /// The same for people.
+    /// Its label in the page.
     pub label: String,
-    /// Its unit, of SI; empty where it has none.
+    /// Its SI unit; empty without unit.
     pub unit: String,
-    /// What belongs in one chart, such as `Reactions`.
+    /// The chart to which it belongs, such as `Reactions`.
     pub group: String,
-    /// What it is.
+    /// Its description.
     pub description: String,
-    /// By row; NaN where there is no value. They are in the block of numbers, not in the description.
+    /// By row; NaN without value. They are stored in the block of numbers, not in the description.
     #[serde(skip)]
     pub values: Vec<f64>,
 }
 
 impl PageColumn {
-    /// A column that is labelled by its key.
+    /// A column with its key as label.
     pub fn new(key: impl Into<String>, unit: impl Into<String>, values: Vec<f64>) -> Self {
         let key = key.into();
         Self {
@@ -111,27 +111,27 @@ impl PageColumn {
     }
 }
 
-/// The smallest and the largest value of a column, also where they are between two rows.
+/// The smallest and the largest value of a column, which may lie between two rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Peak {
     /// The column.
     pub column: usize,
-    /// The smallest and the largest value, each with the value of the axis where it is.
+    /// The smallest and the largest value, each with the abscissa where it occurs.
     pub ends: [[f64; 2]; 2],
-    /// The estimated error of the values, where one is known.
+    /// The estimated error of the values, if known.
     pub error: Option<f64>,
 }
 
-/// What a command says beside its results.
+/// A message of a command.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct PageMessage {
     /// `error` or `warning`.
     pub severity: String,
     /// The message.
     pub text: String,
-    /// What to try.
+    /// A suggestion.
     pub help: Option<String>,
-    /// Where in the scene's text: first byte and number of bytes.
+    /// Its place in the scene's text: first byte and number of bytes.
     pub span: Option<[usize; 2]>,
 }
 
@@ -146,17 +146,17 @@ pub struct PageTable {
     pub rows: Vec<Vec<String>>,
 }
 
-/// A file beside the page, which is linked, never loaded; or a picture in it.
+/// A file beside the page, which is linked but not loaded; or an embedded picture.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct FileLink {
-    /// The path from the page, or what is in the file.
+    /// The path relative to the page, or the embedded file.
     pub path: String,
-    /// What it is.
+    /// Its description.
     pub title: String,
 }
 
 impl FileLink {
-    /// A PNG that the page holds itself.
+    /// A PNG embedded in the page.
     pub fn embedded_png(title: &str, file: &[u8]) -> Self {
         Self {
             path: format!("data:image/png;base64,{}", STANDARD.encode(file)),

@@ -1,4 +1,4 @@
-//! The mechanism as a page draws it: what is fixed to bodies, where bodies are in each row, and which columns arrows show.
+//! The drawing of a mechanism: outlines fixed to bodies, the placements of bodies in each row, and the columns of arrows.
 
 use serde::Serialize;
 
@@ -7,11 +7,11 @@ use serde::Serialize;
 pub struct Drawing {
     /// Reference length of symbols, in space half the length of a hinge, m.
     pub size: f64,
-    /// In space the direction from which it is seen first, rad: azimuth about z and elevation. None in the plane.
+    /// In space the initial direction of view, rad: azimuth about z and elevation. `None` in the plane.
     pub view: Option<[f64; 2]>,
     /// The bodies.
     pub bodies: Vec<DrawnBody>,
-    /// What is drawn, from the back to the front.
+    /// Its parts, from the back to the front.
     pub parts: Vec<Part>,
     /// Forces that can be shown as arrows.
     pub arrows: Vec<ForceArrow>,
@@ -24,10 +24,10 @@ pub struct Drawing {
 pub struct DrawnBody {
     /// Its name.
     pub name: String,
-    /// The number of its colour: six of the palette, then ink; none of the ground.
+    /// The index of its colour: six of the palette, then ink; `None` for the ground.
     pub paint: Option<usize>,
-    /// Where it is in each row. In the plane x, y (m) and the angle (rad); in space x, y, z (m) and the first two columns
-    /// of its rotation. Empty where it is fixed. They are kept in single precision, as they are only drawn.
+    /// Its placement in each row: in the plane x, y (m) and the angle (rad); in space x, y, z (m) and the first two columns
+    /// of its rotation matrix. Empty for a fixed body. Stored in single precision, because they are only drawn.
     pub placements: Vec<Vec<f64>>,
 }
 
@@ -40,17 +40,17 @@ pub struct Anchor {
     pub point: Vec<f64>,
 }
 
-/// What an outline is.
+/// The kind of an outline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OutlineLook {
-    /// A bar through points of one line.
+    /// A bar through points on one line.
     Bar,
     /// A plate through three points or more.
     Plate,
     /// A block that slides.
     Block,
-    /// A wheel: its centre, and from there a point of its rim.
+    /// A wheel: its centre, and a point of its rim.
     Wheel,
     /// The barrel of a cylinder.
     Barrel,
@@ -60,7 +60,7 @@ pub enum OutlineLook {
     Arm,
     /// The curve of a cam.
     Cam,
-    /// A part of such a curve.
+    /// An open part of the curve of a cam.
     OpenCam,
     /// A rack with its teeth.
     Rack,
@@ -70,11 +70,11 @@ pub enum OutlineLook {
     GroundLine,
 }
 
-/// What a connection of two points is.
+/// The kind of a connection of two points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LinkLook {
-    /// A rod: of a cylinder, or without mass.
+    /// A rod of a cylinder, or a massless rod.
     Rod,
     /// A driven length: the barrel of a cylinder in the first half.
     Cylinder,
@@ -82,7 +82,7 @@ pub enum LinkLook {
     Spring,
     /// A damper.
     Damper,
-    /// A rod through a sleeve, which goes on beyond both.
+    /// A rod through a sleeve, which extends beyond both ends.
     Shaft,
     /// The arrow of a driven length.
     Drive,
@@ -95,7 +95,7 @@ pub enum MarkLook {
     /// A pin.
     #[default]
     Pin,
-    /// The bearing of a pin on the ground, which is behind the bodies.
+    /// The bearing of a pin on the ground, drawn behind the bodies.
     Support,
     /// A weld.
     Weld,
@@ -120,7 +120,7 @@ pub enum MarkLook {
     Cross,
     /// A plate on which a disc slides, with its normal as the axis.
     Plate,
-    /// That disc.
+    /// A disc that slides on a plate.
     Disc,
     /// Teeth, with the normal of their flanks as the axis.
     Teeth,
@@ -137,23 +137,23 @@ pub enum MarkLook {
 /// A symbol at a point of a body.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Mark {
-    /// What it is.
+    /// Its kind.
     pub look: MarkLook,
     /// Where it is.
     pub at: Anchor,
-    /// The body in whose frame its axis and a direction across it are.
+    /// The body in whose frame the axis and the normal are given.
     pub frame: usize,
-    /// The axis, a unit vector; empty where it has none.
+    /// The axis, a unit vector; empty without axis.
     pub axis: Vec<f64>,
-    /// A unit vector at right angles to the axis, or nothing.
+    /// A unit vector perpendicular to the axis, or empty.
     pub normal: Vec<f64>,
     /// The body whose colour it has.
     pub body: usize,
-    /// On the ground the point from which the ground is away, such as the middle of the moving body; of a slide the ends of its rail.
+    /// For a symbol on the ground, a point opposite the ground, such as the middle of the moving body; for a slide, the ends of its rail.
     pub ground: Vec<Anchor>,
-    /// Its label, or nothing.
+    /// Its label, or empty.
     pub label: String,
-    /// What it is in words, such as `revolute joint A of ground and crank`.
+    /// Its description, such as `revolute joint A of ground and crank`.
     pub title: String,
 }
 
@@ -163,7 +163,7 @@ pub struct Mark {
 pub enum Part {
     /// A line or an area that moves with a body.
     Outline {
-        /// What it is.
+        /// Its kind.
         look: OutlineLook,
         /// The body.
         body: usize,
@@ -172,22 +172,22 @@ pub enum Part {
     },
     /// A connection of two points.
     Link {
-        /// What it is.
+        /// Its kind.
         look: LinkLook,
         /// Its ends.
         ends: [Anchor; 2],
-        /// Of a rod through a sleeve its axis in the frame of the first end; else nothing.
+        /// For a rod through a sleeve, its axis in the frame of the first end; otherwise empty.
         axis: Vec<f64>,
-        /// The body to which it belongs; none of what has no mass.
+        /// The body to which it belongs; `None` for massless parts.
         body: Option<usize>,
-        /// What it is in words.
+        /// Its description.
         title: String,
     },
     /// A symbol.
     Mark(Mark),
 }
 
-/// A part of a force: a column along a unit vector.
+/// A component of a force: a column along a unit vector.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ForcePart {
     /// The column, N.
@@ -196,7 +196,7 @@ pub struct ForcePart {
     pub axis: Vec<f64>,
 }
 
-/// Where a force points to.
+/// The direction of a force.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "direction", rename_all = "kebab-case")]
 pub enum Direction {
@@ -209,20 +209,20 @@ pub enum Direction {
     Body {
         /// The body.
         body: usize,
-        /// The parts of the force, at right angles to each other, in the frame of the body.
+        /// The perpendicular components of the force, in the frame of the body.
         parts: Vec<ForcePart>,
-        /// From the anchor to where the force acts, m, in the frame of the same body; empty where it acts at the anchor. The
-        /// pitch point of a rack is fixed neither to the rack nor to the pinion, but beside the pinion's centre as the rack sees it.
+        /// From the anchor to the point of action, m, in the frame of the same body; empty if the force acts at the anchor. The
+        /// pitch point of a rack is fixed in neither body, but at a constant offset from the pinion's centre in the frame of the rack.
         offset: Vec<f64>,
     },
-    /// Along a line from one point to another in the plane, and across it.
+    /// Along a line from one point to another in the plane, and perpendicular to it.
     Line {
         /// The points.
         ends: [Anchor; 2],
-        /// The parts of the force, at right angles to each other: the first number of an axis is along the line, the second across
-        /// it, along the line turned by +90°.
+        /// The perpendicular components of the force: the first number of an axis is along the line, the second along the line
+        /// rotated by +90°.
         parts: Vec<ForcePart>,
-        /// Where on the line it acts, from 0 to 1; it may be outside.
+        /// The position of the point of action on the line: 0 at its start, 1 at its end; it may be outside.
         place: f64,
     },
 }
@@ -234,13 +234,13 @@ pub struct ForceArrow {
     pub name: String,
     /// `Reactions` or `Loads`: forces of a group have one scale.
     pub group: String,
-    /// What it is.
+    /// Its description.
     pub title: String,
-    /// Whether it is shown before anyone has chosen.
+    /// Whether it is shown initially.
     pub initially_visible: bool,
-    /// Where it acts; of one along a line the line decides.
+    /// The point of action; ignored for a force along a line.
     pub at: Anchor,
-    /// Where it points to.
+    /// Its direction.
     #[serde(flatten)]
     pub direction: Direction,
 }
@@ -252,6 +252,6 @@ pub struct DrawnPath {
     pub at: Anchor,
     /// Its name, such as `coupler.P`.
     pub name: String,
-    /// Whether the scene asks for it: it is shown at first.
+    /// Whether the scene requests it; then it is shown initially.
     pub requested: bool,
 }

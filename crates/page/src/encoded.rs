@@ -8,10 +8,10 @@ use dwell_findings::Finding;
 use serde::{Serialize, Serializer};
 use std::collections::HashMap;
 
-/// The format of the description. It changes when a reader of the old one would misread the new one.
+/// The version of the description's format. It changes with every incompatible change.
 pub const FORMAT: &str = "dwell-page-3";
 
-/// Why a page cannot be made.
+/// Why a page cannot be encoded.
 #[derive(Debug, thiserror::Error)]
 pub enum PageError {
     /// The columns differ in length.
@@ -21,10 +21,10 @@ pub enum PageError {
         key: String,
         /// Its rows.
         found: usize,
-        /// Those of the first column.
+        /// Number of rows of the first column.
         expected: usize,
     },
-    /// The description cannot be JSON.
+    /// The description cannot be written as JSON.
     #[error("the description of the page cannot be written: {0}")]
     Json(#[from] serde_json::Error),
     /// The numbers cannot be packed.
@@ -37,8 +37,8 @@ pub enum PageError {
 pub struct EncodedPage {
     /// The description, JSON.
     pub description: String,
-    /// The columns, one after the other, each as long as the description's `rows` says; equal ones once. The description
-    /// refers to them by number.
+    /// The columns, one after another, each with the description's number of `rows`; equal columns are stored once. The description
+    /// refers to them by index.
     pub numbers: Vec<f64>,
 }
 
@@ -46,7 +46,7 @@ impl Page {
     /// The page as a description and its numbers.
     ///
     /// # Errors
-    /// [`PageError::Rows`] where columns differ in length; [`PageError::Json`] where the description cannot be written.
+    /// [`PageError::Rows`] if columns differ in length; [`PageError::Json`] if the description cannot be written.
     pub fn encode(&self) -> Result<EncodedPage, PageError> {
         let rows = self.columns.first().map_or(0, |first| first.values.len());
         let mut block = Block {
@@ -109,21 +109,21 @@ impl Page {
     }
 }
 
-/// An odd number whose bits are as good as random (of FxHash).
+/// An odd number with random bits (from FxHash).
 const MIX: u64 = 0x517c_c1b7_2722_0a95;
 
-/// The columns that are stored, each once.
+/// The stored columns, without duplicates.
 #[derive(Default)]
 struct Block {
     rows: usize,
     numbers: Vec<f64>,
-    /// How many columns are stored, and their numbers by a fingerprint of their bits.
+    /// Number of stored columns, and their indices by a fingerprint of their bits.
     count: usize,
     known: HashMap<u64, Vec<usize>>,
 }
 
 impl Block {
-    /// The number of a column, which is stored unless an equal one is.
+    /// The index of a column; the column is stored unless an equal one exists.
     fn add(&mut self, values: &[f64]) -> usize {
         let mix = |print: u64, v: &f64| (print.rotate_left(5) ^ v.to_bits()).wrapping_mul(MIX);
         let alike = self.known.entry(values.iter().fold(0, mix)).or_default();
@@ -167,7 +167,7 @@ impl Block {
             if values.len() != self.rows {
                 return Err(self.unequal(&body.name, values));
             }
-            // What is only drawn is kept in single precision.
+            // Placements are only drawn, so single precision suffices.
             let single: Vec<f64> = values.iter().map(|v| f64::from(*v as f32)).collect();
             Ok(self.add(&single))
         };
@@ -182,7 +182,7 @@ impl Block {
         })
     }
 
-    /// The error of a column that has not as many rows as the others.
+    /// The error for a column with a different number of rows.
     fn unequal(&self, key: &str, values: &[f64]) -> PageError {
         PageError::Rows {
             key: key.to_owned(),
@@ -220,7 +220,7 @@ struct Description<'a> {
     files: &'a [FileLink],
 }
 
-/// A column without its values, which are those of a slot.
+/// A column without its values, which are stored at an index.
 #[derive(Serialize)]
 struct EncodedColumn<'a> {
     #[serde(flatten)]
@@ -253,7 +253,7 @@ struct EncodedPeak {
     error: Option<Number>,
 }
 
-/// A finding; its texts are those of the reports.
+/// A finding, with the texts of the reports.
 #[derive(Serialize)]
 struct EncodedFinding<'a> {
     key: &'a str,
@@ -303,7 +303,7 @@ struct EncodedEvent<'a> {
     t: Number,
 }
 
-/// A number of the description: one that is not finite becomes `"NaN"`, `"Infinity"` or `"-Infinity"`, which `Number()`
+/// A number of the description. Numbers that are not finite are written as `"NaN"`, `"Infinity"` or `"-Infinity"`, which JavaScript's `Number()`
 /// reads.
 struct Number(f64);
 
@@ -335,7 +335,7 @@ mod tests {
             PageColumn::new("a", "m", values.to_vec()),
             PageColumn::new("b", "m", vec![0.0; 5]),
             PageColumn::new("a again", "m", values.to_vec()),
-            // Minus zero is another number than zero.
+            // Minus zero differs from zero.
             PageColumn::new("c", "m", vec![-0.0; 5]),
         ];
         let page = Page {

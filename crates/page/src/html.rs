@@ -1,4 +1,4 @@
-//! The one file of a page: markup, style, script, description and numbers.
+//! The HTML file of a page: markup, style, script, description and numbers.
 
 use crate::description::Page;
 use crate::encoded::PageError;
@@ -10,8 +10,8 @@ use sha2::{Digest as _, Sha256};
 /// The style of a page.
 pub const STYLE: &str = include_str!("page/page.css");
 
-/// The script of a page. It defines `DwellPage`, whose `create(root)` gives an object that shows one encoded page after
-/// another: `show(description, numbers)`.
+/// The script of a page. It defines `DwellPage`, whose `create(root)` returns an object that shows one encoded page after
+/// another by `show(description, numbers)`.
 pub const SCRIPT: &str = concat!(
     "'use strict';\nconst DwellPage = (() => {\n",
     include_str!("page/elements.js"),
@@ -34,19 +34,19 @@ pub const SCRIPT: &str = concat!(
     "return { create, unpack };\n})();\n",
 );
 
-/// What the file does when it is opened.
+/// The script that runs when the file is opened.
 const START: &str = include_str!("page/start.js");
 const MARKUP: &str = include_str!("page/page.html");
 
 impl Page {
-    /// The page as one HTML file, which loads nothing else. Its content security policy lets only its own style and scripts
-    /// act, by their hashes.
+    /// The page as one HTML file, which loads nothing else. Its content security policy admits only its own style and scripts,
+    /// by their hashes.
     ///
     /// # Errors
-    /// As [`encode`](Self::encode); [`PageError::Packing`] where the numbers cannot be packed.
+    /// As [`encode`](Self::encode); [`PageError::Packing`] if the numbers cannot be packed.
     pub fn html(&self) -> Result<String, PageError> {
         let encoded = self.encode()?;
-        // Within a script element only `</` and `<!--` mean anything; in JSON both can be escaped.
+        // Within a script element only `</` and `<!--` are special; in JSON both can be escaped.
         let description = encoded.description.replace('<', "\\u003c");
         let parts = [
             ("{{title}}", escaped(&self.title)),
@@ -57,7 +57,7 @@ impl Page {
             ("{{script}}", SCRIPT.to_owned()),
             ("{{start}}", START.to_owned()),
         ];
-        // Each is filled in at its place: what one of them holds is never read as a place.
+        // Each placeholder is replaced once; inserted text is never searched for placeholders.
         let mut html = String::new();
         let mut rest = MARKUP;
         for (place, text) in parts {
@@ -72,7 +72,7 @@ impl Page {
     }
 }
 
-/// A style or script as the source of a content security policy: its hash.
+/// The hash of a style or script, for a content security policy.
 ///
 /// ```
 /// assert!(dwell_page::source_hash("p{margin:0}").starts_with("'sha256-"));
@@ -89,7 +89,7 @@ fn policy() -> String {
     )
 }
 
-/// Text as it stands in HTML.
+/// Text with HTML's special characters escaped.
 fn escaped(text: &str) -> String {
     let mut html = String::new();
     for c in text.chars() {
@@ -138,7 +138,7 @@ mod tests {
         let policy = policy();
         assert!(html.contains(&policy));
         assert!(!policy.contains("unsafe") && policy.starts_with("default-src 'none';"));
-        // A hash is that of what is between the tags.
+        // The hash is that of the text between the tags.
         for (open, hashed) in [
             ("<style>", STYLE),
             ("<script id=\"page-script\">", SCRIPT),

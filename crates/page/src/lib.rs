@@ -1,8 +1,8 @@
 //! A run of a command as plain data, and the one HTML file that shows it: mechanism, curves, peaks, findings.
 //!
-//! The crate knows neither a solver nor a mechanism. What makes a run fills a [`Page`]; [`Page::encode`] turns it into one JSON
-//! description and one block of numbers, and [`Page::html`] into a file that opens from anywhere and fetches nothing.
-//! A program that has a document of its own mounts [`STYLE`] and [`SCRIPT`] there, and hands them the encoded page.
+//! The crate depends on neither solvers nor mechanisms. An analysis fills a [`Page`]; [`Page::encode`] converts it into one JSON
+//! description and one block of numbers, and [`Page::html`] into a file that needs no other files and no connection.
+//! A program with its own document includes [`STYLE`] and [`SCRIPT`] in it, and passes the encoded page to the script.
 //!
 //! ```
 //! use dwell_page::{Page, PageColumn};

@@ -8,11 +8,12 @@ use std::io::{self, Write as _};
 /// Bytes of a number.
 const BYTES: usize = 8;
 
-/// The numbers as Base64 of a gzip stream: first the least significant bytes of all numbers, then the next, and so on, for
-/// the exponents of a column are alike. The stream has no time in it.
+/// The numbers as Base64 of a gzip stream: first the least significant bytes of all numbers, then the next, and so on, because
+/// the exponents of a column are similar. The stream contains no time.
 pub(crate) fn packed(numbers: &[f64]) -> io::Result<String> {
-    let bytes = (0..BYTES).flat_map(|k| numbers.iter().map(move |v| v.to_le_bytes()[k]));
-    let bytes: Vec<u8> = bytes.collect();
+    let bytes: Vec<u8> = (0..BYTES)
+        .flat_map(|k| numbers.iter().map(move |v| v.to_le_bytes()[k]))
+        .collect();
     let mut gzip = GzBuilder::new().write(Vec::new(), Compression::best());
     gzip.write_all(&bytes)?;
     Ok(STANDARD.encode(gzip.finish()?))

@@ -1,4 +1,4 @@
-//! Errors as Python exceptions: the message as the command prints it, with line and column.
+//! Errors as Python exceptions: the message of the command, with line and column.
 
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use pyo3::exceptions::PyValueError;
@@ -18,12 +18,12 @@ pyo3::create_exception!(
     "What is wrong in a scene. `line` and `column` (from 1) say where, `help` what to try; both may be None."
 );
 
-/// What a Python function of a load raised last; the error of the evaluation that it spoils is raised from it.
+/// The last exception of a Python function of a load; the error of the failed evaluation is raised from it.
 static RAISED: Mutex<Option<PyErr>> = Mutex::new(None);
 
-/// Keeps what a function of a load raised.
+/// Stores an exception of a function of a load.
 pub(crate) fn keep(error: PyErr) {
-    // A thread that panicked with the lock left a whole value.
+    // A thread that panicked while holding the lock left an intact value.
     *RAISED.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
 }
 
@@ -52,7 +52,7 @@ fn exception(py: Python<'_>, error: &dwell::Error) -> PyErr {
     let first = errors.first().unwrap_or(scene);
     let place = line_and_column(first);
     let value = raised.value(py);
-    // Setting an attribute of an exception that was just made fails only without memory.
+    // Setting an attribute of a new exception fails only if memory is exhausted.
     let _ = value.setattr("line", place.map(|(line, _)| line));
     let _ = value.setattr("column", place.map(|(_, column)| column));
     let _ = value.setattr("help", first.help.clone());
@@ -60,7 +60,7 @@ fn exception(py: Python<'_>, error: &dwell::Error) -> PyErr {
     raised
 }
 
-/// Line and column, from 1, of the first place that an error points at.
+/// Line and column, from 1, of the first place of an error.
 fn line_and_column(error: &dwell_scene::SceneError) -> Option<(usize, usize)> {
     let text = error.text.as_ref()?.inner();
     let before = text.get(..error.labels.first()?.offset())?;

@@ -1,4 +1,4 @@
-//! Long computations: other Python threads go on meanwhile, Ctrl-C ends them, and their progress is shown.
+//! Long computations: other Python threads continue, Ctrl-C ends the computation, and its progress is shown.
 
 use crate::errors::Raise as _;
 use dwell_dynamics::interruption;
@@ -8,10 +8,10 @@ use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::Duration;
 
-/// How often signals are looked at while a computation runs.
+/// Interval at which signals are checked while a computation runs.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 
-/// The steps of a computation that are done, of how many; none while it is not known.
+/// The completed steps of a computation, and all; empty while unknown.
 #[derive(Default)]
 pub(crate) struct Steps {
     done: AtomicUsize,
@@ -19,7 +19,7 @@ pub(crate) struct Steps {
 }
 
 impl Steps {
-    /// So many are done.
+    /// Reports the number of completed steps, and of all steps.
     pub(crate) fn show(&self, done: usize, all: usize) {
         self.all.store(all, Ordering::Relaxed);
         self.done.fetch_max(done, Ordering::Relaxed);
@@ -31,8 +31,8 @@ impl Steps {
     }
 }
 
-/// Runs a computation in a thread of its own. On Ctrl-C all running computations of this process end, and KeyboardInterrupt is
-/// raised. `progress` is a Python function of what is done and of how much; it is called while the computation runs.
+/// Runs a computation in a separate thread. On Ctrl-C all running computations of this process end, and KeyboardInterrupt is
+/// raised. `progress` is a Python function of the completed and of all steps, called while the computation runs.
 pub(crate) fn run<T: Send>(
     progress: &Bound<'_, PyAny>,
     compute: impl FnOnce(&Steps) -> Result<T, dwell::Error> + Send,
@@ -49,7 +49,7 @@ pub(crate) fn run<T: Send>(
             let looked_at = &mut receiver;
             match py.detach(move || looked_at.recv_timeout(BETWEEN_LOOKS)) {
                 Ok(found) => return found.or_raise(py),
-                // It panicked: joining it says so.
+                // The thread panicked; joining it reports that.
                 Err(RecvTimeoutError::Disconnected) => break,
                 Err(RecvTimeoutError::Timeout) => {}
             }

@@ -1,8 +1,8 @@
 //! The native half of the Python package `dwell`: thin classes over the crate `dwell`.
 //!
-//! What is easier in Python is there: arrays of any shape, names of columns, pictures, builders.
+//! The Python half has arrays of any shape, names of columns, pictures and builders.
 
-// Arrays come by value from Python: that is how pyo3 hands them over.
+// pyo3 passes arrays from Python by value.
 #![expect(
     clippy::needless_pass_by_value,
     reason = "pyo3 hands over arrays and lists by value"

@@ -4,7 +4,7 @@ use crate::errors::Raise as _;
 use numpy::{IntoPyArray as _, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
-/// An equilibrium, as its parts.
+/// An equilibrium.
 #[derive(IntoPyObject)]
 pub(crate) struct Equilibrium {
     coordinates: Vec<f64>,
@@ -35,7 +35,7 @@ impl From<dwell::Equilibrium> for Equilibrium {
     }
 }
 
-/// A linearised motion, as its parts: matrices are lists of rows.
+/// A linearised motion; matrices are lists of rows.
 #[derive(IntoPyObject)]
 pub(crate) struct Linear {
     states: Vec<String>,
@@ -65,7 +65,7 @@ impl From<dwell::StateSpace> for Linear {
     }
 }
 
-/// A steady cycle, as its parts.
+/// A steady cycle.
 #[derive(IntoPyObject)]
 pub(crate) struct Cycle {
     period: f64,

@@ -26,7 +26,7 @@ impl Mechanism {
         self.mechanism.reactions()
     }
 
-    /// The reactions that redundant constraints do not leave open.
+    /// The reactions that equilibrium determines.
     #[getter]
     fn determined_reactions(&self) -> Vec<String> {
         self.mechanism.determined_reactions()
@@ -76,7 +76,7 @@ impl Mechanism {
         self.mechanism.svg(&q).or_raise(py)
     }
 
-    /// x, y and z of points at many positions, whose coordinates follow one another.
+    /// x, y and z of points at many positions; `q` has the coordinates of one position after another.
     fn paths<'py>(
         &self,
         py: Python<'py>,
@@ -85,8 +85,9 @@ impl Mechanism {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let q = q.as_slice()?;
         let names = points.iter().map(String::as_str);
-        let found = py.detach(|| self.mechanism.paths::<3>(names, q));
-        let found = found.or_raise(py)?;
+        let found = py
+            .detach(|| self.mechanism.paths::<3>(names, q))
+            .or_raise(py)?;
         Ok(found.into_flattened().into_pyarray(py))
     }
 
@@ -166,7 +167,7 @@ impl State {
         vector[..self.dimension].to_vec()
     }
 
-    /// What turns: about z alone in the plane.
+    /// An angular vector: its z component in the plane, all components in space.
     fn turning(&self, vector: [f64; 3]) -> Vec<f64> {
         let first = if self.dimension == 2 { 2 } else { 0 };
         vector[first..].to_vec()
@@ -190,7 +191,7 @@ impl State {
         Ok(self.numbers(found.or_raise(py)?))
     }
 
-    /// By axis of the body its components in the axes of the ground.
+    /// The axes of the body, each by its components in the axes of the ground.
     fn axes(&self, py: Python<'_>, body: &str) -> PyResult<[[f64; 3]; 3]> {
         self.forces.kinematics().axes(body).or_raise(py)
     }

@@ -1,4 +1,4 @@
-//! Motions as rows, and how they are integrated.
+//! Motions as rows, and settings of their integration.
 
 use crate::errors::{DwellError, Raise as _, raise};
 use numpy::{IntoPyArray as _, PyArray1};
@@ -30,7 +30,7 @@ impl Rows {
         self.0.estimated_error
     }
 
-    /// Why it ended early, as an exception.
+    /// The reason why it ended early, as an exception.
     #[getter]
     fn early_stop(&self, py: Python<'_>) -> Option<Py<PyAny>> {
         let error = self.0.early_stop.as_ref()?;
@@ -38,7 +38,7 @@ impl Rows {
     }
 }
 
-/// How a motion is integrated, from the arguments in Python.
+/// The settings of an integration, from the arguments in Python.
 pub(crate) fn solver(
     accuracy: Option<f64>,
     method: Option<&str>,

@@ -49,14 +49,14 @@ impl ReducedModel {
         Ok(all.map(|values| values.into_pyarray(py)))
     }
 
-    /// The table of an accuracy.
+    /// The table with an accuracy.
     fn table(&self, py: Python<'_>, accuracy: f64) -> PyResult<Table> {
         let table = py.detach(|| self.reduced.table(accuracy)).or_raise(py)?;
         Ok(Table { table })
     }
 }
 
-/// What is computed by so many threads, or by all.
+/// Runs a computation on `threads` threads, or on all.
 pub(crate) fn with_threads<T: Send>(
     py: Python<'_>,
     threads: usize,
@@ -72,16 +72,18 @@ pub(crate) fn with_threads<T: Send>(
     }))
 }
 
-/// The threads that compute, by their number: making them takes longer than a small batch.
+/// The thread pools by size: creating one takes longer than a small batch.
 fn pool(threads: usize) -> PyResult<Arc<ThreadPool>> {
     static POOLS: LazyLock<Mutex<HashMap<usize, Arc<ThreadPool>>>> = LazyLock::new(Mutex::default);
-    // A thread that panicked with the lock left the map as it was.
+    // A thread that panicked while holding the lock left the map intact.
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(pool) = pools.get(&threads) {
         return Ok(Arc::clone(pool));
     }
-    let built = ThreadPoolBuilder::new().num_threads(threads).build();
-    let built = built.map_err(|e| DwellError::new_err(e.to_string()))?;
+    let built = ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|e| DwellError::new_err(e.to_string()))?;
     let pool = Arc::clone(pools.entry(threads).or_insert(Arc::new(built)));
     Ok(pool)
 }

@@ -51,7 +51,7 @@ impl Scene {
         Ok(Self { scene })
     }
 
-    /// The magnitude of a load by a Python function of a tuple of signals, with the breakpoints of some of them.
+    /// Sets the magnitude of a load to a Python function of a tuple of signals, with breakpoints of some of them.
     fn with_function(
         &self,
         py: Python<'_>,
@@ -66,7 +66,7 @@ impl Scene {
                 let tuple = pyo3::types::PyTuple::new(py, signals)?;
                 function.call1(py, tuple)?.extract::<f64>(py)
             })
-            // A function that fails has no value: the evaluation fails there, names the load, and is raised from this.
+            // A failing function has no value: the evaluation fails, names the load, and is raised from this exception.
             .unwrap_or_else(|error| {
                 keep(error);
                 f64::NAN
@@ -76,8 +76,7 @@ impl Scene {
         for (signal, values) in breakpoints {
             magnitude = magnitude.breakpoints(&signal, &values);
         }
-        let scene = self.scene.with_magnitude(load, &magnitude);
-        let scene = scene.or_raise(py)?;
+        let scene = self.scene.with_magnitude(load, &magnitude).or_raise(py)?;
         Ok(Self { scene })
     }
 

@@ -6,13 +6,13 @@ use crate::scene::Scene;
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::prelude::*;
 
-/// The columns of a sweep: name, unit, values; and by row why results are missing.
+/// The columns of a sweep: name, unit, values; and by row the reason if results are missing.
 type Columns<'py> = (
     Vec<(String, String, Bound<'py, PyArray1<f64>>)>,
     Vec<Option<String>>,
 );
 
-/// Every combination of what varies.
+/// Computes every combination of the varied numbers.
 #[pyfunction]
 pub(crate) fn sweep<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Drawings one after another as an animated GIF.
+//! Drawings as an animated GIF.
 
 use crate::canvas::{Align, Canvas, TextStyle, document, layout};
 use crate::drawing::{self, DrawingLayout};
@@ -14,37 +14,37 @@ use crate::typeset::typeset;
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use std::borrow::Cow;
 
-/// Width of the page that is drawn. It does not depend on the size of the picture, so that the height of letters is
-/// always the same share of it, a thirtieth.
+/// Width of the drawn page, independent of the size of the picture, so that the height of letters is
+/// always a thirtieth of it.
 const PAGE_WIDTH: f64 = 800.0;
 /// Around the drawing.
 const MARGIN: f64 = 18.0;
 /// Size of the letters at the foot, and the distance of their baselines in sizes.
 const FOOTER_SIZE: f64 = 15.0;
 const LEADING: f64 = 1.3;
-/// Pixels of all frames together: they are held at once, at three bytes each.
+/// Maximum number of pixels of all frames, which are in memory at three bytes each.
 const MAX_PIXELS: u64 = 1 << 27;
-/// Colours beside the one that means "as before".
+/// Maximum number of colours, without the one for unchanged pixels.
 const MAX_COLORS: usize = 255;
-/// Least delay in hundredths of a second: browsers show anything shorter at a tenth.
+/// Smallest delay in hundredths of a second: browsers replace shorter ones by a tenth of a second.
 const MIN_DELAY: u32 = 2;
 
-/// Drawings of the same things at successive times, such as a mechanism over a turn.
+/// Drawings at successive times, such as a mechanism over one revolution.
 ///
-/// All frames are fitted to one extent, that of all their shapes and ranges together, and share one legend, so that
-/// nothing moves but the shapes. A frame's own title may give its time or angle. The film begins again at its end,
-/// for ever; over a whole turn leave the last position out, as it is the first.
+/// All frames have one extent, that of all their shapes and ranges, and share one legend, so that
+/// only the shapes move. The title of a frame may state its time or angle. The animation repeats
+/// forever; for a whole revolution omit the last position, which equals the first.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Animation {
     /// File stem, without folder and extension.
     pub name: String,
     /// The frames in their order.
     pub frames: Vec<Drawing>,
-    /// How long each is shown, ms; a GIF has steps of 10 ms, and no less than 20 ms is shown by all readers.
+    /// Display time of a frame, ms; a GIF has steps of 10 ms, and not all viewers show less than 20 ms.
     pub delay_ms: u32,
     /// Width of the picture in pixels; the height follows from the drawings.
     pub width_px: u32,
-    /// Where the film comes from, as in [`Figure::provenance`](crate::Figure::provenance).
+    /// Provenance, as in [`Figure::provenance`](crate::Figure::provenance).
     pub provenance: String,
 }
 
@@ -55,7 +55,7 @@ impl Animation {
     ///
     /// [`ReportError::NoFrames`]; [`ReportError::AnimationSize`] if the frames have no area, a side of more than 65 535 pixels or
     /// more than 134 million pixels together; [`ReportError::Draw`] and [`ReportError::Encode`] if
-    /// a library refuses, which no data should bring about.
+    /// a library fails, which no data should cause.
     pub fn gif(&self) -> Result<Vec<u8>, ReportError> {
         let pictures = self.pictures()?;
         let frames = pictures.frames.iter().map(Vec::as_slice);
@@ -121,7 +121,7 @@ impl Animation {
         };
         let height = drawing::height(&self.frames, inner);
         let (cell, layout) = in_cell(height);
-        // Only here does the page grow with its legend: there are no neighbours to line up with.
+        // The page grows with its legend, because there are no neighbours to align with.
         match layout.legend_above() {
             0.0 => (cell, layout),
             more => in_cell(height + more),
@@ -206,17 +206,20 @@ fn encoded(pictures: &Pictures, palette: &Palette, delay: u16) -> Result<Vec<u8>
     encoder.into_inner()
 }
 
-/// The part of a frame that is new, in which old pixels stay.
+/// The rectangle of a frame that contains all changed pixels.
 fn changes(before: &[u8], now: &[u8], width: usize, unchanged: u8) -> Frame<'static> {
-    // Columns and rows of the new pixels; a frame without any is still shown for its time, as one pixel.
+    // Columns and rows of the changed pixels; a frame without changes is stored as one pixel.
     let new = || (0..now.len()).filter(|&i| now[i] != before[i]);
     let (left, right) = new().fold((width, 0), |(l, r), i| (l.min(i % width), r.max(i % width)));
     let (left, right) = if left > right { (0, 0) } else { (left, right) };
     let top = new().next().unwrap_or(0) / width;
     let bottom = new().next_back().unwrap_or(0) / width;
-    let index = |i: usize| match now[i] == before[i] {
-        true => unchanged,
-        false => now[i],
+    let index = |i: usize| {
+        if now[i] == before[i] {
+            unchanged
+        } else {
+            now[i]
+        }
     };
     let row = |y: usize| (y * width + left..=y * width + right).map(index);
     Frame {
@@ -313,7 +316,7 @@ mod tests {
                 .zip(drawn)
                 .map(differ)
                 .fold(0, u8::max);
-            // One level was measured; two cannot be seen.
+            // Measured: one level; two are invisible.
             assert!(worst <= 2, "a colour is off by {worst}");
         }
     }

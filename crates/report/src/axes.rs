@@ -1,4 +1,4 @@
-//! The frame of a plot: values to pixels, grid, spines, ticks and their words.
+//! The frame of a plot: conversion of values to pixels, grid, spines, ticks and labels.
 
 use crate::axis::{Axis, Scale};
 use crate::axis_range::AxisRange;
@@ -29,20 +29,20 @@ pub(crate) struct PlotFrame {
 }
 
 impl PlotFrame {
-    /// Pixel of a value on the horizontal axis; none if the scale cannot show it.
+    /// Pixel of a value on the horizontal axis; `None` if the scale cannot show it.
     pub(crate) fn x_to_px(&self, x: f64) -> Option<f64> {
         let fraction = self.x.fraction(x)?;
         Some(self.plot.x0 + fraction * self.plot.width())
     }
 
-    /// Pixel of a value on the left or right axis; none if the scale cannot show it.
+    /// Pixel of a value on the left or right axis; `None` if the scale cannot show it.
     pub(crate) fn y_to_px(&self, y: f64, right: bool) -> Option<f64> {
         let range = self.y2.as_ref().filter(|_| right).unwrap_or(&self.y);
         let fraction = range.fraction(y)?;
         Some(self.plot.y1 - fraction * self.plot.height())
     }
 
-    /// Pixel of a point; none if a scale cannot show it.
+    /// Pixel of a point; `None` if a scale cannot show it.
     pub(crate) fn point_to_px(&self, [x, y]: [f64; 2], right: bool) -> Option<[f64; 2]> {
         Some([self.x_to_px(x)?, self.y_to_px(y, right)?])
     }
@@ -77,24 +77,24 @@ pub(crate) fn vertical_ticks(range: &AxisRange, length: f64) -> Ticks {
         at.windows(2)
             .any(|pair| (pair[1] - pair[0]).abs() < LEADING * TICK_SIZE)
     };
-    // Two values are hardly a scale: closer together, then.
+    // Fewer than three labels make a poor scale: allow closer ones.
     let closest = ((length / (LEADING * TICK_SIZE)) as usize).max(max_count);
     let mut all = (max_count..=closest).map(|count| fit(range, count, crowded));
     let enough = all.find(|ticks| ticks.major.len() > 2);
     enough.unwrap_or_else(|| fit(range, closest, crowded))
 }
 
-/// Room a vertical axis needs beside a plot of this height.
+/// Width that a vertical axis needs beside a plot of this height.
 pub(crate) fn side_room(axis: &Axis, ticks: &Ticks, height: f64) -> f64 {
     ticks_room(ticks) + label_room(&wrapped_text::fitted_label(axis, ticks, height))
 }
 
-/// Room the ticks of a vertical axis need beside the plot.
+/// Width that the ticks of a vertical axis need beside the plot.
 fn ticks_room(ticks: &Ticks) -> f64 {
     TICK_LENGTH + TICK_GAP + widest(&ticks.labels, TICK_SIZE, false)
 }
 
-/// Room the horizontal axis needs below the plot; without words only that for its ticks, and for half a label of the
+/// Height that the horizontal axis needs below the plot; without labels that of its ticks and of half a label of the
 /// vertical axis.
 pub(crate) fn bottom_room(axis: Option<&Axis>, ticks: &Ticks, cell: &Rect) -> f64 {
     let Some(axis) = axis else {
@@ -215,17 +215,22 @@ pub(crate) fn vertical_axis(
     // The words keep to the heights of the plot, as it was before it gave way to a legend: what is above and below them is a
     // title, the words of the horizontal axis, or the next chart of a stack.
     let (top, bottom) = style.heights;
-    let strip = match style.right {
-        true => cell.x1 - plot.x1,
-        false => plot.x0 - cell.x0,
+    let strip = if style.right {
+        cell.x1 - plot.x1
+    } else {
+        plot.x0 - cell.x0
     };
     let room = strip - ticks_room(style.ticks) - 0.5 * LABEL_GAP;
-    let wrapped = wrapped_text::fitted_label(axis, style.ticks, bottom - top);
-    let wrapped = wrapped.shrunk_to_fit(bottom - top, room, false);
+    let wrapped = wrapped_text::fitted_label(axis, style.ticks, bottom - top).shrunk_to_fit(
+        bottom - top,
+        room,
+        false,
+    );
     // Lines that read upwards follow each other to the right.
-    let left = match style.right {
-        true => cell.x1 - wrapped.height(),
-        false => cell.x0,
+    let left = if style.right {
+        cell.x1 - wrapped.height()
+    } else {
+        cell.x0
     };
     for (line, baseline) in wrapped.baselines() {
         let text_style = TextStyle::new(wrapped.size, style.color, Align::Middle);

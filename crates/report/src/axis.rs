@@ -3,11 +3,11 @@
 /// How an axis is labelled and scaled.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Axis {
-    /// What is measured, such as `crank angle φ`.
+    /// The quantity, such as `crank angle φ`.
     pub label: String,
     /// Its unit, such as `kg m²`; empty if there is none.
     pub unit: String,
-    /// How values become positions.
+    /// The scale.
     pub scale: Scale,
     /// Smallest and largest value shown; found from the data if absent (or unusable on this scale).
     pub range: Option<[f64; 2]>,
@@ -49,7 +49,7 @@ impl Axis {
     }
 }
 
-/// How values become positions on an axis.
+/// The mapping of values to positions on an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Scale {
     /// In proportion.

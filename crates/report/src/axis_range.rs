@@ -2,9 +2,9 @@
 
 use crate::axis::{Axis, Scale};
 
-/// Beyond this no axis goes: the difference of two ends must stay finite.
+/// Limit of axis values: the difference of two ends must stay finite.
 const MAX_VALUE: f64 = 1e300;
-/// A spread below this share of the values is rounding, and is shown as a constant.
+/// A range below this fraction of the values is rounding, and is shown as a constant.
 const MIN_RELATIVE_SPREAD: f64 = 1e-12;
 
 /// A scaled interval; on a logarithmic scale both ends are positive.
@@ -25,8 +25,8 @@ impl AxisRange {
         Self { scale, min, max }
     }
 
-    /// What the axis shows: its own range if that is usable, or else the extent of the drawable values with `margin` (a
-    /// share of the extent) on either side.
+    /// The range of the axis: its own range if valid, otherwise the extent of the drawable values with `margin` (a
+    /// fraction of the extent) on both sides.
     pub(crate) fn of(axis: &Axis, values: impl IntoIterator<Item = f64>, margin: f64) -> Self {
         let scale = axis.scale;
         if let Some([a, b]) = axis.range {
@@ -37,7 +37,7 @@ impl AxisRange {
         }
         let mut extent: Option<(f64, f64)> = None;
         for v in values.into_iter().filter(|&v| drawable(scale, v)) {
-            // Below the normal numbers a quotient has no digits left.
+            // Below the normal numbers a quotient has no correct digits.
             let min_value = match scale {
                 Scale::Log => f64::MIN_POSITIVE,
                 Scale::Linear | Scale::Degrees => -MAX_VALUE,
@@ -90,7 +90,7 @@ impl AxisRange {
             }
             Scale::Linear | Scale::Degrees => (value - self.min) / (self.max - self.min),
         };
-        // Far outside it does not matter where, but the arithmetic of clipping must stay finite.
+        // Far outside, the exact position is irrelevant, but clipping must stay finite.
         fraction.is_finite().then_some(fraction.clamp(-1e6, 1e6))
     }
 

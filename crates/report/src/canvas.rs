@@ -1,4 +1,4 @@
-//! Drawing in page pixels by plotters' elements.
+//! Drawing in page pixels with elements of plotters.
 
 use crate::curve::dashes;
 use crate::dash::Dash;
@@ -20,7 +20,7 @@ const HALF_DIGIT_HEIGHT: f64 = 0.365;
 /// Width of the white rim around letters that stand on lines.
 const HALO_WIDTH: f64 = 2.4;
 
-/// What a line looks like.
+/// The style of a line.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LineStyle {
     pub(crate) color: Rgb,
@@ -38,7 +38,7 @@ impl LineStyle {
         }
     }
 
-    /// The same as a sample of a length.
+    /// The style for a sample line of a given length.
     pub(crate) fn sample(self, length: f64) -> Self {
         let dash = self.dash.map(|dash| dash.within(length));
         Self { dash, ..self }
@@ -53,7 +53,7 @@ pub(crate) enum Align {
     End,
 }
 
-/// What a text looks like.
+/// The style of a text.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TextStyle {
     pub(crate) size: f64,
@@ -148,7 +148,7 @@ impl Canvas<'_> {
 
     /// A filled polygon.
     pub(crate) fn polygon(&mut self, points: &[[f64; 2]], color: Rgb, opacity: f64) {
-        // What is seen through hides nothing.
+        // Transparent shapes hide nothing.
         if opacity >= 1.0 {
             self.note(|record| record.ink.polygon(points));
         }
@@ -221,7 +221,7 @@ impl Canvas<'_> {
 
     /// Text with its baseline at `y`, or at `x` if it reads upwards. It hangs from its top.
     fn put(&mut self, text: &str, [x, y]: [f64; 2], style: TextStyle, upwards: bool) {
-        // XML has no control characters; one in a name must not cost the whole page. What the font lacks is a box.
+        // XML allows no control characters, and one in a name must not invalidate the page. Characters missing from the font appear as boxes.
         let text: String = text.chars().map(fonts::drawable).collect();
         if text.trim().is_empty() {
             return;
@@ -231,20 +231,24 @@ impl Canvas<'_> {
             Align::Middle => HPos::Center,
             Align::End => HPos::Right,
         };
-        let weight = match style.bold {
-            true => FontStyle::Bold,
-            false => FontStyle::Normal,
+        let weight = if style.bold {
+            FontStyle::Bold
+        } else {
+            FontStyle::Normal
         };
         let size = style.size * LINE * UNITS_PER_PIXEL;
         let [r, g, b] = style.color;
         let font = FontDesc::new(FontFamily::Name(FAMILY), size, weight);
         let ascent = ASCENT * style.size;
-        let (at, turn) = match upwards {
-            true => ([x - ascent, y], FontTransform::Rotate270),
-            false => ([x, y - ascent], FontTransform::None),
+        let (at, turn) = if upwards {
+            ([x - ascent, y], FontTransform::Rotate270)
+        } else {
+            ([x, y - ascent], FontTransform::None)
         };
-        let style = font.transform(turn).color(&RGBColor(r, g, b));
-        let style = style.pos(Pos::new(h_pos, VPos::Top));
+        let style = font
+            .transform(turn)
+            .color(&RGBColor(r, g, b))
+            .pos(Pos::new(h_pos, VPos::Top));
         let _ = self.page.draw(&Text::new(text, at, style));
     }
 }

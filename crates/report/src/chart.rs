@@ -89,10 +89,10 @@ impl<'a> PreparedChart<'a> {
         PlotFrame { plot, x, y, y2 }
     }
 
-    /// Strips the labels need in a cell of this size.
+    /// Widths of the strips that the labels need in a cell of this size.
     pub(crate) fn insets(&self, cell: &Rect) -> Insets {
         let chart = self.chart;
-        // A first guess at the sides: ticks depend on the plot, and the plot on their labels.
+        // A first guess of the sides: ticks depend on the plot, and the plot on their labels.
         let sides = 0.13 * cell.width();
         let x_ticks = axes::horizontal_ticks(&self.extent.x, cell.width() - sides);
         let mut insets = Insets {
@@ -223,9 +223,12 @@ impl<'a> PreparedChart<'a> {
 
     /// By curve, its lines in pixels; none of those with markers.
     fn lines(&self, frame: &PlotFrame) -> Vec<coincidence::Lines> {
-        let lines = |series: &Series| match has_markers(series.stroke) {
-            true => Vec::new(),
-            false => polylines(frame, series),
+        let lines = |series: &Series| {
+            if has_markers(series.stroke) {
+                Vec::new()
+            } else {
+                polylines(frame, series)
+            }
         };
         self.chart.series.iter().map(lines).collect()
     }
@@ -241,7 +244,7 @@ impl<'a> PreparedChart<'a> {
         self.chart.series.iter().any(|s| is_visible(frame, s))
     }
 
-    /// What the data and the reference lines cover.
+    /// The area covered by the data and the reference lines.
     fn occupied(&self, frame: &PlotFrame) -> Occupancy {
         let mut occupied = Occupancy::new(frame.plot);
         for series in &self.chart.series {
@@ -261,7 +264,7 @@ impl<'a> PreparedChart<'a> {
     fn entries(&self, frame: &PlotFrame, styles: &[SeriesStyle]) -> Vec<LegendEntry> {
         let ambiguous = frame.y2.is_some()
             && (self.axis_color(false).is_none() || self.axis_color(true).is_none());
-        // What nobody can see is in no legend.
+        // Invisible curves are not in the legend.
         let series = self.chart.series.iter().zip(styles);
         let named = series.filter(|(s, _)| !s.name.trim().is_empty() && is_visible(frame, s));
         let entry = |(series, style): (&Series, &SeriesStyle)| {

@@ -1,4 +1,4 @@
-//! Curves that lie on each other: they are drawn with dashes in turn, so that each of them is seen.
+//! Coinciding curves, drawn with alternating dashes, so that each of them is visible.
 
 use crate::curve::{self, dashes};
 use crate::dash::Dash;
@@ -6,11 +6,11 @@ use crate::occupancy::Occupancy;
 use crate::rect::Rect;
 use crate::series_style::SeriesStyle;
 
-/// A curve is hidden if the later ones cover so much of it.
+/// A curve is hidden if later curves cover this fraction of it.
 const HIDDEN_SHARE: f64 = 0.85;
-/// A later curve is one of those that hide it if it covers so much of it.
+/// A later curve belongs to those that hide it if it covers this fraction of it.
 const COVERING_SHARE: f64 = 0.25;
-/// How often curves are looked for that others hide.
+/// Number of searches for hidden curves.
 const PASSES: usize = 3;
 /// Length in pixels after which the turns of curves come again, and of one turn: the least of many curves, the largest of few. Longer
 /// ones would leave of a curve with a short part of its own a few strokes.
@@ -18,13 +18,13 @@ const PERIOD: f64 = 48.0;
 const TURN: [f64; 2] = [8.0, 20.0];
 /// Half the width of what a curve covers, beside the cells that it goes through.
 const REACH: f64 = 1.0;
-/// Nearer than this curves are seen as one.
+/// Curves closer than this appear as one.
 const CLEAR: f64 = 4.0;
 
 /// The lines of a curve in pixels: its parts in the plot.
 pub(crate) type Lines = Vec<Vec<[f64; 2]>>;
 
-/// What a curve covers, and the places where it is drawn.
+/// The cells that a curve covers, and its points.
 struct Cover {
     occupied: Occupancy,
     points: Vec<[f64; 2]>,
@@ -41,7 +41,7 @@ pub(crate) fn separate(styles: &mut [SeriesStyle], lines: &[Lines], plot: &Rect)
     }
 }
 
-/// The parts of a curve that no other is near: they need no dashes, however much of the rest coincides.
+/// The parts of a curve with no other curve nearby, which need no dashes.
 pub(crate) fn alone(curve: usize, lines: &[Lines], plot: &Rect) -> Lines {
     let mut occupied = Occupancy::new(plot.grown(10.0));
     let others = lines.iter().enumerate().filter(|(k, _)| *k != curve);
@@ -75,8 +75,9 @@ fn steps(line: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> {
 
 /// Joins the groups of curves that hide each other.
 fn find_groups(group: &mut [usize], styles: &[SeriesStyle], lines: &[Lines], plot: &Rect) {
-    let covers = styles.iter().zip(lines);
-    let covers: Vec<Cover> = covers
+    let covers: Vec<Cover> = styles
+        .iter()
+        .zip(lines)
         .map(|(style, lines)| Cover::of(style, lines, plot))
         .collect();
     for i in 0..covers.len() {

@@ -1,4 +1,4 @@
-//! What the colours of a grid mean: a bar with ticks, and the two marks a cell may have.
+//! The key of a grid: a colour bar with ticks, and the two marks of cells.
 
 use crate::axes::{horizontal_ticks, ticks_below};
 use crate::axis::Axis;

@@ -44,13 +44,15 @@ mod tests {
 
     #[test]
     fn brightness_falls_all_the_way_in_steps_that_a_grey_print_keeps() {
-        let steps = (0..=100).map(|i| luminance(color(f64::from(i) / 100.0)));
-        let steps: Vec<f64> = steps.collect();
+        let steps: Vec<f64> = (0..=100)
+            .map(|i| luminance(color(f64::from(i) / 100.0)))
+            .collect();
         assert!(steps.windows(2).all(|pair| pair[1] < pair[0]));
         // CIE lightness: 3 is a step one sees, and a seventh of the scale must be well above it.
         let lightness = |y: f64| 116.0 * y.cbrt() - 16.0;
-        let seventh = (0..=7).map(|i| lightness(luminance(color(f64::from(i) / 7.0))));
-        let seventh: Vec<f64> = seventh.collect();
+        let seventh: Vec<f64> = (0..=7)
+            .map(|i| lightness(luminance(color(f64::from(i) / 7.0))))
+            .collect();
         assert!(seventh.windows(2).all(|pair| pair[0] - pair[1] > 6.0));
     }
 

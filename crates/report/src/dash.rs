@@ -1,6 +1,6 @@
-//! How a line is broken into dashes.
+//! Dash patterns.
 
-/// How a line is broken: lengths in pixels.
+/// A dash pattern: lengths in pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Dash {
     pub(crate) length: f64,
@@ -19,7 +19,7 @@ impl Dash {
         }
     }
 
-    /// The same with at least one dash and one gap in a length.
+    /// The pattern with at least one dash and one gap in a length.
     pub(crate) fn within(self, length: f64) -> Self {
         let scale = (length / (self.length + self.gap)).min(1.0);
         Self {

@@ -40,7 +40,7 @@ pub(crate) fn height(drawings: &[Drawing], width: f64) -> f64 {
     top + plot_height + bottom
 }
 
-/// Strips the labels need in a cell of this size.
+/// Widths of the strips that the labels need in a cell of this size.
 pub(crate) fn insets(drawings: &[Drawing], cell: &Rect) -> Insets {
     let title = drawings.iter().map(|d| axes::top_room(&d.title, cell));
     // A first guess: ticks depend on the plot, and the plot on their labels.
@@ -53,17 +53,20 @@ pub(crate) fn insets(drawings: &[Drawing], cell: &Rect) -> Insets {
     let frame = fitted(bounds(drawings), cell.inset(guess));
     let x_ticks = axes::horizontal_ticks(&frame.x, frame.plot.width());
     let y_ticks = axes::vertical_ticks(&frame.y, frame.plot.height());
-    let needed = |drawing: &Drawing| match drawing.without_axes {
-        true => Insets {
-            left: 0.0,
-            bottom: 0.0,
-            ..guess
-        },
-        false => Insets {
-            left: axes::side_room(&drawing.y, &y_ticks, frame.plot.height()),
-            bottom: axes::bottom_room(Some(&drawing.x), &x_ticks, cell),
-            ..guess
-        },
+    let needed = |drawing: &Drawing| {
+        if drawing.without_axes {
+            Insets {
+                left: 0.0,
+                bottom: 0.0,
+                ..guess
+            }
+        } else {
+            Insets {
+                left: axes::side_room(&drawing.y, &y_ticks, frame.plot.height()),
+                bottom: axes::bottom_room(Some(&drawing.x), &x_ticks, cell),
+                ..guess
+            }
+        }
     };
     let all = drawings.iter().map(needed).reduce(Insets::max);
     all.unwrap_or(guess)
@@ -151,8 +154,10 @@ fn bounds(drawings: &[Drawing]) -> [[f64; 2]; 2] {
     };
     let side = |axis: fn(&Drawing) -> &Axis, i: usize| {
         let given = drawings.iter().filter_map(|d| axis(d).range).flatten();
-        let all = points().map(|p| p[i]).chain(given);
-        let all = all.filter(|v| v.abs() < 1e150);
+        let all = points()
+            .map(|p| p[i])
+            .chain(given)
+            .filter(|v| v.abs() < 1e150);
         let AxisRange { min, max, .. } = AxisRange::of(&Axis::default(), all, 0.0);
         [min, max]
     };

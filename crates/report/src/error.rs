@@ -1,8 +1,8 @@
-//! What can go wrong while a report is made.
+//! Errors of reports.
 
 use std::path::PathBuf;
 
-/// Why a figure, a table or a file could not be made.
+/// Why a figure, a table or a file could not be created.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {

@@ -1,4 +1,4 @@
-//! What the axes of a chart must show.
+//! The ranges of the axes of a chart.
 
 use crate::axis::{Axis, Scale};
 use crate::axis_range::{AxisRange, drawable};
@@ -36,9 +36,10 @@ impl Extent {
             .filter(|p| p[1].is_finite())
             .map(|p| p[0]);
         // A revolution is shown as exactly one.
-        let margin = match lines_only || axis.scale == Scale::Degrees {
-            true => 0.0,
-            false => MARKER_MARGIN,
+        let margin = if lines_only || axis.scale == Scale::Degrees {
+            0.0
+        } else {
+            MARKER_MARGIN
         };
         let all = abscissae.chain(positions.filter_map(|p| p[0]));
         AxisRange::of(axis, all, margin)

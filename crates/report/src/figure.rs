@@ -11,10 +11,10 @@ pub struct Figure {
     pub name: String,
     /// Line on top of the page.
     pub title: String,
-    /// Words at the foot of the page; wrapped, and split at `\n`.
+    /// Text at the foot of the page; wrapped, and split at `\n`.
     pub caption: String,
-    /// Where the figure comes from: version, scene and its hash, method; small and grey under the caption. What draws many
-    /// figures sets it once for all of them.
+    /// The provenance of the figure: version, scene and its hash, method; printed small and grey under the caption. It is set once
+    /// for all figures of a document.
     pub provenance: String,
     /// Panels in a row (at least one); a last row that is not full is stretched over the page.
     pub columns: usize,
@@ -70,8 +70,8 @@ impl From<Drawing> for Panel {
 
 /// Curves over one horizontal and one or two vertical axes.
 ///
-/// Points that are not finite, or not positive on a logarithmic axis, are left out and break the line. A chart
-/// without any drawable point says "no data".
+/// Points that are not finite, or not positive on a logarithmic axis, are omitted and interrupt the line. A chart
+/// without drawable points shows "no data".
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Chart {
     /// Line above the panel.
@@ -91,13 +91,13 @@ pub struct Chart {
 /// One curve.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Series {
-    /// Name in the legend; an empty name leaves the curve out of it.
+    /// Name in the legend; a curve with an empty name is not in the legend.
     pub name: String,
     /// Points in the axes' units, joined in this order.
     pub points: Vec<[f64; 2]>,
-    /// How the points are shown.
+    /// The style of the points.
     pub stroke: Stroke,
-    /// Whether the right axis holds.
+    /// Whether it belongs to the right axis.
     pub right_axis: bool,
     /// Colour; if absent, the palette by the index of the series, then ink and grey.
     pub color: Option<Paint>,
@@ -113,12 +113,12 @@ impl Series {
         }
     }
 
-    /// The same series with another stroke.
+    /// Sets the stroke.
     pub fn stroke(self, stroke: Stroke) -> Self {
         Self { stroke, ..self }
     }
 
-    /// The same series in a chosen colour.
+    /// Sets the colour.
     pub fn color(self, color: Paint) -> Self {
         Self {
             color: Some(color),
@@ -126,7 +126,7 @@ impl Series {
         }
     }
 
-    /// The same series on the right axis.
+    /// Moves the series to the right axis.
     pub fn right(self) -> Self {
         Self {
             right_axis: true,
@@ -135,7 +135,7 @@ impl Series {
     }
 }
 
-/// How the points of a series are shown.
+/// The style of the points of a series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Stroke {
     /// A line.
@@ -145,7 +145,7 @@ pub enum Stroke {
     Dashed,
     /// Markers only.
     Points,
-    /// Hollow markers only: a variant of what has full ones.
+    /// Hollow markers only, for a variant of a series with filled ones.
     Hollow,
     /// Crosses only, in the colour of the series: another variant.
     Crosses,
@@ -163,23 +163,23 @@ pub enum Mark {
     Vertical {
         /// Its position on the horizontal axis.
         at: f64,
-        /// Words beside it, or nothing.
+        /// Its label, or empty.
         label: String,
     },
     /// A horizontal line.
     Horizontal {
         /// Its position on the left axis.
         at: f64,
-        /// Words beside it, or nothing.
+        /// Its label, or empty.
         label: String,
     },
     /// An interval of the horizontal axis, lightly filled.
     Band {
-        /// Where it begins.
+        /// Its start.
         from: f64,
-        /// Where it ends.
+        /// Its end.
         to: f64,
-        /// Words in it, or nothing.
+        /// Its label, or empty.
         label: String,
     },
     /// The power law `y = y0 (x / x0)^order`: a straight line between logarithmic axes.
@@ -188,14 +188,14 @@ pub enum Mark {
         order: f64,
         /// The point (x0, y0) it goes through, on the left axis.
         through: [f64; 2],
-        /// Words beside it, or nothing.
+        /// Its label, or empty.
         label: String,
     },
     /// A ringed point, such as the largest difference or a published value, on the left axis.
     Point {
         /// The point.
         at: [f64; 2],
-        /// Words beside it, or nothing.
+        /// Its label, or empty.
         label: String,
     },
     /// Words beside a point that a series draws, on the left axis.

@@ -1,4 +1,4 @@
-//! Files of a report: gathered in memory, written at the end. A long table is written from where its rows are.
+//! Files of a report, collected in memory and written at the end. Long tables are written from their temporary files.
 
 use crate::error::ReportError;
 use crate::long_export::LongExport;
@@ -18,7 +18,7 @@ pub struct Files {
     files: BTreeMap<PathBuf, Content>,
 }
 
-/// What is in a file.
+/// The content of a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Content {
     /// These bytes.
@@ -91,7 +91,7 @@ impl Files {
         }
     }
 
-    /// Takes over the files of another set, under a folder of their own (or none, if it is empty).
+    /// Moves the files of another set into this one, into `folder` (or none, if it is empty).
     pub fn extend(&mut self, folder: impl AsRef<Path>, others: Self) {
         for (path, bytes) in others.files {
             self.files.insert(folder.as_ref().join(path), bytes);

@@ -30,10 +30,10 @@ pub(crate) fn options() -> Options<'static> {
     }
 }
 
-/// Stands for a letter that the fonts lack.
+/// Replaces characters that the fonts lack.
 const MISSING: char = '□';
 
-/// The letter as it is drawn: a box for what the fonts lack, and a blank for what is no letter.
+/// The drawn character: a box for characters missing from the fonts, and a blank for control characters.
 pub(crate) fn drawable(c: char) -> char {
     if c.is_control() {
         return ' ';
@@ -42,10 +42,7 @@ pub(crate) fn drawable(c: char) -> char {
         let face = face.as_ref();
         face.is_some_and(|face| face.glyph_index(c).is_some())
     };
-    match FACES.iter().all(has) {
-        true => c,
-        false => MISSING,
-    }
+    if FACES.iter().all(has) { c } else { MISSING }
 }
 
 /// Width of the text in pixels, at a size in pixels per em: the advances of its glyphs and the kerning between them.
@@ -113,7 +110,7 @@ pub(crate) fn wrapped(text: &str, size: f64, bold: bool, room: f64) -> Vec<Strin
     lines
 }
 
-/// The same, but a word that is too wide is broken too: after a mark such as a hyphen if there is one, else anywhere.
+/// As [`wrapped`], but words that are too wide are broken, too: after a mark such as a hyphen if there is one, otherwise anywhere.
 pub(crate) fn wrapped_anywhere(text: &str, size: f64, bold: bool, room: f64) -> Vec<String> {
     let mut lines = Vec::new();
     for line in wrapped(text, size, bold, room) {

@@ -2,7 +2,7 @@
 
 use crate::axis::Axis;
 
-/// Rows and columns of cells, coloured by their values: which fault each check sees, how many digits each case keeps.
+/// Rows and columns of cells, coloured by their values, such as the faults that each check detects, or the digits of each case.
 ///
 /// The panel is as wide as its cell on the page and grows with its rows: about 40 pixels each, 21 if compact. Give it a page of one
 /// column, and no more than about 24 columns. The colours go from nearly white to dark blue, so that they can be distinguished in
@@ -47,7 +47,7 @@ pub struct Cell {
     /// The value that the colour shows, in the unit of [`Grid::values`]; white if there is none, or if the scale cannot show
     /// it.
     pub value: Option<f64>,
-    /// A few letters drawn in the cell, or nothing.
+    /// A short text in the cell, or empty.
     pub text: String,
     /// Whether to mark the cell as failed: vermilion, with bold letters.
     pub failed: bool,
@@ -80,7 +80,7 @@ impl Cell {
         }
     }
 
-    /// The same cell, marked as failed.
+    /// Marks the cell as failed.
     pub fn failed(self) -> Self {
         Self {
             failed: true,
@@ -89,8 +89,7 @@ impl Cell {
     }
 }
 
-/// Statements side by side, each a short value with its name above and its reason below: what a reader takes from a page in
-/// seconds.
+/// Key statements side by side, each a short value with its name above and its reason below.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tiles {
     /// Tiles in a row (at least one).
@@ -102,13 +101,13 @@ pub struct Tiles {
 /// One of [`Tiles`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Tile {
-    /// What it is about.
+    /// Its name.
     pub name: String,
     /// The value, in large letters; set smaller where it is wider than its tile.
     pub value: String,
-    /// How it is known, or where; wrapped.
+    /// Its reason or source; wrapped.
     pub note: String,
-    /// Whether it passed, where it is a verdict: a green or vermilion edge.
+    /// For a verdict, whether it passed: a green or vermilion edge.
     pub passed: Option<bool>,
 }
 
@@ -123,7 +122,7 @@ impl Tile {
         }
     }
 
-    /// The same as a verdict.
+    /// Makes the statement a verdict.
     pub fn with_result(self, passed: bool) -> Self {
         Self {
             passed: Some(passed),

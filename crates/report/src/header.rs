@@ -90,9 +90,10 @@ impl Header {
             let middle = left + (i as f64 + 0.5) * column;
             let high = LEADING * self.size * lines.len() as f64;
             if !self.rotated {
-                let y = match below {
-                    true => top + PAD,
-                    false => top + self.height - PAD - high,
+                let y = if below {
+                    top + PAD
+                } else {
+                    top + self.height - PAD - high
                 };
                 let style = TextStyle::new(self.size, INK, Align::Middle);
                 draw_lines(canvas, lines, [middle, y], style);

@@ -37,9 +37,10 @@ struct Sizes {
 
 impl Sizes {
     fn of(grid: &Grid) -> Self {
-        let [text, min_text, row, pad] = match grid.compact {
-            true => [19.0, 16.0, 20.8, 3.0],
-            false => [25.0, 18.0, 40.0, 7.0],
+        let [text, min_text, row, pad] = if grid.compact {
+            [19.0, 16.0, 20.8, 3.0]
+        } else {
+            [25.0, 18.0, 40.0, 7.0]
         };
         Self {
             text,
@@ -88,8 +89,10 @@ impl<'a> HeatMap<'a> {
             .then_some(range);
         let not_applicable = cells(grid).any(|cell| cell.is_none());
         let failed = cells(grid).flatten().any(|cell| cell.failed);
-        let key = not_applicable.then_some(CellMark::NotApplicable);
-        let key = key.into_iter().chain(failed.then_some(CellMark::Failed));
+        let key = not_applicable
+            .then_some(CellMark::NotApplicable)
+            .into_iter()
+            .chain(failed.then_some(CellMark::Failed));
         Self {
             title: wrapped_text::title(&grid.title, &Rect::sized(0.0, 0.0, total_width, 0.0)),
             bar: ColorBar::new(&grid.values, bar_range, key.collect(), total_width),

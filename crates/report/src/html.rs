@@ -1,4 +1,4 @@
-//! A document as an HTML file that prints well: no scripts, nothing from elsewhere.
+//! A document as an HTML file that prints well, without scripts or external resources.
 
 use crate::markdown::{Block, Document};
 use crate::number::scientific;
@@ -15,8 +15,8 @@ figure{margin:1em 0}figure img{max-width:100%;height:auto}figcaption{font-style:
 h2{break-after:avoid}tr{break-inside:avoid}thead{display:table-header-group}a{color:inherit;text-decoration:none}}";
 
 impl Document {
-    /// The document as an HTML file that prints well. It has no script; its pictures are the files beside it, nothing comes
-    /// from elsewhere.
+    /// The document as an HTML file that prints well, without scripts. Its pictures are files beside it; it uses no external
+    /// resources.
     ///
     /// ```
     /// use dwell_report::{Block, Document};
@@ -68,9 +68,10 @@ fn findings(all: &[Finding]) -> String {
         "Worst at",
     ];
     let line = |f: &Finding| {
-        let result = match f.pass {
-            true => "<td>pass</td>".to_owned(),
-            false => "<td class=\"fail\">FAIL</td>".to_owned(),
+        let result = if f.pass {
+            "<td>pass</td>".to_owned()
+        } else {
+            "<td class=\"fail\">FAIL</td>".to_owned()
         };
         let [relative, tolerance] =
             [f.relative_difference, f.tolerance].map(|value| scientific(value, 3));
@@ -80,8 +81,8 @@ fn findings(all: &[Finding]) -> String {
             relative,
             tolerance,
             f.worst_at.clone(),
-        ];
-        let cells = cells.map(|cell| format!("<td>{}</td>", escaped(&cell)));
+        ]
+        .map(|cell| format!("<td>{}</td>", escaped(&cell)));
         format!("<tr>{result}{}</tr>\n", cells.concat())
     };
     let header = HEADER.map(|cell| format!("<th>{cell}</th>")).concat();
@@ -157,7 +158,7 @@ fn mark(text: &str) -> (String, &str) {
     (escaped(&text[..end]), &text[end..])
 }
 
-/// Text as it stands in HTML, also within an attribute.
+/// Text with HTML's special characters escaped, also for attributes.
 ///
 /// ```
 /// assert_eq!(dwell_report::escaped("a < \"b\""), "a &lt; &quot;b&quot;");

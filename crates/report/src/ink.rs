@@ -1,4 +1,4 @@
-//! Which curve of a page each pixel shows: later ink hides earlier ink.
+//! The visible curve of each pixel of a page: later ink hides earlier ink.
 
 use crate::curve::steps;
 use crate::rect::Rect;
@@ -107,7 +107,7 @@ impl Ink {
         }
     }
 
-    /// Of each of so many curves: the area that it filled, and what of it is left.
+    /// By curve: the area that it filled when drawn, and the area still visible.
     pub(crate) fn areas(&self, curves: usize) -> Vec<[f64; 2]> {
         let mut visible = vec![0_usize; curves];
         for owner in self.cells.iter().flatten() {

@@ -1,4 +1,4 @@
-//! JSON in which a number that is not finite keeps its name.
+//! JSON with names for numbers that are not finite.
 
 use crate::error::ReportError;
 use dwell_findings::Finding;

@@ -1,4 +1,4 @@
-//! How the layout of a page is found and judged.
+//! The layout of a page, and its defects.
 
 use crate::canvas::layout;
 use crate::error::ReportError;
@@ -6,9 +6,9 @@ use crate::figure::Figure;
 use crate::layout_record::{Layout, NamedCurve};
 use crate::{animation::Animation, png};
 
-/// A curve of a legend is seen if so much of it is left, in pixels of area: the length of three letters.
+/// A curve in a legend counts as visible if this area of it, in square pixels, is visible: the length of three letters.
 const MIN_VISIBLE: f64 = 100.0;
-/// Or so large a part of it, which is enough of a pin or of a single marker.
+/// Or this fraction of it, which suffices for a pin or a single marker.
 const MIN_VISIBLE_SHARE: f64 = 0.2;
 /// Boxes of words that overlap by less than this, in pixels, only touch.
 const TOUCH: f64 = 0.5;
@@ -47,8 +47,8 @@ impl Layout {
         Ok(frames)
     }
 
-    /// What a reader would object to: words on words, words or lines that are cut, a legend without its curve, and words that
-    /// found no room. Empty if all is well.
+    /// The defects of the layout: overlapping words, words or lines that are cut off, a legend entry without visible curve, and omitted
+    /// words. Empty if there are none.
     pub fn defects(&self) -> Vec<String> {
         let mut defects = self.words_on_words();
         defects.extend(self.cut());

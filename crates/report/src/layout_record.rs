@@ -1,5 +1,5 @@
-//! Where everything on a page is: its words, and how much of each curve is left to see. Drawing records it only when it is
-//! asked for.
+//! A record of the layout of a page: its words, and the visible area of each curve. Drawing records it only on
+//! request.
 
 use crate::ink::Ink;
 use crate::rect::Rect;
@@ -13,7 +13,7 @@ pub struct Label {
     pub area: [f64; 4],
 }
 
-/// A curve or a body that has a name, and what can be seen of it.
+/// A named curve or body, with its visible area.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedCurve {
     /// Its name.
@@ -22,11 +22,11 @@ pub struct NamedCurve {
     pub plot: usize,
     /// Area that it fills where it is drawn, square pixels.
     pub drawn: f64,
-    /// What of this nothing hides, square pixels.
+    /// The visible part of this area, square pixels.
     pub visible: f64,
 }
 
-/// Where everything on a page is.
+/// The layout of a page.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Layout {
     /// Width and height of the page, pixels.
@@ -69,7 +69,7 @@ impl LayoutRecord {
         self.plot += 1;
     }
 
-    /// From now on ink is that of a curve of this name, or of none.
+    /// Assigns the following ink to a curve of this name, or to none.
     pub(crate) fn begin_curve(&mut self, name: Option<&str>) {
         let Some(name) = name.map(str::trim).filter(|name| !name.is_empty()) else {
             self.ink.owner = None;

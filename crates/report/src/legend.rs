@@ -134,9 +134,10 @@ impl PlacedLegend {
 
     /// Height that it takes from the plot.
     pub(crate) fn height_above(&self) -> f64 {
-        match self.is_inside {
-            true => 0.0,
-            false => self.legend.height(),
+        if self.is_inside {
+            0.0
+        } else {
+            self.legend.height()
         }
     }
 }

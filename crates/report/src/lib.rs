@@ -1,5 +1,5 @@
 //! Figures, tables, documents and findings as plain data, each with a writer: PNG, GIF, Markdown, JSON, CSV and NumPy
-//! archives. The crate knows neither a solver nor a mechanism.
+//! archives. The crate depends on neither solvers nor mechanisms.
 //!
 //! ```
 //! use dwell_report::{Column, Files, Table, TableExport as _, TableFormat};
@@ -15,14 +15,14 @@
 //! # Ok::<(), dwell_report::ReportError>(())
 //! ```
 //!
-//! - [`Figure`] (charts, stacks of charts, drawings and grids on one page) → [`png()`], [`svg()`]; [`Layout`] says where its words
-//!   are and what is left to see of its curves
+//! - [`Figure`] (charts, stacks of charts, drawings and grids on one page) → [`png()`], [`svg()`]; [`Layout`] has the positions of its words
+//!   and the visible areas of its curves
 //! - [`Animation`] (drawings one after another) → [`Animation::gif`]
 //! - [`Table`] → [`TableExport::csv`] to read, [`TableExport::npz`] to compute with: both give back every bit
 //! - named matrices → [`npz()`]
 //! - [`Document`] (a study in words, tables, figures and findings) → [`Document::markdown`], [`Document::html`]
 //! - anything serialisable → [`json()`], with [`Number`] for numbers that may not be finite
-//! - [`Summary`] (what a command came to, for programs) → [`Summary::json`]
+//! - [`Summary`] (the results of a command, for programs) → [`Summary::json`]
 //! - findings → [`reproducible_text`], the text that every machine reproduces
 //! - [`Files`]: all of these by relative path, written at the end, each file whole or not at all
 //!
@@ -42,9 +42,9 @@
 //! The example `gallery` draws one of each. Six colours, ink and grey distinguish eight curves, also for colour-blind
 //! readers; from the seventh curve on use [`Stroke::Dashed`] too.
 //!
-//! plotters draws the pages on a backend of our own that writes SVG, which resvg turns into pixels. Its coordinates of a chart are not used:
-//! they end in whole units, and its ticks leave out what is below 2e-16. Ticks, margins and the positions of labels are decided here, from
-//! measured text and from where the data lie, because a picture that hides the datum it reports is no evidence.
+//! plotters draws the pages on a backend of our own that writes SVG, which resvg converts into pixels. The chart coordinates of plotters are not used:
+//! they are whole units, and its ticks omit values below 2e-16. Ticks, margins and the positions of labels are computed here, from
+//! measured text and the positions of the data, so that labels do not hide data.
 
 mod animation;
 mod axes;

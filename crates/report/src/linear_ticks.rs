@@ -1,4 +1,4 @@
-//! Ticks of a linear axis, and what all ticks are made of.
+//! Ticks of a linear axis, and the type of all ticks.
 
 use crate::number::{exponent, fixed, power_of_ten, trimmed};
 

@@ -18,9 +18,12 @@ pub(crate) fn log(low: f64, high: f64, max_count: usize) -> Ticks {
     let chosen = || decades.iter().copied().filter(|e| e % step == 0);
     // A few small powers read better written out.
     let written_out = chosen().all(|e| (-2..=3).contains(&e));
-    let label = |e: i32| match written_out {
-        true => decimal(1.0, e),
-        false => power_of_ten(e),
+    let label = |e: i32| {
+        if written_out {
+            decimal(1.0, e)
+        } else {
+            power_of_ten(e)
+        }
     };
     let minor = if step == 1 && decades.len() <= 5 {
         let from = bottom.floor() as i32;

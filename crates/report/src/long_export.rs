@@ -1,4 +1,4 @@
-//! Long tables as files: the same bytes as those of a table in memory, made part by part.
+//! Long tables as files, written part by part with the bytes of a table in memory.
 
 use crate::error::ReportError;
 use crate::npz::table_archive;
@@ -37,11 +37,11 @@ impl LongExport {
     /// Writes the file.
     pub(crate) fn write(&self, file: &mut File) -> Result<(), ReportError> {
         let mut out = BufWriter::new(file);
-        let described = self
+        let described: Vec<Column> = self
             .columns
             .iter()
-            .map(|&k| self.table.columns()[k].clone());
-        let described: Vec<Column> = described.collect();
+            .map(|&k| self.table.columns()[k].clone())
+            .collect();
         match self.format {
             TableFormat::Csv => {
                 out.write_all(csv_header(&described)?.as_bytes())

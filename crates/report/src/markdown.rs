@@ -6,7 +6,7 @@ use crate::typeset::typeset;
 use dwell_findings::Finding;
 use std::fmt::Write as _;
 
-/// A study in words, tables, figures and findings.
+/// A document of text, tables, figures and findings.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Document {
     /// The heading of the whole.
@@ -22,7 +22,7 @@ pub enum Block {
     Heading(String),
     /// Markdown as it is.
     Text(String),
-    /// Words of a user, such as the note of a scene, in their lines: no markup.
+    /// Text of a user, such as the note of a scene, line by line and without markup.
     Words(String),
     /// Cells of text.
     Table {
@@ -35,9 +35,9 @@ pub enum Block {
     Figure {
         /// Path of the picture, relative to the document.
         file: String,
-        /// Short words for those who do not see it.
+        /// Alternative text.
         alt: String,
-        /// Words under it, or nothing.
+        /// The caption, or empty.
         caption: String,
     },
     /// Findings, one row each.
@@ -63,7 +63,7 @@ impl Document {
     }
 }
 
-/// What every machine reproduces of the findings: key, truth, what is compared, tolerance and verdict.
+/// The reproducible part of the findings: key, check, comparison, tolerance and verdict.
 pub fn reproducible_text(findings: &[Finding]) -> String {
     let mut text = String::new();
     for f in findings {
@@ -99,9 +99,10 @@ fn findings_table(findings: &[Finding]) -> String {
             "" => number,
             text => format!("{number}{separator}{text}"),
         };
-        let result = match f.pass {
-            true => pass_or_fail(f).to_owned(),
-            false => format!("**{}**", pass_or_fail(f)),
+        let result = if f.pass {
+            pass_or_fail(f).to_owned()
+        } else {
+            format!("**{}**", pass_or_fail(f))
         };
         vec![
             result,
@@ -136,9 +137,10 @@ fn image(file: &str, alt: &str, caption: &str) -> String {
     let alt = markdown_text(alt);
     // In angle brackets a path may hold blanks and brackets.
     let file = one_line(file).replace('<', "%3C").replace('>', "%3E");
-    let target = match file.contains([' ', '(', ')']) {
-        true => format!("<{file}>"),
-        false => file,
+    let target = if file.contains([' ', '(', ')']) {
+        format!("<{file}>")
+    } else {
+        file
     };
     match markdown_text(&typeset(caption)).as_str() {
         "" => format!("![{alt}]({target})\n"),
@@ -146,7 +148,7 @@ fn image(file: &str, alt: &str, caption: &str) -> String {
     }
 }
 
-/// Words of a user, such as the title of a scene, as words in Markdown: what would be markup there is escaped.
+/// Text of a user, such as the title of a scene, with Markdown markup escaped.
 pub fn markdown_text(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -160,7 +162,7 @@ pub fn markdown_text(text: &str) -> String {
     one_line(&out)
 }
 
-/// Words of a user in their lines and paragraphs: what would be markup, also at the beginning of a line, is escaped.
+/// Text of a user, line by line, with Markdown markup escaped, also at the beginning of a line.
 fn words_in_lines(words: &str) -> String {
     let line = |line: &str| {
         let text = markdown_text(line.trim());

@@ -11,7 +11,7 @@ use crate::rect::Rect;
 use crate::theme::{BAND, GREY, INK, MARK_WIDTH, MARKER_RADIUS, Rgb, TICK_SIZE, WHITE};
 use crate::typeset::typeset;
 
-/// The marker of what is drawn in ink: it stands apart from all curves.
+/// The marker of series in ink, which differs from those of all curves.
 pub(crate) const CROSS: usize = usize::MAX;
 
 /// A marker: its shape, and how it is filled.
@@ -153,8 +153,8 @@ fn path(frame: &PlotFrame, mark: &Mark) -> Vec<Vec<[f64; 2]>> {
     clipped(line.unwrap_or_default(), &frame.plot)
 }
 
-/// Writes the words of the marks where they hide least of the data, and never on what has been written
-/// before or on each other: words that have no such position are left out.
+/// Writes the labels of the marks where they hide the least of the data, and never on other
+/// text; labels without such a position are omitted.
 pub(crate) fn draw_labels(
     canvas: &mut Canvas<'_>,
     frame: &PlotFrame,
@@ -169,8 +169,8 @@ pub(crate) fn draw_labels(
         | Mark::Slope { label, .. }
         | Mark::Point { label, .. }
         | Mark::Text { label, .. }) = mark;
-        let label = typeset(label.trim());
-        let label = label.as_str();
+        let typeset_label = typeset(label.trim());
+        let label = typeset_label.as_str();
         if label.is_empty() {
             continue;
         }
@@ -298,7 +298,7 @@ fn label_candidates(frame: &PlotFrame, mark: &Mark, [width, height]: [f64; 2]) -
                     [x - d - width, y - 0.5 * height],
                     [x - 0.5 * width, y - d - height],
                     [x - 0.5 * width, y + d],
-                    // Beside the left or the right edge there is room for no other.
+                    // Near the left or the right edge only this position fits.
                     [x - MARKER_RADIUS, y - d - height],
                     [x - MARKER_RADIUS, y + d],
                     [x + MARKER_RADIUS - width, y - d - height],

@@ -17,14 +17,14 @@ const ALIGNMENT: usize = 64;
 /// An array of an archive.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Array {
-    /// Rows of so many columns each.
+    /// Rows with equal numbers of columns.
     Matrix {
         /// Number of columns.
         columns: usize,
         /// The rows.
         rows: Vec<Vec<f64>>,
     },
-    /// Words, one behind another.
+    /// A list of strings.
     Strings(Vec<String>),
 }
 
@@ -33,7 +33,7 @@ pub enum Array {
 ///
 /// # Errors
 ///
-/// [`ReportError::Row`] if a row of a matrix has not its number of columns; [`ReportError::Npz`] if the archive refuses.
+/// [`ReportError::Row`] if a row of a matrix has a wrong number of columns; [`ReportError::Npz`] if the archive cannot be written.
 pub fn npz(arrays: &[(&str, Array)]) -> Result<Vec<u8>, ReportError> {
     let bytes = |array: &Array| -> Result<_, ReportError> {
         Ok(match array {
@@ -45,8 +45,9 @@ pub fn npz(arrays: &[(&str, Array)]) -> Result<Vec<u8>, ReportError> {
             }
         })
     };
-    let arrays = arrays.iter();
-    let arrays = arrays.map(|(name, array)| Ok((file_name(name), bytes(array)?)));
+    let arrays = arrays
+        .iter()
+        .map(|(name, array)| Ok((file_name(name), bytes(array)?)));
     Ok(archive(Cursor::new(Vec::new()), arrays)?.into_inner())
 }
 
@@ -90,8 +91,10 @@ pub(crate) fn table_archive<W: Write + Seek>(
         let values = values(i).map_err(ZipError::Io)?;
         Ok::<_, ReportError>(number_array(&shape, values.iter()))
     };
-    let numbers = keys.into_iter().enumerate();
-    let numbers = numbers.map(|(i, key)| Ok((key, column(i)?)));
+    let numbers = keys
+        .into_iter()
+        .enumerate()
+        .map(|(i, key)| Ok((key, column(i)?)));
     archive(out, numbers.chain(described.map(Ok)))
 }
 
@@ -120,7 +123,7 @@ fn file_name(name: &str) -> String {
     }
 }
 
-/// Nothing that depends on the day or the machine. Stored: the digits of measured numbers hardly compress.
+/// Options independent of date and machine. Without compression, because the digits of measured numbers hardly compress.
 fn options() -> SimpleFileOptions {
     SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)
@@ -137,8 +140,12 @@ fn number_array<'v>(shape: &str, values: impl Iterator<Item = &'v f64>) -> Vec<u
 
 /// Words as four bytes a character, padded with zeros to the longest.
 fn string_array(words: &[impl AsRef<str>]) -> Vec<u8> {
-    let width = words.iter().map(|w| w.as_ref().chars().count()).max();
-    let width = width.unwrap_or(0).max(1);
+    let width = words
+        .iter()
+        .map(|w| w.as_ref().chars().count())
+        .max()
+        .unwrap_or(0)
+        .max(1);
     let mut array = header(&format!("<U{width}"), &format!("({},)", words.len()));
     for word in words {
         let end = array.len() + 4 * width;

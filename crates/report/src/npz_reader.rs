@@ -5,13 +5,13 @@ use std::io::{Cursor, Read as _};
 use thiserror::Error;
 use zip::ZipArchive;
 
-/// Why an archive gives no columns.
+/// Why no columns can be read from an archive.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum NpzError {
-    /// It is no archive.
+    /// The file is no archive.
     #[error("this is no NumPy archive: {reason}")]
     NotAnArchive {
-        /// What the reader of archives says.
+        /// The message of the archive reader.
         reason: String,
     },
     /// An array is compressed.
@@ -36,7 +36,7 @@ enum Array {
     Words(Vec<String>),
 }
 
-/// The columns of an archive with their names; with units in brackets where it has the arrays `columns` and `units`.
+/// The named columns of an archive, with units in brackets if it has the arrays `columns` and `units`.
 ///
 /// # Errors
 /// [`NpzError`]: no archive, a compressed array, an array that is no row of numbers.
@@ -49,8 +49,11 @@ pub fn npz_columns(bytes: &[u8]) -> Result<Vec<(String, Vec<f64>)>, NpzError> {
     let mut words = BTreeMap::new();
     for k in 0..archive.len() {
         let file = archive.by_index_raw(k).map_err(|e| refused(&e))?;
-        let name = file.name().map_err(|e| refused(&e))?;
-        let name = name.trim_end_matches(".npy").to_owned();
+        let name = file
+            .name()
+            .map_err(|e| refused(&e))?
+            .trim_end_matches(".npy")
+            .to_owned();
         if file.compression() != zip::CompressionMethod::Stored {
             return Err(NpzError::Compressed { name });
         }

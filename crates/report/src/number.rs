@@ -1,4 +1,4 @@
-//! Numbers as people write them.
+//! Numbers as text.
 
 /// `10` to a power, with a raised exponent: `10⁻¹²`.
 pub(crate) fn power_of_ten(exponent: i32) -> String {
@@ -35,9 +35,10 @@ pub(crate) fn scientific(value: f64, digits: usize) -> String {
 
 /// A number in decimals without zeros at its end.
 pub(crate) fn trimmed(text: &str) -> &str {
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.'),
-        false => text,
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        text
     }
 }
 
@@ -53,7 +54,7 @@ pub(crate) fn exponent(value: f64) -> i32 {
         .unwrap_or(0)
 }
 
-/// Everything on one line.
+/// The text on one line.
 pub(crate) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

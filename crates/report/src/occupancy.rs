@@ -1,4 +1,4 @@
-//! Where in a plot something has been drawn already, so that words can go elsewhere.
+//! The occupied parts of a plot, which labels avoid.
 
 use crate::curve::steps;
 use crate::rect::Rect;
@@ -70,9 +70,10 @@ impl Occupancy {
             self.cell([block.x0, block.y0]),
             self.cell([block.x1, block.y1]),
         );
-        let rows = match self.area.intersects(block) {
-            true => first.1..last.1 + 1,
-            false => 0..0,
+        let rows = if self.area.intersects(block) {
+            first.1..last.1 + 1
+        } else {
+            0..0
         };
         let columns = self.columns;
         rows.map(move |row| row * columns + first.0..row * columns + last.0 + 1)

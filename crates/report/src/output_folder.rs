@@ -1,7 +1,7 @@
-//! The folder that results are written to: tested before the work, each file whole or not at all, nothing left behind.
+//! The output folder: tested before the computation; each file is written completely or not at all, and no temporary files remain.
 //!
 //! Files are first written to a folder of their own below `.dwell`, then renamed to their targets. A lock shows whether
-//! the command that owns such a folder still runs: what a killed one left is removed by the next. `.dwell` also keeps
+//! the command that owns such a folder still runs; the next command removes the files of a killed one. `.dwell` also records
 //! which scene has written the results of a name, so that another scene of the same name does not replace them.
 
 use crate::error::ReportError;
@@ -19,12 +19,12 @@ const UNFINISHED: &str = "unfinished-";
 const LOCK: &str = "lock";
 /// Commands that write to one folder at the same time.
 const MAX_COMMANDS: usize = 10_000;
-/// How often the folder is made again where another command, which is done with it, removes it.
+/// Maximum number of attempts to create the folder while other commands remove it.
 const MAX_ATTEMPTS: usize = 100;
 /// Files that are stored at the same time.
 const MAX_STORED_AT_ONCE: usize = 16;
 
-/// A folder to which a command writes. Dropped before [`write`](Self::write), it leaves no trace.
+/// A folder to which a command writes. If it is dropped before [`write`](Self::write), no files remain.
 #[derive(Debug)]
 pub struct OutputFolder {
     root: PathBuf,
@@ -43,12 +43,12 @@ fn file_error(path: &Path) -> impl FnOnce(io::Error) -> ReportError {
 }
 
 impl OutputFolder {
-    /// Makes the folder if it is missing, tests that files can be written there, and removes what killed commands left.
+    /// Creates the folder if it is missing, tests that files can be written there, and removes temporary files of killed commands.
     ///
     /// # Errors
     /// [`ReportError::File`] with the path and the system's reason.
     pub fn open(root: &Path) -> Result<Self, ReportError> {
-        // Between making `.dwell` and a lock in it another command may remove it, because it is empty.
+        // Another command may remove the empty `.dwell` before a lock is created in it.
         let is_removed = |error: &ReportError| matches!(error, ReportError::File { source, .. } if source.kind() == io::ErrorKind::NotFound);
         for _ in 1..MAX_ATTEMPTS {
             match Self::open_once(root) {
@@ -85,7 +85,7 @@ impl OutputFolder {
     /// Reserves a name for the results of a scene.
     ///
     /// # Errors
-    /// [`ReportError::NameInUse`] where those of another scene, which still exists, have it.
+    /// [`ReportError::NameInUse`] if results of another scene, which still exists, have this name.
     pub fn reserve(&mut self, name: &str, scene: &Path) -> Result<(), ReportError> {
         let scene = fs::canonicalize(scene).unwrap_or_else(|_| scene.to_owned());
         if let Ok(other) = fs::read_to_string(self.owner_file(name)) {
@@ -109,21 +109,22 @@ impl OutputFolder {
 
     /// Writes the files, and returns their paths.
     ///
-    /// All are written and stored by the system before the first is renamed to its target. A reader therefore never
-    /// meets half a file, and a full disk or a target that is a folder leaves everything as it was. Only if the system
-    /// refuses a rename after that are the files before it new already.
+    /// All files are written and flushed to disk before the first is renamed to its target. A reader therefore never
+    /// reads a partial file, and if the disk is full or a target is a folder, nothing changes. Only if a
+    /// rename fails after that, the files renamed before are new.
     ///
     /// # Errors
     /// [`ReportError::File`] with the path and the system's reason.
     pub fn write(mut self, files: &Files) -> Result<Vec<PathBuf>, ReportError> {
         let mut staged = Vec::new();
-        let owner = self.owner.take().map(|(name, scene)| {
+        let owner_file = self.owner.take().map(|(name, scene)| {
             let text = format!("{}\n", scene.display());
             (self.owner_file(&name), Content::Bytes(text.into_bytes()))
         });
-        let owner = owner.iter().map(|(path, text)| (path.clone(), text));
-        let files = files.contents();
-        let files = files.map(|(path, content)| (self.root.join(path), content));
+        let owner = owner_file.iter().map(|(path, text)| (path.clone(), text));
+        let files = files
+            .contents()
+            .map(|(path, content)| (self.root.join(path), content));
         for (target, content) in files.chain(owner).collect::<Vec<_>>() {
             // Renaming onto a folder would fail too, but only after others have been renamed.
             if target.is_dir() {
@@ -159,14 +160,15 @@ impl OutputFolder {
                 Err(e) => return Err(file_error(folder)(e)),
             }
         }
-        match folder.as_os_str().is_empty() || folder.is_dir() {
-            true => Ok(()),
-            false => Err(file_error(folder)(io::ErrorKind::NotADirectory.into())),
+        if folder.as_os_str().is_empty() || folder.is_dir() {
+            Ok(())
+        } else {
+            Err(file_error(folder)(io::ErrorKind::NotADirectory.into()))
         }
     }
 }
 
-/// Stores files under their temporary names, several at a time: the system stores those that wait together at once.
+/// Stores files under their temporary names, several at a time, because the system flushes waiting files together.
 fn store_all(staged: &[(PathBuf, PathBuf, &Content)]) -> Result<(), ReportError> {
     for some in staged.chunks(MAX_STORED_AT_ONCE) {
         let stored: Vec<Result<(), ReportError>> = thread::scope(|scope| {
@@ -192,14 +194,14 @@ fn store(path: &Path, content: &Content) -> io::Result<()> {
     file.sync_all()
 }
 
-/// The lock file, locked; none where another command holds it.
+/// The lock file, locked; `None` if another command holds it.
 fn locked(path: &Path) -> Result<Option<File>, ReportError> {
     let file = File::create(path).map_err(file_error(path))?;
     match file.try_lock() {
-        // One that was removed between its creation and its lock protects nothing, and another command may have made the next.
+        // A file removed between its creation and its lock protects nothing, and another command may have created a new one.
         Ok(()) => Ok(is_at(&file, path).then_some(file)),
         Err(TryLockError::WouldBlock) => Ok(None),
-        // A file system without locks: commands there do not clear up after each other.
+        // On a file system without locks, commands do not remove each other's files.
         Err(TryLockError::Error(_)) => Ok(Some(file)),
     }
 }
@@ -220,7 +222,7 @@ fn is_at(file: &File, path: &Path) -> bool {
     }
 }
 
-/// Removes the unfinished files of commands that no longer run. What cannot be removed stays.
+/// Removes the unfinished files of commands that no longer run, if possible.
 fn remove_abandoned(internal: &Path) {
     for entry in fs::read_dir(internal).into_iter().flatten().flatten() {
         let path = entry.path();
@@ -250,7 +252,7 @@ fn remove(lock: &Path) -> io::Result<()> {
 
 impl Drop for OutputFolder {
     fn drop(&mut self) {
-        // Folders that are in use stay: the refusal is wanted.
+        // Folders in use cannot be removed, which is intended.
         if self.lock.is_some() {
             let _ = remove(&self.unfinished.with_extension(LOCK));
         }

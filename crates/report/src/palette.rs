@@ -10,12 +10,12 @@ pub(crate) struct Palette {
 }
 
 impl Palette {
-    /// At most `most` colours (up to 256) for what has been counted.
+    /// At most `max_colors` colours (up to 256) for the counted ones.
     ///
     /// The colours of surfaces and lines are by far the most frequent and are kept exactly; the tints at their edges are
-    /// many and rare. So the colours come in the order of their counts, and one is left out if it differs from one
-    /// that is kept by no more than a distance, which grows from 0 until the rest fits. (Methods that average
-    /// colours, made for photographs, would shift the flat ones too.)
+    /// many and rare. So the colours are taken by decreasing count, and a colour is omitted if its distance from a
+    /// kept one is below a bound, which grows from 0 until the rest fits. (Methods that average
+    /// colours, made for photographs, would shift the flat ones, too.)
     pub(crate) fn of(counts: &HashMap<Rgb, u64>, max_colors: usize) -> Self {
         let ordered = ordered(counts);
         let max_colors = max_colors.clamp(1, 256);

@@ -19,7 +19,7 @@ const MAX_SIDE: u32 = 16_384;
 ///
 /// # Errors
 ///
-/// [`ReportError::Size`] if the page is too large; [`ReportError::Draw`] and [`ReportError::Encode`] if a library refuses,
+/// [`ReportError::Size`] if the page is too large; [`ReportError::Draw`] and [`ReportError::Encode`] if a library fails,
 /// which no data should cause.
 pub fn png(figure: &Figure) -> Result<Vec<u8>, ReportError> {
     let page = page_of(figure)?;
@@ -242,12 +242,12 @@ mod tests {
             prop::option::of(-5.0..5.0f64),
             "[0-9e−<. ]{0,7}|[a-z]{4,16}",
             any::<bool>(),
-        );
-        let cell = cell.prop_map(|(value, text, failed)| Cell {
-            value,
-            text,
-            failed,
-        });
+        )
+            .prop_map(|(value, text, failed)| Cell {
+                value,
+                text,
+                failed,
+            });
         let cells = prop::collection::vec(prop::option::weighted(0.8, cell), 0..14);
         let row = (word(), cells).prop_map(|(name, cells)| Row { name, cells });
         let rows = prop_oneof![9 => prop::collection::vec(row.clone(), 0..8), 1 => prop::collection::vec(row, 40..60)];
@@ -276,13 +276,13 @@ mod tests {
             "[a-z]{1,9}( [0-9]{1,3}){0,9}",
             word,
             any::<Option<bool>>(),
-        );
-        let tile = tile.prop_map(|(name, value, note, passed)| Tile {
-            name,
-            value,
-            note,
-            passed,
-        });
+        )
+            .prop_map(|(name, value, note, passed)| Tile {
+                name,
+                value,
+                note,
+                passed,
+            });
         (1..7_usize, prop::collection::vec(tile, 0..9))
             .prop_map(|(columns, tiles)| Panel::Tiles(Tiles { columns, tiles }))
     }

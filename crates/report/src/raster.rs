@@ -1,4 +1,4 @@
-//! From an SVG document to pixels.
+//! Conversion of an SVG document into pixels.
 
 use crate::error::ReportError;
 use crate::fonts;

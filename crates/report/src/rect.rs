@@ -68,7 +68,7 @@ impl Rect {
         }
     }
 
-    /// What the insets leave; never less than a small plot, so that crowded labels do not turn it inside out.
+    /// The rectangle within the insets, with a minimum size, so that crowded labels do not invert it.
     pub(crate) fn inset(&self, insets: Insets) -> Self {
         let x0 = self.x0 + insets.left;
         let y0 = self.y0 + insets.top;

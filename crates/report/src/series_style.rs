@@ -1,4 +1,4 @@
-//! What a series looks like: its colour, line and marker.
+//! The style of a series: its colour, line and marker.
 
 use crate::axis::Paint;
 use crate::canvas::LineStyle;
@@ -7,7 +7,7 @@ use crate::figure::{Series, Stroke};
 use crate::marks;
 use crate::theme::{CURVE_WIDTH, default_paint, rgb};
 
-/// How a series looks.
+/// The style of a series.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SeriesStyle {
     pub(crate) line: LineStyle,

@@ -13,11 +13,11 @@ pub struct Drawing {
     pub y: Axis,
     /// The shapes, the first at the back.
     pub shapes: Vec<Shape>,
-    /// Without axes, ticks and grid lines: a view in which lengths along a side mean nothing.
+    /// Whether to omit axes, ticks and grid lines, for a view in which lengths cannot be measured.
     pub without_axes: bool,
 }
 
-/// How a line is drawn.
+/// The style of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pen {
     /// Colour.
@@ -42,12 +42,12 @@ impl Pen {
         }
     }
 
-    /// The same pen, lightened.
+    /// Sets the lightness.
     pub fn lightness(self, lightness: f64) -> Self {
         Self { lightness, ..self }
     }
 
-    /// The same pen, dashed.
+    /// Makes the line dashed.
     pub fn dashed(self) -> Self {
         Self {
             dashed: true,
@@ -63,7 +63,7 @@ pub enum Shape {
     Polyline {
         /// The points; one that is not finite breaks the line.
         points: Vec<[f64; 2]>,
-        /// How it is drawn.
+        /// Its style.
         pen: Pen,
         /// Whether the last point is joined to the first.
         closed: bool,
@@ -80,7 +80,7 @@ pub enum Shape {
         radius_px: f64,
         /// Outline.
         pen: Pen,
-        /// Filled with the pen's colour, or else white.
+        /// Whether it is filled with the pen's colour; otherwise white.
         filled: bool,
         /// Name in the legend.
         name: Option<String>,
@@ -92,9 +92,9 @@ pub enum Shape {
     },
     /// A fixed surface, such as a guide, hatched on the right of the line from `from` to `to`.
     GroundLine {
-        /// Where it begins.
+        /// Its start.
         from: [f64; 2],
-        /// Where it ends.
+        /// Its end.
         to: [f64; 2],
     },
     /// A line with a head at `to`.
@@ -103,7 +103,7 @@ pub enum Shape {
         from: [f64; 2],
         /// Head.
         to: [f64; 2],
-        /// How it is drawn.
+        /// Its style.
         pen: Pen,
         /// Name in the legend.
         name: Option<String>,
@@ -114,7 +114,7 @@ pub enum Shape {
         at: [f64; 2],
         /// The words.
         text: String,
-        /// Where they stand, seen from `at`.
+        /// Their position relative to `at`.
         placement: TextPlacement,
         /// Colour.
         color: Paint,
@@ -175,7 +175,7 @@ impl Shape {
         }
     }
 
-    /// The same shape with a name in the legend; words and supports have none.
+    /// Sets the name in the legend; no effect on words and supports.
     pub fn named(mut self, label: impl Into<String>) -> Self {
         match &mut self {
             Self::Polyline { name, .. } | Self::Disc { name, .. } | Self::Arrow { name, .. } => {
@@ -187,7 +187,7 @@ impl Shape {
     }
 }
 
-/// Where words stand, seen from the point they belong to.
+/// The position of words relative to their point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum TextPlacement {
     /// On it.

@@ -91,7 +91,7 @@ pub(crate) fn mark_occupied(frame: &PlotFrame, shape: &Shape, occupied: &mut Occ
     }
 }
 
-/// Draws a shape; parts outside the plot are cut off, and what is not finite is left out.
+/// Draws a shape; parts outside the plot are cut off, and points that are not finite are omitted.
 //
 // Long: a few lines for each kind of shape.
 pub(crate) fn draw(canvas: &mut Canvas<'_>, frame: &PlotFrame, shape: &Shape) {
@@ -149,9 +149,10 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>, frame: &PlotFrame, shape: &Shape) {
 }
 
 fn line(pen: &Pen) -> LineStyle {
-    let width = match pen.width.is_finite() {
-        true => pen.width.clamp(0.5, 400.0),
-        false => 1.0,
+    let width = if pen.width.is_finite() {
+        pen.width.clamp(0.5, 400.0)
+    } else {
+        1.0
     };
     LineStyle {
         color: lightened(rgb(pen.color), pen.lightness),

@@ -6,7 +6,7 @@ use dwell_findings::{Finding, Record, RecordedNumber};
 use serde::Serialize;
 use serde::ser::{SerializeMap as _, Serializer};
 
-/// The format of the file. It changes when a reader of the old one would misread the new one.
+/// The version of the file's format. It changes with every incompatible change.
 const FORMAT: &str = "dwell-summary-1";
 /// Events that are listed; all of them are in the table of events.
 const MAX_EVENTS: usize = 10_000;
@@ -14,7 +14,7 @@ const MAX_EVENTS: usize = 10_000;
 /// The scene that a command read.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct SceneRecord {
-    /// Its name, which the names of its files begin with.
+    /// Its name: the base name of its files.
     pub name: String,
     /// Its title.
     pub title: String,
@@ -22,37 +22,37 @@ pub struct SceneRecord {
     pub sha256: String,
 }
 
-/// What a command says on standard error.
+/// A message on standard error.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Message {
     /// `error` or `warning`.
     pub severity: &'static str,
     /// The message.
     pub text: String,
-    /// What to try.
+    /// A suggestion.
     pub help: Option<String>,
 }
 
-/// What a command came to.
+/// The results of a command.
 #[derive(Debug, Clone, Default)]
 pub struct Summary<'a> {
     /// The name of the command.
     pub command: &'a str,
     /// The version of the program.
     pub version: &'a str,
-    /// The scene, where the command reads one.
+    /// The scene, if the command reads one.
     pub scene: Option<SceneRecord>,
     /// The exit status.
     pub status: u8,
-    /// What the status means.
+    /// The meaning of the status.
     pub status_meaning: &'a str,
     /// The numbers, extrema and events.
     pub record: Record,
     /// The checks.
     pub findings: &'a [Finding],
-    /// What is printed.
+    /// The printed summary.
     pub printed: &'a str,
-    /// What is said on standard error.
+    /// The messages on standard error.
     pub messages: Vec<Message>,
     /// The files that are written, relative to the output folder.
     pub files: Vec<String>,
@@ -138,14 +138,17 @@ impl Summary<'_> {
     ///
     /// # Errors
     ///
-    /// [`ReportError::Json`], which no summary leads to.
+    /// [`ReportError::Json`], which does not occur for a summary.
     pub fn json(&self) -> Result<String, ReportError> {
         let record = &self.record;
-        let events = record.events.iter().take(MAX_EVENTS);
-        let events = events.map(|event| EventRecord {
-            name: &event.name,
-            t: Number(event.t),
-        });
+        let events = record
+            .events
+            .iter()
+            .take(MAX_EVENTS)
+            .map(|event| EventRecord {
+                name: &event.name,
+                t: Number(event.t),
+            });
         let end = |[value, at]: [f64; 2]| EndRecord {
             value: Number(value),
             at: Number(at),

@@ -1,4 +1,4 @@
-//! A figure as an SVG document: lines as lines, words as words.
+//! A figure as an SVG document.
 
 use crate::canvas::document;
 use crate::error::ReportError;
@@ -7,8 +7,8 @@ use crate::png::page_of;
 
 /// Draws the figure and returns it as an SVG document, in the layout of its [`png`](crate::png()).
 ///
-/// Words stay words. The document names their font families, and each has the length it was measured at, which a reader with another
-/// font keeps to.
+/// Text remains text. The document names the font families and the measured width of each word, so the layout also holds with another
+/// font.
 ///
 /// # Errors
 ///
@@ -59,7 +59,7 @@ mod tests {
 
     #[test]
     fn any_letter_is_drawn_or_is_a_box() {
-        // What the font lacks, what has no width, what is no letter at all.
+        // Characters missing from the font, without width, and control characters.
         for title in [
             "漢字 🚀",
             "e\u{301}\u{200b}\u{fe0f}",

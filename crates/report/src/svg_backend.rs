@@ -1,4 +1,4 @@
-//! What plotters draws, written as an SVG document: lines as lines, words as words.
+//! The backend of plotters that writes an SVG document.
 
 use crate::fonts::{self, FAMILY};
 use crate::html::escaped;
@@ -17,7 +17,7 @@ pub(crate) const UNITS_PER_PIXEL: f64 = 8.0;
 pub(crate) const ASCENT: f64 = 0.76;
 /// Height of a line in em: what plotters calls the size of a font.
 pub(crate) const LINE: f64 = 1.24;
-/// What readers without the font use instead: letters of nearly the same widths.
+/// The fallback font, with letters of nearly equal widths.
 const FALLBACK: &str = "Verdana, sans-serif";
 
 /// The coordinates of a page: pixels from its upper left corner.
@@ -43,23 +43,25 @@ impl CoordTranslate for PagePixels {
 pub(crate) struct SvgBackend<'a> {
     document: &'a mut String,
     size: (u32, u32),
-    /// Whether the document says how long its words are, which a reader with another font keeps to.
+    /// Whether the document contains the widths of its words, for readers with another font.
     measured: bool,
 }
 
 type Written = Result<(), DrawingErrorKind<Infallible>>;
 
-/// How a shape is painted: filled, or its edge drawn.
+/// The paint of a shape: filled, or its outline.
 fn paint(style: &impl BackendStyle, fill: bool) -> String {
     let (BackendColor { alpha, rgb }, width) = (style.color(), style.stroke_width());
     let color = format!("#{:02X}{:02X}{:02X}", rgb.0, rgb.1, rgb.2);
-    let paint = match fill {
-        true => format!("fill=\"{color}\""),
-        false => format!("fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\""),
+    let paint = if fill {
+        format!("fill=\"{color}\"")
+    } else {
+        format!("fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\"")
     };
-    match alpha < 1.0 {
-        true => paint + &format!(" opacity=\"{alpha}\""),
-        false => paint,
+    if alpha < 1.0 {
+        paint + &format!(" opacity=\"{alpha}\"")
+    } else {
+        paint
     }
 }
 

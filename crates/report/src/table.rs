@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 /// Rows whose lines are made at once.
 const ROWS_AT_ONCE: usize = 256;
 
-/// A file format of tables. What writes a table takes a list of them, so that a new format is added here and in
+/// A file format of tables. Writers take a list of formats, so a new format is added here and in
 /// [`Files::add_table`](crate::Files::add_table).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TableFormat {
@@ -34,26 +34,26 @@ impl TableFormat {
 
 /// The file formats of a [`Table`].
 pub trait TableExport {
-    /// The table as CSV text: a header `name [unit]`, then the rows with the fewest digits that give back every bit.
-    /// A NaN is an empty field; what is infinite is written `inf` or `-inf`.
+    /// The table as CSV text: a header `name [unit]`, then the rows with the fewest digits that restore every bit.
+    /// NaN is an empty field; infinite numbers are `inf` and `-inf`.
     ///
     /// # Errors
     ///
-    /// [`ReportError::Row`] if a row is not as long as the header; [`ReportError::Csv`] if the writer refuses.
+    /// [`ReportError::Row`] if a row is not as long as the header; [`ReportError::Csv`] if the writer fails.
     fn csv(&self) -> Result<String, ReportError>;
 
-    /// The table as a NumPy archive (`.npz`, arrays of format 1.0): what `numpy.load` gives back bit for bit.
+    /// The table as a NumPy archive (`.npz`, arrays of format 1.0), which `numpy.load` reads bit for bit.
     ///
     /// Every column is an array of its own, `<f8` of shape (rows,), under its name. The array `columns` holds these
     /// keys in the order of the table, and `units` their units: `dict(zip(z["columns"], z["units"]))`.
     ///
-    /// A key is also a file name within the archive: characters that some system refuses in one (`/ \ : * ? " < > |`
-    /// and controls) become `_`, and a name that is taken already gets `_2`, `_3` … behind it. The same table makes
-    /// the same bytes on every machine.
+    /// A key is also a file name within the archive: characters that some systems reject in file names (`/ \ : * ? " < > |`
+    /// and control characters) become `_`, and repeated names get the suffix `_2`, `_3` … A table gives the
+    /// same bytes on every machine.
     ///
     /// # Errors
     ///
-    /// [`ReportError::Row`] if a row is not as long as the header; [`ReportError::Npz`] if the archive refuses, as for a
+    /// [`ReportError::Row`] if a row is not as long as the header; [`ReportError::Npz`] if the archive cannot be written, as with a
     /// name of more than 65 000 bytes.
     fn npz(&self) -> Result<Vec<u8>, ReportError>;
 }
@@ -100,7 +100,7 @@ pub(crate) fn csv_lines(rows: &[Vec<f64>]) -> Vec<String> {
                 }
             }
             if matches!(row.as_slice(), [only] if only.is_nan()) {
-                // An empty line would be none.
+                // An empty line would not count as a row.
                 text += "\"\"";
             }
             text.push('\n');

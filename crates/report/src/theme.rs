@@ -16,7 +16,7 @@ const PALETTE: [Rgb; 6] = [
     [86, 180, 233],
 ];
 
-/// What failed and what passed: vermilion and green of the palette.
+/// The colours of failed and passed: vermilion and green of the palette.
 pub(crate) const FAILED: Rgb = PALETTE[1];
 pub(crate) const PASSED: Rgb = PALETTE[2];
 pub(crate) const WHITE: Rgb = [255, 255, 255];
@@ -43,7 +43,7 @@ pub(crate) const GRID_WIDTH: f64 = 1.6;
 pub(crate) const MARKER_RADIUS: f64 = 8.0;
 pub(crate) const TICK_LENGTH: f64 = 9.0;
 
-/// The colour of a series that names none: the palette, then the two greys, then round again.
+/// The default colour of a series: the palette, then the two greys, then from the start again.
 pub(crate) fn default_paint(index: usize) -> Paint {
     match index % (PALETTE.len() + 2) {
         6 => Paint::Ink,
@@ -63,9 +63,10 @@ pub(crate) fn rgb(paint: Paint) -> Rgb {
 
 /// The colour moved towards white: 0 keeps it, 1 is white.
 pub(crate) fn lightened(color: Rgb, lightness: f64) -> Rgb {
-    let fraction = match lightness.is_finite() {
-        true => lightness.clamp(0.0, 1.0),
-        false => 0.0,
+    let fraction = if lightness.is_finite() {
+        lightness.clamp(0.0, 1.0)
+    } else {
+        0.0
     };
     color.map(|c| {
         let c = f64::from(c);

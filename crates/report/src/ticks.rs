@@ -1,4 +1,4 @@
-//! Where an axis has ticks, and what stands beside them.
+//! The ticks of an axis and their labels.
 
 use crate::axis::Scale;
 use crate::axis_range::AxisRange;

@@ -1,10 +1,10 @@
-//! Numbers of a text as papers print them.
+//! Numbers in text, typeset as in papers.
 
 use crate::number::{exponent, fixed, power_of_ten, trimmed};
 
 /// Powers of ten that are written out: `0.00125`, and not `1.25 × 10⁻³`.
 const WRITTEN_OUT: std::ops::RangeInclusive<i32> = -3..=4;
-/// More digits before the point are no number in e-notation, but a hash.
+/// With more digits before the point, a text is a hash, not a number in e-notation.
 const MAX_WHOLE_DIGITS: usize = 6;
 
 /// The text with its numbers in e-notation set as in papers: `2.7770e-1` as `0.2777`, `1e-10` as `10⁻¹⁰` and `2.5e7` as
@@ -68,7 +68,7 @@ fn leading_number(text: &str) -> Option<(usize, String)> {
     let power: i32 = plain(&text[exponent_start..at]).parse().ok()?;
     let decimals = text[sign + whole..mantissa_end].len().saturating_sub(1);
     if mantissa == 0.0 || WRITTEN_OUT.contains(&(power + exponent(mantissa))) {
-        // Through decimal text: a product would leave digits that nobody wrote.
+        // By decimal text: a product would add digits.
         let value: f64 = plain(&text[..at]).parse().ok()?;
         let places = (decimals as i64 - i64::from(power)).clamp(0, 20) as usize;
         return Some((at, trimmed(&fixed(value, places)).to_owned()));

@@ -1,15 +1,15 @@
-//! Figures in another unit: of lengths, say, those that their reader draws in.
+//! Figures in another unit, such as the scene's unit of length.
 
 use crate::animation::Animation;
 use crate::axis::Axis;
 use crate::figure::{Chart, Figure, Mark, Panel};
 use crate::shape::{Drawing, Shape};
 
-/// A unit, another, and how many of the other make one.
+/// A unit, the other unit, and the conversion factor.
 type Change<'a> = (&'a str, &'a str, f64);
 
 impl Figure {
-    /// With every axis in `m`, `m/s` or `m/s²`, if `m` is `unit`, in `other`, `other/s` and `other/s²`, of which `factor` make one.
+    /// Converts every axis in `unit`, `unit/s` or `unit/s²` into `other`, `other/s` or `other/s²`; one `unit` is `factor` `other`.
     pub fn change_unit(&mut self, unit: &str, other: &str, factor: f64) {
         let change = (unit, other, factor);
         for panel in &mut self.panels {
@@ -31,7 +31,7 @@ impl Animation {
     }
 }
 
-/// By what values along an axis are multiplied.
+/// Converts an axis, and returns the factor of its values.
 fn change_axis(axis: &mut Axis, (unit, other, factor): Change<'_>) -> f64 {
     let rest = axis.unit.strip_prefix(unit).unwrap_or("no such unit");
     if !(rest.is_empty() || rest.starts_with('/')) {

@@ -1,4 +1,4 @@
-//! The words around a plot: panel title and axis labels, on as many lines as they need.
+//! The text around a plot: panel title and axis labels, on as many lines as they need.
 
 use crate::axis::Axis;
 use crate::canvas::{Canvas, TextStyle};
@@ -15,7 +15,7 @@ const LEADING: f64 = 1.25;
 const MIN_SHRINK: f64 = 0.85;
 /// Words that still do not fit are set as small as they must, but not below this share of that.
 const MIN_FIT: f64 = 0.3;
-/// What tick labels and margins need of a cell; text has the rest.
+/// The part of a cell that tick labels and margins need.
 const MARGINS: f64 = 190.0;
 
 /// Words broken into lines.
@@ -93,7 +93,7 @@ pub(crate) fn fitted_label(axis: &Axis, ticks: &Ticks, room: f64) -> WrappedText
     WrappedText::new(&label(axis, ticks), LABEL_SIZE, false, room)
 }
 
-/// What an axis shows: its label, what has been subtracted, power of ten and unit.
+/// The label of an axis with the subtracted value, the power of ten and the unit.
 fn label(axis: &Axis, ticks: &Ticks) -> String {
     let mut text = typeset(axis.label.trim());
     if let Some(offset) = &ticks.offset {

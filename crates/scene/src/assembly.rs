@@ -3,7 +3,7 @@
 use crate::bodies::Bodies;
 use crate::coordinates::ParsedActuator;
 use crate::diagnostics::Span;
-use crate::joints::{Joints, kind_name};
+use crate::joints::Joints;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::wording::shorten;
@@ -154,7 +154,7 @@ fn branch_hint(entry: &Entry<'_>, what: &str, joints: &Joints<'_>, k: usize) -> 
         .log()
         .choices("", "joints that can", hintable_joints(joints));
     let message = format!("joint `{}` takes no initial guess", shorten(entry.name));
-    let label = format!("its kind is {}", kind_name(kind));
+    let label = format!("its kind is {}", kind.name());
     let help = format!(
         "a prismatic joint or a slot takes an initial travel, a distance a direction; {help}"
     );

@@ -90,9 +90,9 @@ impl<'a> NamedActuator<'a> {
     pub(crate) fn coordinate_value(&self, value: Value<'_>, what: impl Display) -> Option<f64> {
         let si = value.coordinate(self.is_angle(), &what)?;
         if self.is_distance() && si <= 0.0 {
-            let message = format!("{what} is a length that is not above zero");
+            let message = format!("{what} is a length and must be greater than zero");
             let help = "two points that coincide have no line along which to drive them";
-            return value.reject(message, "expected a number above 0", help);
+            return value.reject(message, "expected a number greater than 0", help);
         }
         Some(si)
     }

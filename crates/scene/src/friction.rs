@@ -1,7 +1,7 @@
 //! Friction in joints: loads that depend on the joints' own reactions and velocities.
 
 use crate::diagnostics::Span;
-use crate::joints::{Joints, kind_name};
+use crate::joints::Joints;
 use crate::keys::{TableSchema, table};
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
@@ -108,7 +108,7 @@ fn read_friction<'a>(
             true => table("revolute-friction"),
             false => table("prismatic-friction"),
         },
-        joint_kind: kind_name(kind),
+        joint_kind: kind.name(),
         is_angular: is_revolute,
         has_pin: is_revolute,
         is_slot: matches!(kind, JointKind::Slot { .. }),
@@ -237,21 +237,13 @@ pub(crate) fn check_static_coefficient(
 
 /// Whether the friction of a joint is that of a pin, not of a guide; an error for a joint that cannot have friction.
 fn has_pin(entry: &Entry<'_>, kind: JointKind) -> Option<bool> {
-    match kind {
-        JointKind::Revolute => Some(true),
-        JointKind::Prismatic { .. } | JointKind::Slot { .. } => Some(false),
-        JointKind::Weld { .. }
-        | JointKind::Gear { .. }
-        | JointKind::Rack { .. }
-        | JointKind::Rolling { .. }
-        | JointKind::Distance { .. }
-        | JointKind::Coupling(_) => {
-            let message = format!("joint `{}` cannot have friction", shorten(entry.name));
-            let label = format!("its kind is {}", kind_name(kind));
-            let help = "revolute joints, prismatic joints and slots can have friction";
-            entry.reject(message, &label, help)
-        }
+    if kind.is_pin() || kind.travel_axis().is_some() {
+        return Some(kind.is_pin());
     }
+    let message = format!("joint `{}` cannot have friction", shorten(entry.name));
+    let label = format!("its kind is {}", kind.name());
+    let help = "revolute joints, prismatic joints and slots can have friction";
+    entry.reject(message, &label, help)
 }
 
 impl FrictionForm<'_> {

@@ -34,9 +34,12 @@ pub(crate) fn kind_among<'f, 'a>(
         let (kind, key) = (entry.written(), other.written());
         let message = format!("{} is of kind `{kind}` and has no `{key}`", fields.what);
         let label = format!("not for this kind of {thing}");
-        let help = match other.name == "axis" && table.contains_key("axes") {
-            true => "write `axes = [[0, 1, 0], [1, 0, 0]]`, one for each body",
-            false => "leave it out",
+        let help = match other.name {
+            "axis" if table.contains_key("axes") => {
+                "write `axes = [[0, 1, 0], [1, 0, 0]]`, one for each body"
+            }
+            "axes" if table.contains_key("axis") => "write `axis`, in the frame of the first body",
+            _ => "leave it out",
         };
         other.reject::<()>(message, &label, help);
     }

@@ -210,7 +210,11 @@ impl<'a> Value<'a> {
         let (good, wrong, expected) = match rule.sign {
             SignRule::Any => return Some(si),
             SignRule::NotNegative => (si >= 0.0, "is negative", "expected 0 or more"),
-            SignRule::Positive => (si > 0.0, "is not above zero", "expected a number above 0"),
+            SignRule::Positive => (
+                si > 0.0,
+                "must be greater than zero",
+                "expected a number greater than 0",
+            ),
             SignRule::NotZero => (si != 0.0, "is zero", "expected a number other than 0"),
         };
         match good {

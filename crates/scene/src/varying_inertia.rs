@@ -138,7 +138,7 @@ impl Curves {
         SampledCurve::Cubic(both.map(|(i, half)| [*i, 2.0 * half]).collect())
     }
 
-    /// Reports an inertia that is not above zero, and one that changes otherwise than half its slope says.
+    /// Reports an inertia of zero or less, and one that changes otherwise than half its slope says.
     fn check(
         &self,
         fields: &TableReader<'_>,
@@ -146,8 +146,12 @@ impl Curves {
         (inertia, half_slope, curve): (&[f64], Option<&[f64]>, &SampledCurve),
     ) -> Option<()> {
         if let Some(k) = inertia.iter().position(|&i| i <= 0.0) {
-            let message = format!("inertia {} of {} is not above zero", k + 1, fields.what);
-            return entry.reject(message, "this inertia", "a moment of inertia is above zero");
+            let message = format!(
+                "inertia {} of {} must be greater than zero",
+                k + 1,
+                fields.what
+            );
+            return entry.reject(message, "expected numbers greater than 0", "");
         }
         let Some(half_slope) = half_slope else {
             return Some(());
@@ -169,7 +173,7 @@ impl Curves {
         });
         let Some(k) = found else { return Some(()) };
         let message = format!(
-            "inertia and half-slope of {} contradict each other near {:.4} rad",
+            "inertia and half-slope of {} are inconsistent near {:.4} rad",
             fields.what, x[k]
         );
         let help = "half-slope is ½ dI/dθ, per rad: is its sign or its unit another one? Or are the angles too few?";

@@ -107,10 +107,10 @@ pub(crate) fn describe_center<const N: usize>(
     }
     let (center, unit) = lengths(scene, center);
     let center = center.join(", ");
-    format!(", its centre at the start at ({center}) {unit}")
+    format!(", with its centre of mass at ({center}) {unit} at the start")
 }
 
-/// The whole mass and its centre at the start, and the mass of each body.
+/// The total mass, the centre of mass at the start, and the mass of each body.
 fn describe_masses(scene: &PlaneScene, frames: Option<&[[f64; 3]]>, record: &mut Record) -> String {
     let ground = scene.mechanism.ground;
     let massive = scene.masses.iter().enumerate();

@@ -1,14 +1,14 @@
-//! Terms: the one place that knows the crate they come from.
+//! Terms. Only this module depends on the crate arael-sym.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// A term and its kinds, a named quantity, a number, functions, and what several terms share: each part with a new
-/// name, and what is left of the terms.
+/// Terms and their kinds, named quantities, numbers, functions, and common subexpressions: each with a new
+/// name, and the terms that remain.
 pub(crate) use arael_sym::{
     E as Term, Expr as Node, atan2, constant as number, cse as common_subexpressions, sqrt, symbol,
 };
 
-/// What is nothing.
+/// The term 0.
 pub(crate) fn zero() -> Term {
     number(0.0)
 }
@@ -25,12 +25,12 @@ pub(crate) fn square(term: &Term) -> Term {
     arael_sym::pow(term.clone(), 2.0)
 }
 
-/// A product; a factor of one or nothing leaves no trace.
+/// A product; factors of one and zero are simplified.
 pub(crate) fn times(a: &Term, b: &Term) -> Term {
     (a.clone() * b.clone()).simplify()
 }
 
-/// A sum; what is nothing leaves no trace.
+/// A sum without its zero terms.
 pub(crate) fn plus(a: &Term, b: &Term) -> Term {
     if is_zero(a) {
         return b.clone();
@@ -56,7 +56,7 @@ pub(crate) fn is_zero(term: &Term) -> bool {
     matches!(term.as_ref(), Node::Const(value) if *value == 0.0)
 }
 
-/// Whether a term is so short that a name for it would only hide it.
+/// Whether a term is so short that it needs no name.
 pub(crate) fn is_atomic(term: &Term) -> bool {
     match term.as_ref() {
         Node::Sym(_) | Node::Const(_) => true,
@@ -65,7 +65,7 @@ pub(crate) fn is_atomic(term: &Term) -> bool {
     }
 }
 
-/// What stands above and below, if a term is a quotient.
+/// Numerator and denominator, if a term is a quotient.
 pub(crate) fn quotient(term: &Term) -> Option<(Term, Term)> {
     match term.as_ref() {
         Node::Div(above, below) => Some((above.clone(), below.clone())),
@@ -77,7 +77,7 @@ pub(crate) fn quotient(term: &Term) -> Option<(Term, Term)> {
     }
 }
 
-/// A term in which names stand for what they are; squares lose the signs of what they are of.
+/// A term with names replaced by terms; squares lose the signs of their bases.
 pub(crate) fn substitute(term: &Term, replacements: &BTreeMap<String, Term>) -> Term {
     let mut value = term.clone();
     for name in names(term) {
@@ -100,7 +100,7 @@ pub(crate) fn names(term: &Term) -> BTreeSet<String> {
     term.free_vars()
 }
 
-/// The derivative of a term by everything in it that has a rate: Σ ∂term/∂x · rate of x.
+/// The derivative of a term by the chain rule: Σ ∂term/∂x · derivative of x, over all x with a derivative.
 pub(crate) fn derivative(term: &Term, derivatives: &BTreeMap<String, Term>) -> Term {
     let all = names(term).into_iter();
     let varying = all.filter(|name| derivatives.contains_key(name));
@@ -125,7 +125,7 @@ pub(crate) fn chain_rule(
     sum.simplify()
 }
 
-/// A term's value; not a number where a name in it has none.
+/// The value of a term; NaN if a name in it has no value.
 pub(crate) fn value(term: &Term, values: &HashMap<&str, f64>) -> f64 {
     term.eval(values).unwrap_or(f64::NAN)
 }

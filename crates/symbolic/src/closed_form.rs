@@ -9,16 +9,16 @@ use dwell_geometry::{BodyId, Mechanism, Plan, Reaction};
 use dwell_kinetostatics::Mass;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// What a part of the steps is about.
+/// The sections of a closed form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FormulaSection {
     /// Angles, travels and points.
     Positions,
     /// Their first derivatives by the coordinate.
     FirstDerivatives,
-    /// Their second ones.
+    /// Their second derivatives by the coordinate.
     SecondDerivatives,
-    /// Virtual displacements: their derivatives by the released coordinate.
+    /// Virtual displacements: the derivatives of the positions by the released coordinate.
     VirtualDisplacements,
     /// The results.
     Results,
@@ -31,7 +31,7 @@ pub struct ClosedForm {
     pub coordinate: Quantity,
     /// The numbers of the scene that occur in it.
     pub constants: Vec<Constant>,
-    /// What it gives: positions, then m and ½m′, then a and b of the reaction.
+    /// Its results: positions, then m and ½m′, then a and b of the reaction.
     pub quantities: Vec<Quantity>,
     /// The name of the reaction, if there is one.
     pub reaction: Option<String>,
@@ -46,7 +46,7 @@ pub struct Symbolic<'a> {
     masses: Vec<SymbolicMass>,
 }
 
-/// A body with inertia, by the names of its constants.
+/// A body with inertia, with the names of its constants.
 #[derive(Debug, Clone)]
 struct SymbolicMass {
     body: usize,
@@ -58,7 +58,7 @@ impl<'a> Symbolic<'a> {
     /// Closed forms of the positions of a mechanism, one mass for each body.
     ///
     /// # Errors
-    /// [`SymbolicError`] where it does not have one actuator, or a group is no dyad.
+    /// [`SymbolicError`] if it does not have exactly one actuator, or a group is no dyad.
     pub fn new(
         mechanism: &'a Mechanism,
         masses: &[Mass],
@@ -75,7 +75,7 @@ impl<'a> Symbolic<'a> {
             let symbols = &mut positions.symbols;
             let mut named = |letter, value: f64, unit, what: &str| {
                 let meaning = format!("{name}: {what}");
-                (value > 0.0).then(|| symbols.add_constant((letter, &[name]), value, unit, meaning))
+                (value > 0.0).then(|| symbols.add_constant(letter, &[name], value, unit, meaning))
             };
             inertial_bodies.push(SymbolicMass {
                 body: tree_joint.body,
@@ -90,12 +90,12 @@ impl<'a> Symbolic<'a> {
         })
     }
 
-    /// Positions, m and ½m′, and with a reaction its a and b: what q̈ and q̇² contribute to it
-    /// (Jordi, Zayas and Cardona 2008; a = m₁₂, b = ∂m₁₂/∂q − ½ ∂m₁₁/∂q₂, the second coordinate q₂ being
-    /// that of the released joint).
+    /// Positions, m and ½m′, and for a reaction its coefficients a and b of q̈ and q̇²
+    /// (Jordi, Zayas and Cardona 2008; a = m₁₂, b = ∂m₁₂/∂q − ½ ∂m₁₁/∂q₂, with the coordinate q₂
+    /// of the released joint).
     ///
     /// # Errors
-    /// [`SymbolicError::Reaction`] where the loads do not determine the reaction.
+    /// [`SymbolicError::Reaction`] if equilibrium does not determine the reaction.
     pub fn closed_form(&self, reaction: Option<Reaction>) -> Result<ClosedForm, SymbolicError> {
         let mut positions = self.positions.clone();
         let release = reaction.map(|r| positions.release(r)).transpose()?;
@@ -189,21 +189,21 @@ impl<'a> Symbolic<'a> {
 /// The derivatives of all steps.
 struct Derivatives<'a> {
     positions: &'a PositionFormulas<'a>,
-    /// Of steps and of their first derivatives.
+    /// By name: first derivatives of steps, and second ones of first derivatives.
     by_q: &'a BTreeMap<String, Term>,
     virtual_displacements: &'a BTreeMap<String, Term>,
     extra_rotation: Option<&'a [f64]>,
 }
 
 impl Derivatives<'_> {
-    /// First, second and virtual derivative of a term.
+    /// First and second derivative and virtual displacement of a term.
     fn of_term(&self, term: &Term) -> [Term; 3] {
         let first = derivative(term, self.by_q);
         let second = derivative(&first, self.by_q);
         [first, second, derivative(term, self.virtual_displacements)]
     }
 
-    /// The same of a body's angle, which a released couple rotates from its frame.
+    /// First and second derivative and virtual displacement of a body's angle; a released couple rotates the body from its frame.
     fn of_angle(&self, body: usize) -> [Term; 3] {
         let frame = self.positions.plan.frames().orientations[body].frame;
         let mut derivatives = self.of_term(&self.positions.angle(frame));
@@ -214,7 +214,7 @@ impl Derivatives<'_> {
 }
 
 impl ClosedForm {
-    /// Puts what is only a number or another name into the terms that it occurs in.
+    /// Replaces names of numbers and of other names by what they stand for.
     fn inline(&mut self) {
         let mut atomic: BTreeMap<String, Term> = BTreeMap::new();
         for (_, assignments) in &mut self.sections {
@@ -227,7 +227,7 @@ impl ClosedForm {
         }
     }
 
-    /// Leaves out what no quantity needs.
+    /// Removes steps that no quantity needs.
     fn prune(&mut self) {
         let quantities = self.quantities.iter();
         let mut needed: BTreeSet<String> = quantities.map(|q| q.code.clone()).collect();
@@ -251,14 +251,14 @@ impl ClosedForm {
         self.sections.iter().flat_map(|(_, steps)| steps)
     }
 
-    /// The quantities at a coordinate, rad or m, in their order. Where the mechanism cannot be closed
-    /// they are not numbers.
+    /// The values of the quantities at a coordinate, rad or m, in their order. NaN if the mechanism cannot be
+    /// assembled there.
     pub fn evaluate(&self, q: f64) -> Vec<f64> {
         self.perturbed(q, |_| 1.0)
     }
 
-    /// How far the quantities move when the coordinate and the constants are off by a unit of rounding, each
-    /// one way or the other: what no evaluation can know better.
+    /// The changes of the quantities when the coordinate and all constants change by one unit in the last place, in
+    /// either direction: a bound of the attainable accuracy.
     pub fn rounding_error(&self, q: f64) -> Vec<f64> {
         let value_at = self.evaluate(q);
         let mut largest = vec![0.0_f64; value_at.len()];

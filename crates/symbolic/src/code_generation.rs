@@ -6,11 +6,11 @@ use crate::format::{Language, OutputStyle, sign};
 use crate::symbol_table::Assignment;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Characters of LaTeX on one line: two or three of them are one in print.
+/// Characters of LaTeX on one line; about two or three give one printed character.
 const WIDTH: usize = 200;
 
 impl ClosedForm {
-    /// The steps of each part as the inside of an `aligned` environment.
+    /// The steps of each section as the contents of an `aligned` environment.
     pub fn latex(&self) -> Vec<(FormulaSection, String)> {
         let name = |code: &str| self.symbols.latex_names(code);
         let is_constant = |code: &str| self.constants.iter().any(|c| c.code == code);
@@ -36,16 +36,16 @@ impl ClosedForm {
         self.sections.iter().map(section).collect()
     }
 
-    /// A function of the coordinate in a language, that gives all quantities: what steps share is computed
-    /// once. `name` is its name, and `about` stands in the comment above it.
+    /// A function of the coordinate in a programming language that returns all quantities, with common subexpressions computed
+    /// once. `name` is its name, and `about` is part of the comment above it.
     //
-    // Long: every part of it in every language.
+    // Long, because it contains every part in every language.
     pub fn code(&self, language: Language, name: &str, about: &str) -> String {
         let style = OutputStyle::Code(language);
         let kind = camel(name);
         let (q, of) = (&self.coordinate.code, &self.coordinate);
         let of = format!("Of the {}, {}", of.meaning, of.unit);
-        // A title may hold anything: it must not end the comment that it stands in.
+        // A title may contain any text: it must not end the comment.
         let about = &about.replace(['\n', '\r'], " ").replace("*/", "* /");
         let mut text = match language {
             Language::Rust => format!(
@@ -108,12 +108,12 @@ impl ClosedForm {
         text + end
     }
 
-    /// Steps that are more than another name, in all parts.
+    /// Number of steps in all sections.
     pub fn assignment_count(&self) -> usize {
         self.assignments().filter(|s| !is_atomic(&s.value)).count()
     }
 
-    /// Names and terms in the order in which they can be computed, what is shared among them.
+    /// Names and terms in the order of computation, including common subexpressions.
     fn lines(&self) -> Vec<(String, Term)> {
         let values: Vec<Term> = self.assignments().map(|s| s.value.clone()).collect();
         let (shared_terms, reduced_terms) = common_subexpressions(&values);
@@ -130,7 +130,7 @@ impl ClosedForm {
     }
 }
 
-/// Writes down what is shared and a term needs, once.
+/// Emits the common subexpressions that a term needs, each once.
 fn emit_dependencies(
     term: &Term,
     shared_terms: &BTreeMap<String, Term>,

@@ -1,4 +1,4 @@
-//! Relations that determine one angle or travel: gears on fixed centres, racks, rolling discs.
+//! Couplings that determine one angle or travel: gears on fixed centres, racks, rolling discs.
 
 use crate::algebra::{Term, names, number, plus, scale, times, zero};
 use crate::error::SymbolicError;
@@ -8,7 +8,7 @@ use dwell_geometry::groups::Unknown;
 use dwell_geometry::lower::Owner;
 
 impl PositionFormulas<'_> {
-    /// A relation that determines one angle or travel.
+    /// Solves a coupling for one angle or travel.
     pub(crate) fn solve_coupling(
         &mut self,
         group: usize,
@@ -58,7 +58,7 @@ impl PositionFormulas<'_> {
         Ok(())
     }
 
-    /// A number of a relation as a constant; nothing and one need no name.
+    /// A coefficient of a coupling as a constant; zero and one need no name.
     fn coefficient(&mut self, owner: Owner, value: f64, unit: &'static str) -> Term {
         if value == 0.0 || value.abs() == 1.0 {
             return number(value);
@@ -77,7 +77,7 @@ impl PositionFormulas<'_> {
         scale(&term, value.signum())
     }
 
-    /// Whether an angle is a linear function of the coordinate and of travels: no turn is lost.
+    /// Whether an angle is a linear function of the coordinate and of travels, so that it counts revolutions.
     fn counts_revolutions(&self, frame: usize) -> bool {
         let mut wanted = names(&self.angle(frame));
         for step in self.symbols.assignments.iter().rev() {

@@ -60,7 +60,7 @@ impl PositionFormulas<'_> {
         pair_name(self.mechanism, self.plan, self.loops[closure].loop_joint)
     }
 
-    /// The steps of the part of a loop that is known before its group.
+    /// The steps of the part of a loop that earlier groups determine.
     fn known_part(&mut self, group: usize, closure: usize, but: &[usize]) -> Vector {
         let pick = |own: &Self, frame| !own.in_group(group, frame);
         let known = self.loop_part(closure, pick, Self::angle, but);
@@ -74,15 +74,15 @@ impl PositionFormulas<'_> {
         self.loop_part_at_assembly(closure, |formulas, f| !formulas.in_group(group, f), but)
     }
 
-    /// ±√ of a term, the branch of the group as a constant.
+    /// ±√ of a term, with the branch of the group as a constant sign.
     fn signed_root(&mut self, letter: &str, joint: &str, radicand: &Term, branch: f64) -> Term {
         let sign = if branch < 0.0 { -1.0 } else { 1.0 };
         let meaning = format!("branch of the dyad that {joint} closes");
         let symbols = &mut self.symbols;
-        let sign = symbols.add_constant(("sigma", &[joint]), sign, "", meaning);
+        let sign = symbols.add_constant("sigma", &[joint], sign, "", meaning);
         let code = symbols.new_name(letter, &[joint]);
         let radicand = radicand.simplify();
-        // Of h² = R the derivative is R′/2h.
+        // From h² = R: h′ = R′/2h.
         let half = |name: &String| {
             let partial = radicand.diff(name.as_str()) / number(2.0);
             (name.clone(), partial.simplify())
@@ -95,7 +95,7 @@ impl PositionFormulas<'_> {
         symbols.assign_with_partials(code, sign * sqrt(radicand.clone()), partials)
     }
 
-    /// Two classes whose vectors close a triangle with the known part of the loop.
+    /// Closes a triangle of the vectors of two classes and the known part of the loop.
     fn triangle(&mut self, group: usize, classes: [usize; 2], closure: usize) {
         let joint = self.loop_joint_name(closure);
         let d = self.known_part(group, closure, &[]);
@@ -119,9 +119,9 @@ impl PositionFormulas<'_> {
         self.orient_class(classes[1], &rest, &two);
     }
 
-    /// A class turns and a slide travels until a loop closes.
+    /// Closes a loop by the rotation of a class and the travel of a slide.
     //
-    // Long: the slide may turn with the class or not; both cases begin with the same known part.
+    // Long, because the slide may or may not rotate with the class, and both cases start with the same known part.
     fn line_circle(&mut self, group: usize, class: usize, slide: usize, closure: usize) {
         let joint = self.loop_joint_name(closure);
         let but = [slide];
@@ -145,7 +145,7 @@ impl PositionFormulas<'_> {
             let travel = self.assign_travel(slide, &(signed_root - dot(&w, &u)));
             let reached = [0, 1].map(|i| plus(&w[i], &times(&u[i], &travel)));
             let mut polar = if w.iter().all(is_zero) && is_zero(&u[1]) {
-                // The slide is the whole vector: its travel's sign is the branch.
+                // The vector is the slide itself: the sign of its travel is the branch.
                 Polar {
                     square: distance,
                     angle: zero(),
@@ -155,7 +155,7 @@ impl PositionFormulas<'_> {
             } else {
                 self.varying_polar(closure, self.plan.class_frame(class), &reached)
             };
-            // What it reaches is the known part, reversed.
+            // Its target is the reversed known part.
             polar.sign = -polar.sign;
             self.orient_class(class, &d, &polar);
         } else {
@@ -173,7 +173,7 @@ impl PositionFormulas<'_> {
         }
     }
 
-    /// Notes the normal distance and the travel of a loop that closes along its normal only.
+    /// Stores the normal distance and the travel of a loop that closes along its normal only.
     fn close_along_normal(&mut self, closure: usize, normal: Term, travel: &Term) {
         let joint = self.loop_joint_name(closure);
         let travel = self.symbols.assign("s", &[&joint], travel);
@@ -192,7 +192,7 @@ impl PositionFormulas<'_> {
         (vector, local.rotate(self.rotation[frame]))
     }
 
-    /// A class turns until a point of its loop lies on a line.
+    /// Closes a loop by a rotation that brings a point onto a line.
     fn point_on_line(&mut self, group: usize, class: usize, closure: usize) {
         let joint = self.loop_joint_name(closure);
         let (_, frame, _) = self.loops[closure].axis.unwrap_or((0, 0, Vec2::IDENTITY));
@@ -222,7 +222,7 @@ impl PositionFormulas<'_> {
         self.orient_class(class, &r, &polar);
     }
 
-    /// A line turns with its class until it passes through a point.
+    /// Closes a loop by a rotation of a line until it passes through a point.
     fn guided_point(&mut self, group: usize, class: usize, closure: usize, d: &Vector) {
         let joint = self.loop_joint_name(closure);
         let class_root = self.plan.class_frame(class);
@@ -262,7 +262,7 @@ impl PositionFormulas<'_> {
         self.angles[class_root] = Some(angle);
     }
 
-    /// The angle of a line in its class, with its slopes; none where it is the class's x axis.
+    /// The angle of a line in its class with its derivatives; `None` if it is the x axis of the class.
     fn line_angle(&mut self, closure: usize) -> Option<(Term, Vec<(String, Term)>)> {
         let (_, frame, local) = self.loops[closure].axis?;
         let relative_angle = self.relative_angle(frame);
@@ -280,7 +280,7 @@ impl PositionFormulas<'_> {
         Some((plus(&constant_angle, &relative_angle), partials))
     }
 
-    /// A slide travels until a point lies on a line.
+    /// Closes a loop by a travel that brings a point onto a line.
     fn slide_to_line(&mut self, group: usize, slide: usize, closure: usize) {
         let joint = self.loop_joint_name(closure);
         let d = self.known_part(group, closure, &[slide]);
@@ -294,7 +294,7 @@ impl PositionFormulas<'_> {
         self.close_along_normal(closure, offset, &line_travel);
     }
 
-    /// Two slides travel until a loop closes.
+    /// Closes a loop by the travels of two slides.
     fn two_slides(&mut self, group: usize, slides: [usize; 2], closure: usize) {
         let d = self.known_part(group, closure, &slides);
         let [one, two] = slides.map(|s| self.slide_direction(closure, s));

@@ -45,9 +45,10 @@ impl OutputStyle<'_> {
         }
         let only_one = found.len() == 1;
         let text = |(minus, term): (bool, Term)| {
-            let precedence = match only_one && !minus {
-                true => Precedence::Lowest,
-                false => Precedence::Product,
+            let precedence = if only_one && !minus {
+                Precedence::Lowest
+            } else {
+                Precedence::Product
             };
             (minus, self.single(&term, precedence))
         };
@@ -67,7 +68,7 @@ impl OutputStyle<'_> {
         self.bracketed(text, precedence != Precedence::Lowest)
     }
 
-    /// A text, in brackets if it needs them.
+    /// A text, in brackets if `needed`.
     fn bracketed(&self, text: String, needed: bool) -> String {
         match self {
             _ if !needed => text,
@@ -76,7 +77,7 @@ impl OutputStyle<'_> {
         }
     }
 
-    /// A term that is no sum and has no sign.
+    /// A term without sign that is not a sum.
     fn single(&self, term: &Term, precedence: Precedence) -> String {
         match term.as_ref() {
             Node::Mul(..) | Node::Div(..) => self.product(term, precedence),
@@ -129,7 +130,7 @@ impl OutputStyle<'_> {
         self.bracketed(text, precedence > binds_tighter)
     }
 
-    /// A factor of one half is a denominator of two.
+    /// Turns a factor of one half into a denominator of two.
     fn halves(&self, above: &mut Vec<Term>, below: &mut Vec<Term>) {
         above.retain(|term| {
             let Node::Const(value) = term.as_ref() else {
@@ -150,7 +151,7 @@ impl OutputStyle<'_> {
         match (self, whole) {
             (Self::Latex(..), _) => {
                 let exponent = self.write(exponent, Precedence::Lowest);
-                // A function's power stands at its name, a derivative's outside brackets.
+                // The power of a function is written at its name, that of a derivative outside brackets.
                 match base.as_ref() {
                     Node::Cos(angle) if whole == Some(2) => {
                         format!("\\cos^2 {}", self.write(angle, Precedence::Highest))
@@ -165,7 +166,7 @@ impl OutputStyle<'_> {
                 }
             }
             (Self::Code(Language::Rust), Some(n)) => {
-                // A literal has no type of its own before a method is called on it.
+                // A literal needs a type before a method call.
                 format!("{tight}.powi({n})")
             }
             (Self::Code(Language::C), Some(2)) if matches!(base.as_ref(), Node::Sym(_)) => {
@@ -190,7 +191,7 @@ impl OutputStyle<'_> {
         match term.as_ref() {
             Node::Sym(name) => match self {
                 Self::Latex(names, _) => names(name),
-                // What terms share is named by the algebra.
+                // Common subexpressions are named by the algebra.
                 Self::Code(_) => name.replace("__x", "t"),
             },
             Node::Const(value) => match self {
@@ -206,7 +207,7 @@ impl OutputStyle<'_> {
             Node::Sin(angle) => self.function("sin", angle, None),
             Node::Sqrt(inner) => self.function("sqrt", inner, None),
             Node::Atan2(y, x) => self.function("atan2", y, Some(x)),
-            // The closed forms hold nothing else.
+            // Closed forms contain no other kinds.
             _ => format!("{term}"),
         }
     }
@@ -239,13 +240,13 @@ pub(crate) fn sign(k: usize, minus: bool) -> &'static str {
     }
 }
 
-/// The number that a simple fraction is one over.
+/// The denominator of a fraction 1/n.
 fn inverse(value: f64) -> Option<f64> {
     let inverse = (1.0 / value).round();
     (inverse > 1.0 && inverse < 10.0 && inverse * value == 1.0).then_some(inverse)
 }
 
-/// The summands of a term, without their signs; `true` for what is taken away.
+/// The summands of a term without their signs; `true` for subtracted ones.
 fn summands(term: &Term, minus: bool, found: &mut Vec<(bool, Term)>) {
     match term.as_ref() {
         Node::Add(a, b) => {
@@ -319,7 +320,7 @@ fn factors(term: &Term, above: &mut Vec<Term>, below: &mut Vec<Term>) {
     }
 }
 
-/// Numbers, constants, variables, functions and sums: in this order they stand in a product.
+/// The order of factors in a product: numbers, constants, variables, functions, sums.
 fn factor_order(term: &Term, constant: &dyn Fn(&str) -> bool) -> u8 {
     match term.as_ref() {
         Node::Const(_) => 0,

@@ -1,7 +1,7 @@
 //! Closed forms of mechanisms made of dyads: positions, the generalised inertia m(q), ½m′(q), and the two
 //! coefficients of a reaction, as named assignments that can be read, differentiated, evaluated and printed.
-//! Derivatives are taken of the symbols and a reaction's coefficients from the joint released as a second coordinate,
-//! without the velocities, accelerations and forces of the other crates: so the values check the reduced model.
+//! Derivatives are symbolic, and the coefficients of a reaction follow from the joint released as a second coordinate,
+//! without the velocities, accelerations and forces of the other crates; the values therefore check the reduced model.
 //!
 //! ```
 //! use dwell_geometry::{Actuator, AssemblyConfiguration, Body, Joint, Mechanism, Plan, Vec2, vec2};

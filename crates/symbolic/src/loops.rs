@@ -1,5 +1,5 @@
-//! How a loop is composed of link vectors: found anew, body by body, so that each piece can be turned or
-//! shifted by itself when a joint is released.
+//! Loops as sums of link vectors, derived independently of the plan, body by body, so that each vector can be rotated or
+//! shifted when a joint is released.
 
 use crate::algebra::Term;
 use dwell_geometry::frames::Frames;
@@ -11,41 +11,41 @@ use dwell_geometry::{Mechanism, Plan, Vec2, vec2};
 pub(crate) struct LinkVector {
     pub(crate) body: usize,
     pub(crate) frame: usize,
-    /// In the frame, m; in the direction in which the loop passes it.
+    /// In the frame, m, in the direction of the loop.
     pub(crate) local: Vec2,
-    /// From which joint to which.
+    /// The joints at its beginning and its end.
     pub(crate) joints: [String; 2],
 }
 
-/// A travel that a loop passes.
+/// A travel in a loop.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SlideTerm {
     pub(crate) slide: usize,
-    /// The first body of its pair, which holds its direction.
+    /// The first body of its pair, in which its direction is fixed.
     pub(crate) body: usize,
     pub(crate) frame: usize,
-    /// The direction along which it counts, in the frame.
+    /// The direction of positive travel, in the frame.
     pub(crate) local: Vec2,
 }
 
-/// A loop: P₂ − P₁ of the pair that closes it, through the tree.
+/// A loop: P₂ − P₁ of its loop joint, through the tree.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct LoopEquation {
     pub(crate) loop_joint: usize,
     pub(crate) link_vectors: Vec<LinkVector>,
     pub(crate) slide_terms: Vec<SlideTerm>,
-    /// The pairs of the tree that it passes, each with the sign of a shift of its second point.
+    /// The tree joints in the loop, each with the sign of a shift of its second point.
     pub(crate) tree_pairs: Vec<(usize, f64)>,
-    /// Where only the normal part must vanish: the axis, with its body and frame.
+    /// If only the normal component must be zero: the axis, with its body and frame.
     pub(crate) axis: Option<(usize, usize, Vec2)>,
-    /// The steps of its part that is known before its group; a released joint shifts them.
+    /// The steps of the part that earlier groups determine; a released joint shifts them.
     pub(crate) known_part: Option<[Term; 2]>,
-    /// Where it closes along a normal only: the step of the normal distance that is left for what turns or
-    /// travels, and the travel along the axis. A released joint shifts them, too.
+    /// If it closes along a normal only: the step of the remaining normal distance, and the travel along the axis. A released
+    /// joint shifts them, too.
     pub(crate) normal_distance: Option<(Term, Term)>,
 }
 
-/// Pieces shorter than this part of the coordinates that they are differences of are nothing.
+/// Differences below this fraction of the coordinates are rounding errors.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// The vector between two points of a body, in its frame.
@@ -54,27 +54,27 @@ pub(crate) fn vector_between(frames: &Frames, body: usize, from: Vec2, to: Vec2)
     rotated_constant(difference, frames.orientations[body].offset)
 }
 
-/// A vector whose components are nothing where they are rounding of terms of a size.
+/// A vector with components set to zero if they are rounding errors of terms of a given size.
 pub(crate) fn without_rounding(vector: Vec2, terms: f64) -> Vec2 {
     let rounding = ROUNDING * terms;
     let clean = |d: f64| if d.abs() <= rounding { 0.0 } else { d };
     vec2(clean(vector.x), clean(vector.y))
 }
 
-/// A vector with its sign, so that the same vector reversed is the same constant: it points along x, or y.
+/// A vector oriented along +x (or +y), and its sign, so that a vector and its reverse share a constant.
 pub(crate) fn forward(local: Vec2) -> (Vec2, f64) {
     let back = local.x < 0.0 || (local.x == 0.0 && local.y < 0.0);
     let sign = if back { -1.0 } else { 1.0 };
     (local * sign + Vec2::ZERO, sign)
 }
 
-/// A vector by a constant rotation; what a rotation by quarter turns leaves of a component is
-/// nothing.
+/// A vector rotated by a constant rotation; rounding errors of rotations by multiples of 90° are set to
+/// zero.
 pub(crate) fn rotated_constant(vector: Vec2, by: Vec2) -> Vec2 {
     without_rounding(vector.rotate(by), vector.norm())
 }
 
-/// The name of the joint or actuator that a kinematic pair comes from.
+/// The name of the joint or actuator of a kinematic pair.
 pub(crate) fn pair_name(mechanism: &Mechanism, plan: &Plan, pair: usize) -> String {
     owner_name(mechanism, plan.pairs()[pair].owner)
 }
@@ -109,7 +109,7 @@ impl LoopEquation {
             };
             let joint_origin = point_on(tree_joint.pair, body);
             let names = [tree_joint.pair, reached].map(|b| pair_name(mechanism, plan, b));
-            loop_equation.add_link_vector(frames, body, (joint_origin, point), sign, names);
+            loop_equation.add_link_vector(frames, body, [joint_origin, point], sign, names);
             let is_first = plan.pairs()[tree_joint.pair].bodies[1] != body;
             let pair_sign = if is_first { -sign } else { sign };
             loop_equation.tree_pairs.push((tree_joint.pair, pair_sign));
@@ -125,14 +125,14 @@ impl LoopEquation {
             ends[which] = (parent, point_on(pair, parent), pair);
         }
         let names = [ends[0].2, ends[1].2].map(|b| pair_name(mechanism, plan, b));
-        loop_equation.add_link_vector(frames, ends[0].0, (ends[0].1, ends[1].1), 1.0, names);
+        loop_equation.add_link_vector(frames, ends[0].0, [ends[0].1, ends[1].1], 1.0, names);
         let vectors = &mut loop_equation.link_vectors;
         vectors.retain(|vector| vector.local != Vec2::ZERO);
         if let PairKind::Prismatic { axes, .. } = pair.kind {
             let body = pair.bodies[0];
             let orientation = frames.orientations[body];
             let local = rotated_constant(axes[0], orientation.offset);
-            // The slides of loop joints are those whose travel is a coordinate.
+            // A loop joint has a slide only if its travel is a coordinate.
             match tree.slide_pairs.iter().position(|&b| b == loop_joint) {
                 Some(slide) => loop_equation.slide_terms.push(SlideTerm {
                     slide,
@@ -150,7 +150,7 @@ impl LoopEquation {
         &mut self,
         frames: &Frames,
         body: usize,
-        (from, to): (Vec2, Vec2),
+        [from, to]: [Vec2; 2],
         sign: f64,
         joints: [String; 2],
     ) {

@@ -1,12 +1,12 @@
-//! Vectors that turn with an orientation class, by squared length and angle.
+//! Vectors that rotate with an orientation class, in polar form: squared length and angle.
 
 use crate::algebra::{Node, Term, atan2, is_zero, number, plus, scale, square};
 use crate::loops::forward;
 use crate::positions::{PositionFormulas, Vector, square_norm};
 use crate::symbol_table::PartialDerivatives;
 
-/// A vector that turns with a class: its squared length, and its angle in the class, rad, less that of
-/// `sign` times it.
+/// A vector that rotates with a class: its squared length, and the angle of `sign` times it in the class,
+/// rad.
 pub(crate) struct Polar {
     pub(crate) square: Term,
     pub(crate) angle: Term,
@@ -16,7 +16,7 @@ pub(crate) struct Polar {
 }
 
 impl PositionFormulas<'_> {
-    /// What a class has of a loop.
+    /// The part of a loop that rotates with a class.
     pub(crate) fn polar(&mut self, closure: usize, class: usize, but: &[usize]) -> Polar {
         let class_root = self.plan.class_frame(class);
         let part = self.class_part(closure, class, but);
@@ -65,7 +65,7 @@ impl PositionFormulas<'_> {
         }
     }
 
-    /// Turns a class until its vector is the one in the steps `to`.
+    /// Determines the angle of a class from the vector `to`, which its vector must equal.
     pub(crate) fn orient_class(&mut self, class: usize, to: &Vector, polar: &Polar) {
         let class_root = self.plan.class_frame(class);
         let name = self.frame_name(class_root);
@@ -84,7 +84,7 @@ impl PositionFormulas<'_> {
     }
 }
 
-/// The slopes of an angle by the coordinates of what it points along, which are steps.
+/// The partial derivatives of an angle by the components of its direction, which are steps.
 pub(crate) fn angle_partials(to: &Vector, square: &Term) -> PartialDerivatives {
     PartialDerivatives {
         denominator: square.clone(),

@@ -1,5 +1,5 @@
-//! Positions as functions of the coordinate: the groups in their order, each a few named steps, then
-//! the points that carry the bodies and their centres of mass.
+//! Positions as functions of the coordinate: the groups in their order, each in a few named steps, then
+//! the joint origins of the bodies and their centres of mass.
 
 use crate::algebra::{Term, cos, is_zero, number, plus, scale, sin, square, symbol, times, zero};
 use crate::error::SymbolicError;
@@ -27,20 +27,20 @@ pub(crate) struct PositionFormulas<'a> {
     /// The coordinate.
     pub(crate) q: Term,
     pub(crate) loops: Vec<LoopEquation>,
-    /// By relation: the step that solves it, and by what the relation grows with it.
+    /// By coupling: the step that it determines, and the derivative of the coupling by it.
     pub(crate) solved_couplings: Vec<Option<(Term, Term)>>,
-    /// Numbers of relations: their size, whose they are, their names.
+    /// Coefficients of couplings: value, owner, name.
     pub(crate) coefficients: Vec<(f64, String, Term)>,
-    /// By body: the steps of its root; none for the ground.
+    /// By body: the steps of its joint origin; `None` for the ground.
     pub(crate) joint_origins: Vec<Option<Vector>>,
-    /// By body with mass: the steps of its centre.
+    /// By body with mass: the steps of its centre of mass.
     pub(crate) mass_centres: Vec<Option<Vector>>,
-    /// What was found of angles and travels: by frame, and by slide.
+    /// The known angles by frame, and travels by slide.
     pub(crate) angles: Vec<Option<Term>>,
     pub(crate) travels: Vec<Option<Term>>,
     vectors: HashMap<(usize, u64, u64), Vector>,
     constant_count: usize,
-    /// The start, in numbers: which branch it is.
+    /// The start in numbers, which selects the branch.
     pub(crate) rotation: Vec<Vec2>,
     pub(crate) slide_travel: Vec<f64>,
 }
@@ -58,9 +58,10 @@ impl<'a> PositionFormulas<'a> {
         plan.positions(plan.assembly_coordinates(), &mut pose)?;
         let mut symbols = SymbolTable::default();
         let name = actuator.name.as_str();
-        let q = match is_greek(name) {
-            true => symbols.new_name(name, &[]),
-            false => symbols.new_name("q", &[name]),
+        let q = if is_greek(name) {
+            symbols.new_name(name, &[])
+        } else {
+            symbols.new_name("q", &[name])
         };
         let bodies = plan.frames().orientations.len();
         let mut positions = Self {
@@ -127,7 +128,7 @@ impl<'a> PositionFormulas<'a> {
         self.plan.frames().frames[frame].orientation_class
     }
 
-    /// What a frame is called: by the first body that turns with it, or the joint that added it.
+    /// The name of a frame: that of the first body that rotates with it, or of the joint that added it.
     pub(crate) fn frame_name(&self, frame: usize) -> String {
         let attitudes = &self.plan.frames().orientations;
         let named = self.mechanism.bodies.len();
@@ -147,7 +148,7 @@ impl<'a> PositionFormulas<'a> {
         pair.map_or_else(String::new, |b| pair_name(self.mechanism, self.plan, b))
     }
 
-    /// What a piece of a loop is.
+    /// The meaning of a link vector, in words.
     pub(crate) fn meaning(&self, link_vector: &LinkVector) -> String {
         let [from, to] = &link_vector.joints;
         format!(
@@ -172,10 +173,10 @@ impl<'a> PositionFormulas<'a> {
     ) -> Term {
         let k = self.next_number();
         let symbols = &mut self.symbols;
-        symbols.add_constant((letter, &[&k]), value, unit, meaning)
+        symbols.add_constant(letter, &[&k], value, unit, meaning)
     }
 
-    /// The vector of a key, which is made only once.
+    /// The vector of a key, created once.
     fn cached_vector(
         &mut self,
         key: (usize, u64, u64),
@@ -205,7 +206,7 @@ impl<'a> PositionFormulas<'a> {
         let mut named = |letter, value, what| {
             let meaning = format!("{meaning}{what}");
             let symbols = &mut self.symbols;
-            symbols.add_constant((letter, &[&k]), value, "m", meaning)
+            symbols.add_constant(letter, &[&k], value, "m", meaning)
         };
         match (local.x == 0.0, local.y == 0.0) {
             (_, true) => [named("l", local.x, ""), zero()],
@@ -223,7 +224,7 @@ impl<'a> PositionFormulas<'a> {
             return [number(local.x), number(local.y)];
         }
         let (forth, sign) = forward(local);
-        // Directions and vectors of one metre are different things: the sign bit keeps them apart.
+        // The sign bit distinguishes directions from vectors of one metre.
         let key = (frame, forth.x.to_bits(), !forth.y.to_bits());
         let found = self.cached_vector(key, |own| {
             let meaning = format!("{}: {meaning}, from its x axis", own.frame_name(frame));
@@ -239,12 +240,12 @@ impl<'a> PositionFormulas<'a> {
         rotate(&along, &self.angle(frame))
     }
 
-    /// The travel of a slide, so far as it is known.
+    /// The known travel of a slide.
     pub(crate) fn travel(&self, slide: usize) -> Term {
         self.travels[slide].clone().unwrap_or_else(zero)
     }
 
-    /// Writes down the travel of a slide that has been found.
+    /// Adds a step for the travel of a slide.
     pub(crate) fn assign_travel(&mut self, slide: usize, value: &Term) -> Term {
         let pair = self.plan.tree().slide_pairs[slide];
         let name = pair_name(self.mechanism, self.plan, pair);
@@ -253,13 +254,13 @@ impl<'a> PositionFormulas<'a> {
         travel
     }
 
-    /// A loop's part that rotates with a class, from its class frame, without the travel of the slides `but`.
+    /// The part of a loop that rotates with a class, in the class frame, without the travel of the slides `but`.
     pub(crate) fn class_part(&mut self, closure: usize, class: usize, but: &[usize]) -> Vector {
         let pick = |own: &Self, frame| own.orientation_class(frame) == class;
         self.loop_part(closure, pick, Self::relative_angle, but)
     }
 
-    /// The same in numbers, at the start.
+    /// The numerical value of this part at the start.
     pub(crate) fn class_part_at_assembly(
         &self,
         closure: usize,
@@ -270,7 +271,7 @@ impl<'a> PositionFormulas<'a> {
         self.loop_part_at_assembly(closure, pick, but)
     }
 
-    /// A loop's part on the frames that are picked, turned by `angle`, without the travel of the slides
+    /// The part of a loop on selected frames, rotated by `angle`, without the travel of the slides
     /// `but`.
     pub(crate) fn loop_part(
         &mut self,
@@ -315,7 +316,7 @@ impl<'a> PositionFormulas<'a> {
         sum
     }
 
-    /// The same in numbers, at the start.
+    /// The numerical value of this part at the start.
     pub(crate) fn loop_part_at_assembly(
         &self,
         closure: usize,
@@ -336,7 +337,7 @@ impl<'a> PositionFormulas<'a> {
         sum
     }
 
-    /// The constant vector of a loop on the first frame of a class, where that is all it has of it.
+    /// The constant vector of a loop on the first frame of a class, if the class has no other part of the loop.
     pub(crate) fn constant_loop_part(
         &self,
         closure: usize,
@@ -374,8 +375,9 @@ impl<'a> PositionFormulas<'a> {
             };
             let local = vector_between(frames, parent, from, point);
             let reached = tree.joint_of_body[parent].map(|p| tree.joints[p].pair);
-            let start = reached.map(|b| pair_name(self.mechanism, self.plan, b));
-            let start = start.unwrap_or_else(|| "the origin".to_owned());
+            let start = reached
+                .map(|b| pair_name(self.mechanism, self.plan, b))
+                .unwrap_or_else(|| "the origin".to_owned());
             let name = self.body_or_joint_name(parent);
             let arm = self.frame_vector(frame, local, &format!("{name}: from {start} to {joint}"));
             let mut joint_origin = rotate(&arm, &self.angle(frame));
@@ -434,7 +436,7 @@ impl<'a> PositionFormulas<'a> {
         }
     }
 
-    /// Whether a frame turns with one of a group's unknowns.
+    /// Whether a frame rotates with an unknown of a group.
     pub(crate) fn in_group(&self, group: usize, frame: usize) -> bool {
         let class = self.orientation_class(frame);
         let unknowns = &self.plan.group(group).unknowns;
@@ -455,7 +457,7 @@ pub(crate) fn add(a: &Vector, b: &Vector) -> Vector {
     [plus(&a[0], &b[0]), plus(&a[1], &b[1])]
 }
 
-/// A vector by a rotation.
+/// A rotated vector.
 pub(crate) fn rotate([x, y]: &Vector, angle: &Term) -> Vector {
     if is_zero(angle) {
         return [x.clone(), y.clone()];
@@ -467,7 +469,7 @@ pub(crate) fn rotate([x, y]: &Vector, angle: &Term) -> Vector {
     ]
 }
 
-/// A vector turned by +90°.
+/// A vector rotated by +90°.
 pub(crate) fn perp([x, y]: &Vector) -> Vector {
     [(-y.clone()).simplify(), x.clone()]
 }

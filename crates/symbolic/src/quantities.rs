@@ -1,4 +1,4 @@
-//! The quantities that closed forms give, with their names, units and meanings.
+//! The results of closed forms, with their names, units and meanings.
 
 use crate::algebra::{self, Term};
 use crate::loops::pair_name;
@@ -7,7 +7,7 @@ use crate::symbol_table::{Assignment, SymbolTable};
 use dwell_geometry::{BodyId, Reaction};
 use std::collections::BTreeMap;
 
-/// A quantity that the forms give.
+/// A result of a closed form.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quantity {
     /// Its name in code.
@@ -16,13 +16,13 @@ pub struct Quantity {
     pub latex: String,
     /// Its unit.
     pub unit: &'static str,
-    /// What it is.
+    /// Its meaning, in words.
     pub meaning: String,
-    /// What it is of, in terms of the plan.
+    /// Its origin in the plan.
     pub origin: QuantityOrigin,
 }
 
-/// What a quantity is of.
+/// The origin of a quantity in the plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum QuantityOrigin {
     /// The angle of a frame.
@@ -31,13 +31,13 @@ pub enum QuantityOrigin {
     Slide(usize),
     /// The travel of a loop that closes along its normal only.
     Closure(usize),
-    /// The point that carries a body: x or y, 0 or 1.
+    /// The joint origin of a body: its index, and 0 for x or 1 for y.
     JointOrigin(usize, usize),
-    /// The centre of mass of a body: x or y, 0 or 1.
+    /// The centre of mass of a body: its index, and 0 for x or 1 for y.
     MassCentre(usize, usize),
     /// The coordinate.
     Coordinate,
-    /// The inertia, or the reaction.
+    /// m, ½m′, a or b.
     Result,
 }
 
@@ -151,7 +151,7 @@ impl SymbolTable {
     }
 }
 
-/// The name that a plain derivative is.
+/// The name of a term that is only a name.
 fn symbol_name(term: &Term) -> Option<String> {
     match term.as_ref() {
         algebra::Node::Sym(name) => Some(name.clone()),

@@ -1,8 +1,8 @@
-//! A joint that is released along one component, and how that shifts each step.
+//! A joint released along one component, and the resulting shift of each step.
 //!
 //! A second coordinate shifts the joint's second body along the component by one unit. To first order,
-//! which is all that a and b take of it, the known part of each loop is shifted by a sum over its pieces, and
-//! the points of the bodies are shifted by what carries them.
+//! which suffices for a and b, the known part of each loop is shifted by a sum over its vectors, and
+//! the points of the bodies are shifted with the bodies that carry them.
 
 use crate::algebra::{Term, number, scale, times, zero};
 use crate::error::SymbolicError;
@@ -22,7 +22,7 @@ enum Released {
     Coupling(usize),
 }
 
-/// A released joint: what it adds to each step, and to each body's angle beside its frame's.
+/// A released joint: its shift of each step, and the rotation of each body relative to its frame.
 #[derive(Debug, Clone)]
 pub(crate) struct Release {
     released: Released,
@@ -37,7 +37,7 @@ impl Release {
 }
 
 impl PositionFormulas<'_> {
-    /// Releases one component of a joint. Further constants may be named, and no steps.
+    /// Releases one component of a joint. It may add constants, but no steps.
     pub(crate) fn release(&mut self, reaction: Reaction) -> Result<Release, SymbolicError> {
         let all = self.mechanism.reactions();
         let at = all.iter().position(|&r| r == reaction);
@@ -161,7 +161,7 @@ impl PositionFormulas<'_> {
             let parent_rotation = release.extra_rotation[tree_joint.parent];
             let first = release.extra_rotation[bodies[0]];
             if parent_rotation != 0.0 || first != 0.0 {
-                // From the parent's root, and the travel along the first body's axis.
+                // From the parent's joint origin, plus the travel along the first body's axis.
                 let mut whole = joint_origin.clone();
                 if let Some(parent) = &self.joint_origins[tree_joint.parent] {
                     whole = add(&whole, &parent.clone().map(|c| scale(&c, -1.0)));

@@ -1,4 +1,4 @@
-//! Constants and named steps, one below the other, as on a sheet of paper.
+//! Constants and named assignments (steps), in the order of computation.
 
 use crate::algebra::{self, Term, chain_rule, derivative, plus, symbol, times, zero};
 use std::collections::{BTreeMap, HashMap};
@@ -14,16 +14,16 @@ pub struct Constant {
     pub value: f64,
     /// Its unit; empty for a sign or a ratio.
     pub unit: &'static str,
-    /// What it is.
+    /// Its meaning, in words.
     pub meaning: String,
 }
 
-/// A named quantity: a term of what stands above it.
+/// A named term of earlier names.
 #[derive(Debug, Clone)]
 pub(crate) struct Assignment {
     pub(crate) code: String,
     pub(crate) value: Term,
-    /// Its derivatives, where they are known in a shorter form than differentiation gives.
+    /// Its partial derivatives, if known in a shorter form than differentiation gives.
     pub(crate) partials: Option<PartialDerivatives>,
 }
 
@@ -38,14 +38,14 @@ impl Assignment {
     }
 }
 
-/// The derivatives of a step by the names it is made of: that of a root by what is under it, of an angle
-/// by the coordinates of what it points along.
+/// The partial derivatives of a step by the names in it: of a root by its radicand, of an angle
+/// by the components of its direction.
 #[derive(Debug, Clone)]
 pub(crate) struct PartialDerivatives {
-    /// What these are divided by.
+    /// The common denominator of these.
     pub(crate) denominator: Term,
     pub(crate) quotient_partials: Vec<(String, Term)>,
-    /// Those that nothing divides.
+    /// Further partial derivatives without denominator.
     pub(crate) extra_partials: Vec<(String, Term)>,
 }
 
@@ -60,18 +60,18 @@ impl PartialDerivatives {
     }
 }
 
-/// What a name's derivative is.
+/// Kinds of derivatives of a name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum DerivativeKind {
     /// By the coordinate.
     First,
-    /// By the coordinate, of what is a derivative already.
+    /// Second derivative by the coordinate: the derivative of a first derivative.
     Second,
-    /// By the released coordinate, at zero of it: a virtual displacement.
+    /// By the released coordinate at its value zero: a virtual displacement.
     Virtual,
 }
 
-/// Constants, steps and how their names are written.
+/// Constants and steps, with the LaTeX of their names.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SymbolTable {
     pub(crate) constants: Vec<Constant>,
@@ -81,11 +81,13 @@ pub(crate) struct SymbolTable {
 }
 
 impl SymbolTable {
-    /// A name that nothing else has: a letter and what stands below it.
+    /// A unique name from a letter and its indices.
     pub(crate) fn new_name(&mut self, letter: &str, below: &[&str]) -> String {
-        // Letters and digits are what a name in code may hold.
-        let base = [&[letter], below].concat().join("_");
-        let base = base.replace(|c: char| !c.is_ascii_alphanumeric(), "_");
+        // A name in code contains letters and digits only.
+        let base = [&[letter], below]
+            .concat()
+            .join("_")
+            .replace(|c: char| !c.is_ascii_alphanumeric(), "_");
         let mut below: Vec<String> = below.iter().map(|part| upright(part)).collect();
         let mut code = base.clone();
         let mut suffix = 1;
@@ -130,7 +132,7 @@ impl SymbolTable {
             DerivativeKind::Second => (format!("{of}d"), format!("{letter}'")),
             DerivativeKind::Virtual => (format!("{of}_v"), format!("\\delta {letter}")),
         };
-        // A body may be called like another one's derivative.
+        // The name of a body may equal that of another one's derivative.
         while self.latex_names.contains_key(&code) {
             code.push('_');
         }
@@ -141,7 +143,8 @@ impl SymbolTable {
     /// A number of the scene, by name.
     pub(crate) fn add_constant(
         &mut self,
-        (letter, below): (&str, &[&str]),
+        letter: &str,
+        below: &[&str],
         value: f64,
         unit: &'static str,
         meaning: String,
@@ -157,7 +160,7 @@ impl SymbolTable {
         symbol(&code)
     }
 
-    /// Writes a step down, by a new name.
+    /// Adds a step under a new name.
     pub(crate) fn assign(&mut self, letter: &str, below: &[&str], value: &Term) -> Term {
         let code = self.new_name(letter, below);
         let step = symbol(&code);
@@ -177,7 +180,7 @@ impl SymbolTable {
         components.map(|(axis, value)| self.assign(letter, &[below, &[axis]].concat(), value))
     }
 
-    /// Writes a step down whose derivatives are known.
+    /// Adds a step with known partial derivatives.
     pub(crate) fn assign_with_partials(
         &mut self,
         code: String,
@@ -194,8 +197,8 @@ impl SymbolTable {
         step
     }
 
-    /// The derivative of every step so far that has one, as further steps: by the names in `rates`,
-    /// to which it adds, and by what `shifts` adds to a step itself.
+    /// Adds the derivatives of all steps as further steps, from the derivatives of the names in `rates`, which it extends,
+    /// and the shifts of steps in `shifts`.
     pub(crate) fn differentiate(
         &mut self,
         of: &[Assignment],
@@ -229,7 +232,7 @@ impl SymbolTable {
     }
 }
 
-/// The derivative of y = N/D by its own name: (N′ − y D′)/D, which stays as short as it can.
+/// The derivative of y = N/D in terms of y: (N′ − y D′)/D, the shortest form.
 fn quotient_derivative(
     assignment: &Assignment,
     derivatives: &BTreeMap<String, Term>,

@@ -7,13 +7,7 @@ pub(crate) fn slide_axis(kind: JointKind) -> Option<Vec2> {
     match kind {
         JointKind::Prismatic { axes } => Some(axes[0]),
         JointKind::Slot { axis } => Some(axis),
-        JointKind::Revolute
-        | JointKind::Weld { .. }
-        | JointKind::Gear { .. }
-        | JointKind::Rack { .. }
-        | JointKind::Rolling { .. }
-        | JointKind::Distance { .. }
-        | JointKind::Coupling(_) => None,
+        _ => None,
     }
 }
 

@@ -290,6 +290,7 @@ fn random_loops_are_solved_or_refused_rightly() {
             1 => DrivenBy::Length,
             2 | 4 => DrivenBy::Gear,
             7 => DrivenBy::ScrewOfScrews,
+            5 | 9 => DrivenBy::JointOfPoints,
             _ => DrivenBy::Joint,
         };
         let made = Assembled::new(&mut random, loops, driven_by);

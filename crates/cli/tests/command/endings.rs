@@ -1,4 +1,4 @@
-//! Motions that cannot go on: their rows up to there, the instant, all coordinates and the bodies; and what takes too long.
+//! Motions that cannot continue: their rows up to there, the instant, all coordinates and the bodies; and what takes too long.
 
 use crate::test_dir::{Run, TestDir};
 use std::fs;
@@ -66,7 +66,7 @@ fn singular_positions_end_motions_by_every_method() {
             let (message, place) = (message(&run), format!("{body} {method}"));
             assert_eq!(run.status, Some(1), "{place}: {message}");
             assert!(
-                message.contains("the motion cannot go on after t = ")
+                message.contains("the motion cannot continue after t = ")
                     && message.contains(&format!("`{body}`")),
                 "{place}: {message}"
             );

@@ -264,7 +264,7 @@ fn check_lists_masses_loads_drives_and_motions() {
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     for line in [
         "overall size at the start: 300 by 0 mm",
-        "moving mass 8 kg, its centre at the start at (1275, 2000) mm",
+        "moving mass 8 kg, with its centre of mass at (1275, 2000) mm at the start",
         "bar: 2 kg, 0.1 kg m²",
         "weight: gravity, 9.81 m/s²",
         "wind: couple of ground on bar, a function of t, in N m",

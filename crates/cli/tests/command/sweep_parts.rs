@@ -22,7 +22,7 @@ fn another_study_and_its_files_are_refused() {
     let other = arguments("11", &["--out", "o"]);
     let words = [
         "o/four-bar-sweep holds another study",
-        "its samples: `10`, not `11`",
+        "samples `10` instead of `11`",
     ];
     refused(&dir, &other, &words);
     // A part of another study under the name of one of this.

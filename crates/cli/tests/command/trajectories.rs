@@ -155,7 +155,11 @@ fn kinetostatics_writes_forces_power_and_peaks() {
     ] {
         assert!(page.contains(words), "{words}");
     }
-    assert!(run.out.contains("power balance closes to"), "{}", run.out);
+    assert!(
+        run.out.contains("residual of the power balance:"),
+        "{}",
+        run.out
+    );
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Building a mechanism in a program.
+//! The builder of mechanisms.
 
 use crate::error::Error;
 use crate::mechanism::Mechanism;
@@ -9,9 +9,9 @@ use crate::mechanism::scene::Scene;
 use crate::value::{Value, key, quoted};
 use std::fmt::Write as _;
 
-/// Collects the parts of a mechanism; [`assemble`](MechanismBuilder::assemble) puts them together. All numbers are in
-/// SI: m, rad, kg, s, N. Parts are named by their keys of a scene file, and the errors are those of the file that
-/// [`to_toml`](MechanismBuilder::to_toml) gives.
+/// Collects the parts of a mechanism; [`assemble`](MechanismBuilder::assemble) assembles it. All numbers are in
+/// SI: m, rad, kg, s, N. Parts have the keys of a scene file, and errors are those of the file that
+/// [`to_toml`](MechanismBuilder::to_toml) returns.
 ///
 /// ```
 /// use dwell::{Actuator, Joint, Mechanism};
@@ -34,7 +34,7 @@ pub struct MechanismBuilder {
     /// Text of the scene format, after everything else.
     text: String,
     functions: Vec<(String, LoadFunction)>,
-    /// The parts that were given a second time: section and name.
+    /// The parts that were added twice: section and name.
     given_twice: Vec<(&'static str, String)>,
 }
 
@@ -57,7 +57,7 @@ impl MechanismBuilder {
         }
     }
 
-    /// The ground, to which points can be added.
+    /// The ground, for adding points.
     ///
     /// ```
     /// let mut m = dwell::Mechanism::builder("Four-bar");
@@ -67,9 +67,9 @@ impl MechanismBuilder {
         self.body("ground")
     }
 
-    /// A body, new or already there, to which points and a mass can be added. What it returns borrows the mechanism:
-    /// end the statement before the next part is added. A misspelt name makes a body of its own, which is in no joint:
-    /// [`assemble`](MechanismBuilder::assemble) then names the body that may be meant.
+    /// A new or existing body, for adding points and a mass. The returned builder borrows the mechanism:
+    /// end the statement before adding the next part. A misspelt name adds another body, which is in no joint;
+    /// [`assemble`](MechanismBuilder::assemble) then suggests the intended name.
     ///
     /// ```
     /// let mut m = dwell::Mechanism::builder("Four-bar");
@@ -94,7 +94,7 @@ impl MechanismBuilder {
         self.add("joints", name, joint.0)
     }
 
-    /// Adds a pin in the plane that both bodies have as a point of the joint's name: `pin("A", "ground", "crank")` joins `ground.A` and
+    /// Adds a pin in the plane between points with the name of the joint: `pin("A", "ground", "crank")` joins `ground.A` and
     /// `crank.A`.
     ///
     /// ```
@@ -116,7 +116,7 @@ impl MechanismBuilder {
         self.add("actuators", name, actuator.0)
     }
 
-    /// Gives a coordinate a name.
+    /// Adds a named coordinate.
     ///
     /// ```
     /// # let mut m = dwell::Mechanism::builder("");
@@ -126,8 +126,8 @@ impl MechanismBuilder {
         self.add("coordinates", name, coordinate.0)
     }
 
-    /// Where the mechanism is assembled: the exact coordinate of an actuator, or the rough angle of a body, rad, or
-    /// travel of a joint, m. Rough values select the assembly mode.
+    /// Sets the exact coordinate of an actuator at assembly, or the initial guess of a body's angle, rad, or of a
+    /// joint's travel, m. Initial guesses select the assembly mode.
     ///
     /// ```
     /// # let mut m = dwell::Mechanism::builder("");
@@ -137,8 +137,8 @@ impl MechanismBuilder {
         self.add("assembly", name, value)
     }
 
-    /// Roughly where a body of a mechanism in space is assembled: its origin, m, and its rotation vector, rad, both in the axes of the
-    /// ground. Rough values select the assembly mode.
+    /// Sets the initial guess of the placement of a body in space: its origin, m, and its rotation vector, rad, both in the axes of the
+    /// ground. Initial guesses select the assembly mode.
     ///
     /// ```
     /// # let mut m = dwell::Mechanism::builder("");
@@ -204,7 +204,7 @@ impl MechanismBuilder {
         self
     }
 
-    /// Restricts the reactions to these joints or components: `A`, `guide.normal`. Without it all are computed.
+    /// Restricts the reactions to these joints or components: `A`, `guide.normal`. By default all are computed.
     ///
     /// ```
     /// # let mut m = dwell::Mechanism::builder("");
@@ -215,7 +215,7 @@ impl MechanismBuilder {
     }
 
     /// Appends text of the scene format: sections that have no function here, as `docs/scene-format.md` describes them.
-    /// An error in it is found by [`scene`](MechanismBuilder::scene).
+    /// [`scene`](MechanismBuilder::scene) reports errors in it.
     ///
     /// ```
     /// # let mut m = dwell::Mechanism::builder("Pendulum");
@@ -233,7 +233,7 @@ impl MechanismBuilder {
         self
     }
 
-    /// The mechanism as the text of a scene file. A load's function of one's own is not in it: a comment says so, and the load has no value.
+    /// The mechanism as the text of a scene file. A load that is a function of your program has a comment and no value there.
     ///
     /// ```
     /// let mut m = dwell::Mechanism::builder("Pendulum");
@@ -262,7 +262,7 @@ impl MechanismBuilder {
     /// The scene of this mechanism.
     ///
     /// # Errors
-    /// [`Error::Study`] with everything that is wrong.
+    /// [`Error::Study`] with all errors.
     ///
     /// ```
     /// # let mut m = dwell::Mechanism::builder("Pendulum");
@@ -289,7 +289,7 @@ impl MechanismBuilder {
     /// Assembles the mechanism.
     ///
     /// # Errors
-    /// [`Error::Study`] with everything that is wrong, by the names of bodies and joints.
+    /// [`Error::Study`] with all errors, which name bodies and joints.
     ///
     /// ```
     /// let m = dwell::Mechanism::builder("Nothing");
@@ -324,7 +324,7 @@ fn write_keys(text: &mut String, keys: &Keys) {
     }
 }
 
-/// A body of a mechanism that is being built.
+/// The builder of a body.
 ///
 /// ```
 /// let mut m = dwell::Mechanism::builder("Four-bar");
@@ -349,7 +349,7 @@ impl BodyBuilder<'_> {
         self
     }
 
-    /// Makes it a bar of a mechanism in the plane: one point at its origin, the other along its x axis, at a length, m.
+    /// Adds the two points of a bar in the plane: one at the origin, the other on the x axis at a length, m.
     ///
     /// ```
     /// # let mut m = dwell::Mechanism::builder("");
@@ -363,8 +363,8 @@ impl BodyBuilder<'_> {
         self.point(first, [0.0, 0.0]).point(second, [length, 0.0])
     }
 
-    /// Gives it a mass, kg, a centre of mass (m in the body's frame, or the name of a point), and a moment of inertia about
-    /// that, kg·m²; in space `[xx, yy, zz]`, or all six elements of the tensor, as `docs/scene-format.md` has them. A body without them is
+    /// Sets the mass, kg, the centre of mass (m in the body's frame, or the name of a point), and the moment of inertia about
+    /// it, kg·m²; in space `[xx, yy, zz]`, or all six elements of the tensor (`docs/scene-format.md`). A body without mass is
     /// a massless link.
     ///
     /// ```

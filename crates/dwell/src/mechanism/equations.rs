@@ -6,10 +6,10 @@ use crate::error::Error;
 
 impl Mechanism {
     /// The equation of the scene's free motion, ẏ = f(t, y), with the states y = [free coordinates; their velocities; states of
-    /// drives and contacts; works of the sources that have no potential].
+    /// drives and contacts; works of the sources without a potential].
     ///
     /// # Errors
-    /// [`Error::Study`] where the scene has no motion, or its machine cannot be built.
+    /// [`Error::Study`] if the scene has no motion, or its machine cannot be built.
     ///
     /// ```
     /// let study = dwell::Scene::read("../../validation/single-dwell/scene.toml")?.assemble()?;

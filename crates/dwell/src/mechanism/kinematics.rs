@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 /// Positions, velocities and accelerations of all bodies, in the ground's frame.
 ///
-/// The type that a vector is assigned to says how many components it has. In the plane positions, velocities and accelerations are
+/// The type to which a vector is assigned determines its number of components. In the plane positions, velocities and accelerations are
 /// `[x, y]`, or `[x, y, z]` with z = 0; angular velocities and accelerations are `[z]`, or `[x, y, z]` with x = y = 0. In space all have
 /// three components.
 ///
@@ -32,7 +32,7 @@ pub struct Kinematics {
     coordinates: Vec<CoordinateValue>,
 }
 
-/// The components of a position, velocity or acceleration that are asked for.
+/// The requested number of components of a position, velocity or acceleration.
 pub(super) fn components<const N: usize>(
     vector: [f64; 3],
     dimension: usize,
@@ -52,7 +52,7 @@ pub(super) fn components<const N: usize>(
     })
 }
 
-/// The same of what turns.
+/// The requested number of components of an angular velocity or acceleration.
 fn turning<const N: usize>(vector: [f64; 3], dimension: usize) -> Result<[f64; N], Error> {
     let given = match (N, dimension) {
         (3, _) => vector.get(..),
@@ -124,10 +124,10 @@ impl Kinematics {
         self.of_point(point, 2)
     }
 
-    /// Angle of a body in the plane from the ground, rad: within half a revolution, or with whole revolutions where actuators turn it.
+    /// Angle of a body in the plane from the ground, rad: within half a revolution, or with whole revolutions if actuators determine it.
     ///
     /// # Errors
-    /// [`Error::Unknown`]; [`Error::InSpace`], where a body has [axes](Self::axes).
+    /// [`Error::Unknown`]; [`Error::InSpace`] in space, where a body has [axes](Self::axes) instead.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -190,7 +190,7 @@ impl Kinematics {
         turning(acceleration, self.names.dimension)
     }
 
-    /// An actuator's or named coordinate with its first two derivatives: rad or m, per s, per s².
+    /// The coordinate of an actuator, or a named coordinate, with its first two derivatives: rad or m, per s, per s².
     ///
     /// # Errors
     /// [`Error::Unknown`].
@@ -258,11 +258,11 @@ impl InverseDynamics {
     }
 
     /// A reaction `joint.component`, N or N·m: the force or moment of the joint's first-named body on the second. The
-    /// `magnitude` of a joint with a force in any direction is the length of that.
+    /// component `magnitude` is the magnitude of the force.
     ///
     /// # Errors
-    /// [`Error::Unknown`], also where redundant constraints share the load, so that the reaction is statically
-    /// indeterminate.
+    /// [`Error::Unknown`], also if the reaction is statically indeterminate because of redundant
+    /// constraints.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -308,8 +308,10 @@ impl InverseDynamics {
     /// ```
     pub fn actuator_force(&self, name: &str) -> Result<f64, Error> {
         let names = self.kinematics.names.actuators.iter().map(String::as_str);
-        let found = names.clone().position(|known| known == name);
-        let found = found.ok_or_else(|| Error::unknown("actuator", "actuators", name, names));
+        let found = names
+            .clone()
+            .position(|known| known == name)
+            .ok_or_else(|| Error::unknown("actuator", "actuators", name, names));
         Ok(self.result.tau[found?])
     }
 }

@@ -6,10 +6,10 @@ use crate::machine::{Cycle, Equilibrium, StateSpace};
 use crate::motion::Solver;
 
 impl Mechanism {
-    /// The equilibria: over the range of the only coordinate all of them, else those that many starts lead to.
+    /// The equilibria: with one coordinate all in its range, with several those that Newton's method reaches from many initial positions.
     ///
     /// # Errors
-    /// [`Error::Study`] where loads depend on time, or none is found of several coordinates.
+    /// [`Error::Study`] if loads depend on time, or if none is found with several coordinates.
     ///
     /// ```
     /// use dwell::{Actuator, Joint, Load, Mechanism, Stability};
@@ -53,11 +53,11 @@ impl Mechanism {
         self.assembled.linearise()
     }
 
-    /// The steady cycle of a rotating machine, and the flywheel that keeps its coefficient of fluctuation to
-    /// `fluctuation`, if one is given.
+    /// The steady cycle of a rotating machine, and, if `fluctuation` is given, the flywheel for this coefficient of
+    /// fluctuation.
     ///
     /// # Errors
-    /// [`Error::Study`] where the machine does not rotate, has no drive or loss, or depends on time.
+    /// [`Error::Study`] if the machine does not rotate, has no drive or loss, or depends on time.
     ///
     /// ```
     /// use dwell::{Actuator, Drive, Joint, Load, Mechanism, Solver};

@@ -7,10 +7,10 @@ use dwell_study::Analysis;
 
 impl Mechanism {
     /// Positions, velocities, accelerations, actuator forces and reactions along the prescribed motion or the coordinate
-    /// sweep of the scene: every column that `dwell kinetostatics` writes.
+    /// sweep of the scene: the columns of `dwell kinetostatics`.
     ///
     /// # Errors
-    /// [`Error::Study`] where the scene prescribes no motion, or its first position cannot be reached.
+    /// [`Error::Study`] if the scene prescribes no motion, or its first position cannot be reached.
     ///
     /// ```
     /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -24,8 +24,8 @@ impl Mechanism {
         self.assembled.along_motion(Analysis::Kinetostatics)
     }
 
-    /// Positions, velocities and accelerations along the prescribed motion or the coordinate sweep of the scene: every
-    /// column that `dwell kinematics` writes.
+    /// Positions, velocities and accelerations along the prescribed motion or the coordinate sweep of the scene: the
+    /// columns of `dwell kinematics`.
     ///
     /// # Errors
     /// As [`Mechanism::kinetostatics`].
@@ -41,7 +41,7 @@ impl Mechanism {
     }
 
     /// Actuator forces and reactions under the loads, at rest in every position of the prescribed motion or the coordinate
-    /// sweep: every column that `dwell statics` writes.
+    /// sweep: the columns of `dwell statics`.
     ///
     /// # Errors
     /// As [`Mechanism::kinetostatics`].
@@ -56,12 +56,12 @@ impl Mechanism {
         self.assembled.along_motion(Analysis::Statics)
     }
 
-    /// The free motion of the scene under its loads, drives and friction: every column that `dwell simulate` writes, all
-    /// reactions and energies among them.
+    /// The free motion of the scene under its loads, drives and friction: the columns of `dwell simulate`, including all
+    /// reactions and energies.
     ///
     /// # Errors
-    /// [`Error::Study`] where the scene has no motion, or its initial state cannot be evaluated. A motion that ends early
-    /// says why in [`MotionResults::early_stop`].
+    /// [`Error::Study`] if the scene has no motion, or its initial state cannot be evaluated. If the motion ends early,
+    /// [`MotionResults::early_stop`] has the reason.
     ///
     /// ```
     /// use dwell::{Actuator, Joint, Load, Mechanism, Motion, Solver};
@@ -86,7 +86,7 @@ impl Mechanism {
     /// The period of the free motion, s, and its energy, J: by quadrature, for one free coordinate and conservative loads.
     ///
     /// # Errors
-    /// [`Error::Study`] where the scene has no motion, or it is not conservative or does not repeat itself.
+    /// [`Error::Study`] if the scene has no motion, or if the motion is not conservative or not periodic.
     ///
     /// ```
     /// let study = dwell::Scene::read("../../validation/single-dwell/scene.toml")?.assemble()?;

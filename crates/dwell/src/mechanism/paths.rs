@@ -5,12 +5,12 @@ use super::kinematics::components;
 use crate::error::Error;
 
 impl Mechanism {
-    /// Where points `body.point` are at many positions, m, as `[x, y]` in the plane or `[x, y, z]`: by position, then by
-    /// point. `q` has the coordinates of all actuators of
-    /// one position after another, rad or m. Only positions are computed, and all with one working memory.
+    /// Positions of points `body.point`, m, as `[x, y]` in the plane or `[x, y, z]`: by position of the mechanism, then by
+    /// point. `q` has the coordinates of all actuators, rad or m,
+    /// for one position after another. Only positions are computed, with one working memory.
     ///
     /// # Errors
-    /// [`Error::Unknown`]; [`Error::Components`]; [`Error::Count`] where a position lacks a coordinate; [`Error::Study`] for the first position that the
+    /// [`Error::Unknown`]; [`Error::Components`]; [`Error::Count`] if a position lacks a coordinate; [`Error::Study`] for the first position that the
     /// mechanism cannot reach.
     ///
     /// ```
@@ -33,10 +33,12 @@ impl Mechanism {
                 actuators,
             });
         }
-        let points = points.into_iter().map(|name| self.names.point(name));
-        let points = points.collect::<Result<Vec<_>, _>>()?;
+        let points = points
+            .into_iter()
+            .map(|name| self.names.point(name))
+            .collect::<Result<Vec<_>, _>>()?;
         let dimension = self.names.dimension;
-        // A number of components that is not there is said before anything is computed.
+        // A wrong number of components is reported before the computation.
         components::<N>([0.0; 3], dimension)?;
         let paths = self.assembled.paths(&points, q)?.into_iter();
         paths.map(|at| components(at, dimension)).collect()

@@ -6,15 +6,15 @@ use crate::error::Error;
 use crate::reduced::ReducedModel;
 
 impl Mechanism {
-    /// The reduced model with some reactions: joints (`A` for all its components that redundant constraints do not
-    /// leave open) or components (`guide.normal`).
+    /// The reduced model with some reactions: joints (`A` for all its determined components)
+    /// or components (`guide.normal`).
     ///
     /// ```text
     /// m q̈ + ½m′ q̇² = Σ w F,    R = a q̈ + b q̇² + Σ c F
     /// ```
     ///
     /// # Errors
-    /// [`Error::Unknown`] for a reaction that the mechanism does not have, or that redundant constraints leave open;
+    /// [`Error::Unknown`] for a reaction that the mechanism does not have, or that redundant constraints leave undetermined;
     /// [`Error::Study`] unless it has exactly one actuator.
     ///
     /// ```
@@ -50,7 +50,7 @@ impl Mechanism {
     }
 }
 
-/// Why no reaction is meant by a name.
+/// The error for a name that refers to no reaction.
 fn unknown_reaction(all: &[NamedReaction], name: &str) -> Error {
     if all
         .iter()

@@ -1,4 +1,4 @@
-//! A mechanism as a scene file describes it.
+//! Scenes.
 
 use crate::error::Error;
 use crate::mechanism::Mechanism;
@@ -7,8 +7,8 @@ use dwell_study::{SceneTask, StudyError, StudyScene, describe_scene, with_dimens
 use std::path::Path;
 use std::sync::Arc;
 
-/// A scene: the description of a mechanism with its masses, loads, drives and motions, read and checked, in the form that
-/// `docs/scene-format.md` documents. Its points have two numbers in the plane, and three in space.
+/// A scene: the checked description of a mechanism with its masses, loads, drives and motions, in the format of
+/// `docs/scene-format.md`. Its points have two numbers in the plane, and three in space.
 ///
 /// ```
 /// let scene = dwell::Scene::read("../../docs/slider.toml")?;
@@ -24,7 +24,7 @@ impl Scene {
     /// Reads a scene file.
     ///
     /// # Errors
-    /// [`Error::Study`] with everything that is wrong in the file, each with its place.
+    /// [`Error::Study`] with all errors in the file, each with its place.
     ///
     /// ```
     /// let error = dwell::Scene::read("slidr.toml").unwrap_err();
@@ -69,7 +69,7 @@ impl Scene {
         &self.0.title
     }
 
-    /// Its text, with what [`with_value`](Self::with_value) changed.
+    /// Its text, with the changes of [`with_value`](Self::with_value).
     ///
     /// ```
     /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
@@ -80,7 +80,7 @@ impl Scene {
         self.0.source.inner()
     }
 
-    /// What it should change, though it is read: numbers that may not be meant.
+    /// Warnings: numbers that may be unintended.
     ///
     /// ```
     /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
@@ -95,7 +95,7 @@ impl Scene {
     /// `loads.brake.damping`.
     ///
     /// # Errors
-    /// [`Error::Study`] where the path leads nowhere.
+    /// [`Error::Study`] if there is no number with this path.
     ///
     /// ```
     /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
@@ -106,10 +106,10 @@ impl Scene {
         Ok(self.0.value(path)?)
     }
 
-    /// The same scene with a number replaced.
+    /// A copy of the scene with a number replaced.
     ///
     /// # Errors
-    /// [`Error::Study`] where the path leads nowhere, or the scene makes no sense with it.
+    /// [`Error::Study`] if there is no number with this path, or the scene is invalid with the new value.
     ///
     /// ```
     /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
@@ -121,10 +121,10 @@ impl Scene {
         Ok(Self(Arc::new(self.0.with_values(&[(path, value)])?)))
     }
 
-    /// What `dwell check` prints: degrees of freedom, range, groups, assembly modes, loads and requests.
+    /// The output of `dwell check`: degrees of freedom, range, groups, assembly modes, loads and requests.
     ///
     /// # Errors
-    /// [`Error::Study`] where the mechanism cannot be assembled.
+    /// [`Error::Study`] if the mechanism cannot be assembled.
     ///
     /// ```
     /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
@@ -135,11 +135,11 @@ impl Scene {
         Ok(with_dimension(&self.0, Describe)?)
     }
 
-    /// The same scene with the magnitude of a load computed by a function of signals: `t` (s), coordinates (rad or m) and
-    /// velocities such as `phi.velocity`, in the order in which they are named.
+    /// A copy of the scene whose load has a magnitude given by a function of signals: `t` (s), coordinates (rad or m) and
+    /// velocities such as `phi.velocity`, in the given order.
     ///
     /// # Errors
-    /// [`Error::Study`] where there is no such load or signal.
+    /// [`Error::Study`] if there is no such load or signal.
     ///
     /// ```
     /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
@@ -157,11 +157,11 @@ impl Scene {
         self.with_magnitude(load, &magnitude)
     }
 
-    /// The same with the magnitude of a load computed by a [function](Magnitude::function), with its
-    /// [breakpoints](Magnitude::breakpoints).
+    /// A copy of the scene whose load has a [function](Magnitude::function) with
+    /// [breakpoints](Magnitude::breakpoints) as its magnitude.
     ///
     /// # Errors
-    /// [`Error::Study`] where there is no such load or signal. A magnitude that is no function changes nothing.
+    /// [`Error::Study`] if there is no such load or signal. Other kinds of magnitudes have no effect.
     ///
     /// ```
     /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
@@ -178,7 +178,7 @@ impl Scene {
     /// Assembles its mechanism.
     ///
     /// # Errors
-    /// [`Error::Study`] where the mechanism cannot be assembled, does not move, or a load does not fit it.
+    /// [`Error::Study`] if the mechanism cannot be assembled, does not move, or a load does not fit it.
     ///
     /// ```
     /// let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
@@ -193,13 +193,20 @@ impl Scene {
         &self.0
     }
 
-    /// The same scene with the magnitude of a load computed by a function.
+    /// A copy of the scene whose load has a magnitude given by a function.
     pub(crate) fn with_load_function(&self, load: &str, of: &LoadFunction) -> Result<Self, Error> {
         let signals: Vec<&str> = of.signals.iter().map(String::as_str).collect();
-        let breakpoints = of.breakpoints.iter();
-        let breakpoints: Vec<_> = breakpoints.map(|(s, v)| (&s[..], &v[..])).collect();
-        let scene = (*self.0).clone();
-        let scene = scene.with_load_function(load, &signals, of.function.clone(), &breakpoints)?;
+        let breakpoints: Vec<_> = of
+            .breakpoints
+            .iter()
+            .map(|(s, v)| (&s[..], &v[..]))
+            .collect();
+        let scene = (*self.0).clone().with_load_function(
+            load,
+            &signals,
+            of.function.clone(),
+            &breakpoints,
+        )?;
         Ok(Self(Arc::new(scene)))
     }
 }

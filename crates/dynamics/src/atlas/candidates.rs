@@ -1,7 +1,7 @@
 //! The coordinates in which a motion of one degree of freedom can be described.
 
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_geometry::{Actuator, BodyId, Coordinate, JointId, JointKind, Mechanism};
+use dwell_geometry::{Actuator, BodyId, Coordinate, JointId, Mechanism};
 
 /// What an angle between two moving bodies counts against one from the ground: it may fold sooner.
 const RELATIVE_ANGLE_WEIGHT: f64 = 0.5;
@@ -66,21 +66,12 @@ pub(super) fn candidates(mechanism: &Mechanism, size: f64) -> Vec<Candidate> {
         }
     }
     for (j, joint) in mechanism.joints.iter().enumerate() {
-        match joint.kind {
-            JointKind::Revolute => {
-                let name = format!("angle in {}", joint.name);
-                add(name, Coordinate::Angle(joint.bodies));
-            }
-            JointKind::Prismatic { .. } | JointKind::Slot { .. } => {
-                let name = format!("travel in {}", joint.name);
-                add(name, Coordinate::Travel(JointId(j)));
-            }
-            JointKind::Weld { .. }
-            | JointKind::Gear { .. }
-            | JointKind::Rack { .. }
-            | JointKind::Rolling { .. }
-            | JointKind::Distance { .. }
-            | JointKind::Coupling(_) => {}
+        if joint.kind.is_pin() {
+            let name = format!("angle in {}", joint.name);
+            add(name, Coordinate::Angle(joint.bodies));
+        } else if joint.kind.travel_axis().is_some() {
+            let name = format!("travel in {}", joint.name);
+            add(name, Coordinate::Travel(JointId(j)));
         }
     }
     found

@@ -4,7 +4,7 @@ use super::ConstraintRowsError;
 use super::gear::Gear;
 use super::row::ConstraintRow;
 use super::terms::{BodyPoint, Column, ConstraintTerm};
-use crate::mechanism::{BodyId, Coordinate, Joint, JointId, JointKind, Mechanism};
+use crate::mechanism::{BodyId, Condition, Coordinate, Joint, JointId, Mechanism};
 use crate::plane::{Vec2, vec2};
 
 /// Writes the rows of a mechanism.
@@ -41,39 +41,28 @@ impl RowWriter<'_> {
             ];
             ConstraintRow::Sum(terms, 0.0)
         };
-        Ok(match joint.kind {
-            JointKind::Revolute => vec![coincide(x), coincide(y)],
-            JointKind::Prismatic {
-                axes: [first, second],
-            } => vec![
-                component(first.perp(), 0.0),
-                ConstraintRow::periodic_angle(columns, first.angle() - second.angle()),
-            ],
-            JointKind::Slot { axis } => vec![component(axis.perp(), 0.0)],
-            JointKind::Weld { angle } => {
-                let angle = ConstraintRow::periodic_angle(columns, angle);
-                vec![coincide(x), coincide(y), angle]
+        let mut rows = Vec::new();
+        for condition in joint.kind.conditions() {
+            match condition {
+                Condition::Together => rows.extend([coincide(x), coincide(y)]),
+                Condition::OnLine { axis, height } => rows.push(component(axis.perp(), height)),
+                Condition::Turned { angle } => {
+                    rows.push(ConstraintRow::periodic_angle(columns, angle));
+                }
+                Condition::Apart { length } => {
+                    let distance = ConstraintTerm::Distance(points);
+                    rows.push(ConstraintRow::single(distance, length));
+                }
+                Condition::Rolled { axis, radius } => rows.push(unrolled(axis, radius)),
+                Condition::Meshed { radii, internal } => {
+                    let (mechanism, columns) = (self.mechanism, self.columns);
+                    let gear = Gear::new(mechanism, joint, points, radii, internal, columns);
+                    rows.push(ConstraintRow::Gear(gear));
+                }
+                Condition::Coupled(coupling) => rows.push(self.coupling(index, coupling)?),
             }
-            JointKind::Gear { radii, internal } => vec![ConstraintRow::Gear(Gear::new(
-                self.mechanism,
-                joint,
-                points,
-                radii,
-                internal,
-                self.columns,
-            ))],
-            JointKind::Rack { axis, radius } => vec![unrolled(axis, radius)],
-            JointKind::Rolling { axis, radius } => {
-                vec![component(axis.perp(), radius), unrolled(axis, radius)]
-            }
-            JointKind::Distance { length } => {
-                vec![ConstraintRow::single(
-                    ConstraintTerm::Distance(points),
-                    length,
-                )]
-            }
-            JointKind::Coupling(coupling) => vec![self.coupling(index, coupling)?],
-        })
+        }
+        Ok(rows)
     }
 
     fn coupling(
@@ -148,16 +137,15 @@ impl RowWriter<'_> {
 
 /// Whether the rows of a joint depend on whole revolutions of a body.
 pub(super) fn joint_counts_revolutions(mechanism: &Mechanism, joint: &Joint) -> bool {
-    match joint.kind {
-        JointKind::Gear { .. } | JointKind::Rack { .. } | JointKind::Rolling { .. } => true,
-        JointKind::Coupling(r) => {
+    joint.kind.conditions().any(|condition| match condition {
+        Condition::Meshed { .. } | Condition::Rolled { .. } => true,
+        Condition::Coupled(r) => {
             let coupling = mechanism.couplings.get(r);
             coupling.is_some_and(|r| r.dependent.is_angle() || r.independent.is_angle())
         }
-        JointKind::Revolute
-        | JointKind::Prismatic { .. }
-        | JointKind::Slot { .. }
-        | JointKind::Weld { .. }
-        | JointKind::Distance { .. } => false,
-    }
+        Condition::Together
+        | Condition::OnLine { .. }
+        | Condition::Turned { .. }
+        | Condition::Apart { .. } => false,
+    })
 }

@@ -1,6 +1,6 @@
 //! The length of an actuator that follows from the approximate angles of the bodies.
 
-use super::{ActuatorId, ActuatorKind, Coordinate, JointId, JointKind, Mechanism};
+use super::{ActuatorId, ActuatorKind, Condition, Coordinate, JointId, JointKind, Mechanism};
 use crate::plan::AssemblyConfiguration;
 use crate::plane::Vec2;
 
@@ -57,9 +57,7 @@ impl Mechanism {
             *hint = hint.map(|value| value + if is_travel { 1.0 } else { 0.0 });
         }
         for j in 0..self.joints.len() {
-            let (JointKind::Rack { axis, .. } | JointKind::Rolling { axis, .. }) =
-                self.joints[j].kind
-            else {
+            let Some((axis, _)) = self.joints[j].kind.rolled() else {
                 continue;
             };
             let [given, elsewhere] = [assembly, &other].map(|at| self.unrolled(JointId(j), at));
@@ -74,10 +72,7 @@ impl Mechanism {
     /// t·(P₂ − P₁) + r (θ₂ − θ₁) of a rack or rolling disc, m, where the assembly places both bodies: zero where they mesh.
     fn unrolled(&self, JointId(j): JointId, assembly: &AssemblyConfiguration) -> Option<f64> {
         let joint = self.joints.get(j)?;
-        let (JointKind::Rack { axis, radius } | JointKind::Rolling { axis, radius }) = joint.kind
-        else {
-            return None;
-        };
+        let (axis, radius) = joint.kind.rolled()?;
         let (frames, angles) = (self.guessed_frames(assembly), self.guessed_angles(assembly));
         let [first, second] = joint
             .bodies
@@ -128,18 +123,14 @@ impl Mechanism {
         if let Some(ground) = angles.get_mut(self.ground) {
             *ground = Some(0.0);
         }
-        let by_joints = self.joints.iter().filter_map(|joint| match joint.kind {
-            JointKind::Weld { angle } => Some((joint.bodies, angle)),
-            JointKind::Prismatic { axes } => {
-                Some((joint.bodies, axes[0].angle() - axes[1].angle()))
-            }
-            JointKind::Revolute
-            | JointKind::Slot { .. }
-            | JointKind::Gear { .. }
-            | JointKind::Rack { .. }
-            | JointKind::Rolling { .. }
-            | JointKind::Distance { .. }
-            | JointKind::Coupling(_) => None,
+        let by_joints = self.joints.iter().filter_map(|joint| {
+            joint
+                .kind
+                .conditions()
+                .find_map(|condition| match condition {
+                    Condition::Turned { angle } => Some((joint.bodies, angle)),
+                    _ => None,
+                })
         });
         let by_actuators = self.actuators.iter().zip(&assembly.q);
         let by_actuators = by_actuators.filter_map(|(actuator, &q)| {

@@ -35,18 +35,11 @@ impl Mechanism {
             }
         };
         for joint in &self.joints {
-            size = size.max(match joint.kind {
-                JointKind::Gear { radii, .. } => radii[0].max(radii[1]),
-                JointKind::Rack { radius, .. } | JointKind::Rolling { radius, .. } => radius.abs(),
-                JointKind::Distance { length } => length,
-                JointKind::Revolute
-                | JointKind::Prismatic { .. }
-                | JointKind::Slot { .. }
-                | JointKind::Weld { .. } => 0.0,
-                // It couples coordinates: its points mean nothing.
-                JointKind::Coupling(_) => continue,
-            });
-            attach(joint.bodies, joint.points);
+            // A coupling is of coordinates: its points mean nothing.
+            if !matches!(joint.kind, JointKind::Coupling(_)) {
+                size = size.max(joint.kind.length());
+                attach(joint.bodies, joint.points);
+            }
         }
         for actuator in &self.actuators {
             if let ActuatorKind::Length(points) = actuator.kind {

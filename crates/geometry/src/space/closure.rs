@@ -9,7 +9,8 @@
 //! opposite.
 
 use super::frames::{BodyMotion, Frame};
-use super::mechanism::{Joint, JointKind, Mechanism, Side};
+use super::joint_kinds::{Condition, JointKind};
+use super::mechanism::{Joint, Mechanism, Side};
 use super::tree::Tree;
 use super::vector::Vec3;
 use super::wrench::Wrench;
@@ -122,24 +123,24 @@ pub(super) fn closures(mechanism: &Mechanism, tree: &Tree) -> Result<Vec<Closure
 pub(super) fn rows_of(joint: &Joint, [a, b]: &[Side; 2]) -> Option<Vec<RowKind>> {
     use RowKind::{InPlane, Length, Mesh, Parallel, Point};
     let across = a.axis.cross(a.normal);
-    let points = || (0..3).map(Point);
-    let parallel_axes = || [Parallel(a.normal, b.axis), Parallel(across, b.axis)].into_iter();
-    let on_axis = || [InPlane(a.normal), InPlane(across)].into_iter();
-    let no_turn = || std::iter::once(Parallel(a.normal, b.axis.cross(b.normal)));
-    Some(match joint.kind {
-        JointKind::Weld => points().chain(parallel_axes()).chain(no_turn()).collect(),
-        JointKind::Revolute => points().chain(parallel_axes()).collect(),
-        JointKind::Prismatic => on_axis().chain(parallel_axes()).chain(no_turn()).collect(),
-        JointKind::Cylindrical => on_axis().chain(parallel_axes()).collect(),
-        JointKind::Universal => points().chain([Parallel(a.axis, b.axis)]).collect(),
-        JointKind::Spherical => points().collect(),
-        JointKind::Planar => std::iter::once(InPlane(a.axis))
-            .chain(parallel_axes())
-            .collect(),
-        JointKind::Distance { length } => vec![Length(length)],
-        JointKind::Gear { .. } => vec![Mesh(a.axis)],
-        JointKind::Helical { .. } => return None,
-    })
+    let rows = |condition: &Condition| {
+        Some(match condition {
+            Condition::Points => vec![Point(0), Point(1), Point(2)],
+            Condition::OnLine => vec![InPlane(a.normal), InPlane(across)],
+            Condition::InPlane => vec![InPlane(a.axis)],
+            Condition::Axes => vec![Parallel(a.normal, b.axis), Parallel(across, b.axis)],
+            Condition::AxesAcross => vec![Parallel(a.axis, b.axis)],
+            Condition::Normals => vec![Parallel(a.normal, b.axis.cross(b.normal))],
+            Condition::Teeth => vec![Mesh(a.axis)],
+            Condition::Length => match joint.kind {
+                JointKind::Distance { length } => vec![Length(length)],
+                _ => return None,
+            },
+            Condition::Thread => return None,
+        })
+    };
+    let rows: Option<Vec<Vec<RowKind>>> = joint.kind.conditions().iter().map(rows).collect();
+    Some(rows?.concat())
 }
 
 /// The links on the path from one body to another: those towards the second are positive.
@@ -330,17 +331,6 @@ impl Closure {
             let side = joint.sides[k].in_frame(&tree.internal[self.bodies[k]]);
             frames[self.bodies[k]].rotation.apply(side.axis)
         };
-        match joint.kind {
-            JointKind::Universal
-            | JointKind::Spherical
-            | JointKind::Distance { .. }
-            | JointKind::Gear { .. } => false,
-            JointKind::Weld
-            | JointKind::Revolute
-            | JointKind::Prismatic
-            | JointKind::Cylindrical
-            | JointKind::Helical { .. }
-            | JointKind::Planar => axis(0).dot(axis(1)) < 0.0,
-        }
+        joint.kind.holds(Condition::Axes) && axis(0).dot(axis(1)) < 0.0
     }
 }

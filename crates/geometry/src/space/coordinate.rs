@@ -13,7 +13,7 @@
 
 use super::closure::RowKind;
 use super::frames::BodyMotion;
-use super::mechanism::{ActuatorKind, Joint, JointKind, Mechanism};
+use super::mechanism::{ActuatorKind, Joint, Mechanism};
 use super::plan::{Plan, Pose};
 use super::tree::FreedomKind;
 use super::vector::{Rotation, Vec3};
@@ -26,7 +26,7 @@ use std::f64::consts::TAU;
 pub enum Coordinate {
     /// The angle of a revolute, cylindrical or helical joint, from the first body's normal to the second's about the axis, rad.
     Angle(JointId),
-    /// The travel of a prismatic, cylindrical or helical joint, along the axis from the first point to the second, m.
+    /// The travel of a joint whose second point is on the axis of the first, along that axis from the first point, m.
     Travel(JointId),
     /// The distance of two points (m in the frames of their bodies), m.
     Distance {
@@ -105,21 +105,6 @@ pub(super) struct StoredAngles {
     angles: Vec<f64>,
 }
 
-/// Whether a joint has an angle about its axis, and whether it has a travel along it.
-fn has(kind: JointKind) -> [bool; 2] {
-    match kind {
-        JointKind::Revolute => [true, false],
-        JointKind::Prismatic => [false, true],
-        JointKind::Cylindrical | JointKind::Helical { .. } => [true, true],
-        JointKind::Weld
-        | JointKind::Universal
-        | JointKind::Spherical
-        | JointKind::Planar
-        | JointKind::Distance { .. }
-        | JointKind::Gear { .. } => [false; 2],
-    }
-}
-
 impl Plan {
     /// A coordinate of the mechanism of which this plan was compiled.
     ///
@@ -152,18 +137,17 @@ impl Plan {
             return Err(unknown);
         };
         let joint = mechanism.joints.get(id.0).ok_or(unknown)?;
-        let [has_angle, has_travel] = has(joint.kind);
         let bodies = joint.bodies;
         let sides = [0, 1].map(|k| joint.sides[k].in_frame(&self.tree.internal[bodies[k].0]));
         let axis = sides[0].axis;
         match coordinate.is_angle() {
-            true if has_angle => Ok(CoordinateFunction::Angle {
+            true if joint.kind.has_angle() => Ok(CoordinateFunction::Angle {
                 bodies,
                 axis,
                 normals: sides.map(|side| side.normal),
                 counting: counting(id)?,
             }),
-            false if has_travel => Ok(CoordinateFunction::Travel(Guide {
+            false if joint.kind.has_travel() => Ok(CoordinateFunction::Travel(Guide {
                 bodies,
                 points: sides.map(|side| side.point),
                 axis,
@@ -216,7 +200,7 @@ impl Plan {
             end.clone_from(&pose.coordinates);
         }
         let closing = self.closures.iter().filter_map(|closure| closure.joint);
-        let angles = closing.filter(|joint| has(mechanism.joints[joint.0].kind)[0]);
+        let angles = closing.filter(|joint| mechanism.joints[joint.0].kind.has_angle());
         let mut stored: Vec<StoredAngles> = angles
             .map(|joint| StoredAngles {
                 joint,

@@ -3,7 +3,8 @@
 
 use super::frames::Frame;
 use super::groups::Group;
-use super::mechanism::{ActuatorKind, JointKind, Mechanism};
+use super::joint_kinds::{Condition, JointKind};
+use super::mechanism::{ActuatorKind, Mechanism};
 use super::plan::{Plan, Pose};
 use super::planes::is_parallel;
 use super::positions::OPEN;
@@ -335,16 +336,10 @@ pub(super) fn nearly_parallel(
     joints: &[JointId],
     rotation: impl Fn(usize) -> Rotation,
 ) -> Option<([JointId; 2], f64)> {
-    use JointKind::{Distance, Gear, Spherical, Universal, Weld};
-    let has_none = |kind| {
-        matches!(
-            kind,
-            Weld | Universal | Spherical | Distance { .. } | Gear { .. }
-        )
-    };
+    let is_held_to = |kind: JointKind| kind.holds(Condition::Axes) && kind.freedoms() > 0;
     let of = |id: &JointId| Some((*id, mechanism.joints.get(id.0)?));
     let joints = joints.iter().filter_map(of);
-    let axes = joints.filter(|(_, joint)| !has_none(joint.kind));
+    let axes = joints.filter(|(_, joint)| is_held_to(joint.kind));
     let axes: Vec<(JointId, Vec3)> = axes
         .map(|(id, joint)| (id, rotation(joint.bodies[0].0).apply(joint.sides[0].axis)))
         .collect();

@@ -5,7 +5,8 @@
 //! revolutions). A driven joint or a screw that closes a loop of such joints all the same moves a massless body instead,
 //! which is welded to its second body.
 
-use super::mechanism::{Assembly, Joint, JointKind, Mechanism, Placement};
+use super::joint_kinds::{Condition, JointKind};
+use super::mechanism::{Assembly, Joint, Mechanism, Placement};
 use crate::error::{AssemblyError, StructureError};
 use crate::mechanism::{Body, BodyId, JointId};
 
@@ -42,12 +43,6 @@ fn bearings(mechanism: &Mechanism) -> Result<Vec<bool>, StructureError> {
 
 /// The fewest joints with one axis that connect two bodies.
 fn chain_between(mechanism: &Mechanism, from: BodyId, to: BodyId) -> Option<Vec<JointId>> {
-    let has_one_axis = |kind| match kind {
-        JointKind::Weld | JointKind::Revolute | JointKind::Prismatic => true,
-        JointKind::Cylindrical | JointKind::Helical { .. } => true,
-        JointKind::Universal | JointKind::Spherical | JointKind::Planar => false,
-        JointKind::Distance { .. } | JointKind::Gear { .. } => false,
-    };
     // By body: the joint that leads to it from a body nearer to the first.
     let mut by: Vec<Option<(JointId, BodyId)>> = vec![None; mechanism.bodies.len()];
     let mut reached = vec![from];
@@ -56,7 +51,7 @@ fn chain_between(mechanism: &Mechanism, from: BodyId, to: BodyId) -> Option<Vec<
         next += 1;
         for (j, joint) in mechanism.joints.iter().enumerate() {
             let side = joint.bodies.iter().position(|b| *b == body);
-            let Some(side) = side.filter(|_| has_one_axis(joint.kind)) else {
+            let Some(side) = side.filter(|_| joint.kind.has_common_axis()) else {
                 continue;
             };
             let other = joint.bodies[1 - side];
@@ -83,10 +78,7 @@ fn tree_joints(mechanism: &Mechanism, bearings: &[bool]) -> Vec<bool> {
         JointKind::Helical { .. } => 2,
         kind => 3 + kind.freedoms(),
     };
-    let can_carry = |j: &usize| {
-        let kind = mechanism.joints[*j].kind;
-        !matches!(kind, JointKind::Distance { .. } | JointKind::Gear { .. })
-    };
+    let can_carry = |j: &usize| mechanism.joints[*j].kind.can_carry();
     let mut order: Vec<usize> = (0..mechanism.joints.len()).filter(can_carry).collect();
     order.sort_by_key(weight);
     let mut part: Vec<usize> = (0..mechanism.bodies.len()).collect();
@@ -127,18 +119,8 @@ impl Lowered {
         }
         let is_counted = |j: &usize| {
             let kind = mechanism.joints[*j].kind;
-            let has_coordinate = match kind {
-                JointKind::Distance { .. } | JointKind::Gear { .. } => false,
-                JointKind::Helical { .. } => true,
-                JointKind::Weld
-                | JointKind::Revolute
-                | JointKind::Prismatic
-                | JointKind::Cylindrical
-                | JointKind::Universal
-                | JointKind::Spherical
-                | JointKind::Planar => mechanism.is_driven(JointId(*j)),
-            };
-            has_coordinate && !lowered.in_tree[*j]
+            let is_needed = kind.holds(Condition::Thread) || mechanism.is_driven(JointId(*j));
+            is_needed && kind.can_carry() && !lowered.in_tree[*j]
         };
         lowered.split = (0..mechanism.joints.len())
             .filter(is_counted)

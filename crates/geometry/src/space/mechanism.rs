@@ -1,6 +1,7 @@
 //! The description of a mechanism in space. Lengths in m, angles in rad.
 
 use super::frames::Frame;
+use super::joint_kinds::{Condition, JointKind};
 use super::vector::{Vec3, vec3};
 use crate::mechanism::{Body, BodyId, JointId};
 
@@ -48,62 +49,6 @@ impl Default for Side {
             point: Vec3::ZERO,
             axis: Vec3::AXES[2],
             normal: Vec3::AXES[0],
-        }
-    }
-}
-
-/// Which relative motion a joint allows.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum JointKind {
-    /// None: points, axes and normals coincide.
-    Weld,
-    /// Rotation about the common axis; the points coincide.
-    Revolute,
-    /// Translation along the common axis; the normals are parallel.
-    Prismatic,
-    /// Rotation about and translation along the common axis.
-    Cylindrical,
-    /// A screw: translation of `pitch` m for each rad of rotation about the common axis. It is zero where the normals are parallel.
-    Helical {
-        /// Travel over angle, m/rad.
-        pitch: f64,
-    },
-    /// The points coincide, and the axis of the first body stays at right angles to that of the second: a Hooke joint with
-    /// a massless cross.
-    Universal,
-    /// The points coincide.
-    Spherical,
-    /// The second point stays in the plane through the first at right angles to the common axis.
-    Planar,
-    /// A massless rod with balls at its ends.
-    Distance {
-        /// Its length, m; without meaning where an actuator drives it.
-        length: f64,
-    },
-    /// The teeth of two wheels, or of a rack and a wheel, that touch at a pitch point of a third body, the carrier: there
-    /// the wheels have the same velocity along the normal n of the teeth,
-    ///
-    /// ```text
-    /// n·(v₂ − v₁) = 0,     with both sides of the joint, point and axis n, in the frame of the carrier
-    /// ```
-    ///
-    /// Each wheel turns about, or slides along, one line of the carrier. The teeth mesh so that all joint angles and travels
-    /// between the wheels are zero together.
-    Gear {
-        /// The body in which the pitch point and the normal are fixed.
-        carrier: BodyId,
-    },
-}
-
-impl JointKind {
-    /// The relative freedoms.
-    pub fn freedoms(self) -> usize {
-        match self {
-            Self::Weld => 0,
-            Self::Revolute | Self::Prismatic | Self::Helical { .. } => 1,
-            Self::Cylindrical | Self::Universal => 2,
-            Self::Spherical | Self::Planar => 3,
-            Self::Distance { .. } | Self::Gear { .. } => 5,
         }
     }
 }
@@ -164,7 +109,7 @@ pub struct Actuator {
 pub enum ActuatorKind {
     /// The angle of a revolute, cylindrical or helical joint, from the first body's normal to the second's about the axis, rad.
     Angle(JointId),
-    /// The travel of a prismatic, cylindrical or helical joint, along the axis from the first point to the second, m.
+    /// The travel of a joint whose second point is on the axis of the first, along that axis from the first point, m.
     Travel(JointId),
     /// The length of a distance, m.
     Length(JointId),
@@ -180,11 +125,10 @@ impl ActuatorKind {
 
     /// Whether joints of a kind have such a coordinate.
     pub fn is_of(self, kind: JointKind) -> bool {
-        use JointKind::{Cylindrical, Distance, Helical, Prismatic, Revolute};
         match self {
-            Self::Angle(_) => matches!(kind, Revolute | Cylindrical | Helical { .. }),
-            Self::Travel(_) => matches!(kind, Prismatic | Cylindrical | Helical { .. }),
-            Self::Length(_) => matches!(kind, Distance { .. }),
+            Self::Angle(_) => kind.has_angle(),
+            Self::Travel(_) => kind.has_travel(),
+            Self::Length(_) => kind.holds(Condition::Length),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The planar mechanism that moves as one in space does whose bodies all move parallel to one plane of the ground.
 
 use super::closure::RowKind;
-use super::mechanism::{ActuatorKind, Joint, JointKind, Mechanism, Placement};
+use super::joint_kinds::JointKind;
+use super::mechanism::{ActuatorKind, Joint, Mechanism, Placement};
 use super::plan::{JointPlace, Plan, Pose};
 use super::planes::{is_across, is_parallel};
 use super::tree::FreedomKind;
@@ -227,9 +228,7 @@ impl View<'_> {
                 let hint = self.direction(d);
                 (planar::JointKind::Distance { length }, Some(hint))
             }
-            JointKind::Revolute | JointKind::Cylindrical | JointKind::Prismatic => return None,
-            JointKind::Helical { .. } | JointKind::Universal => return None,
-            JointKind::Planar | JointKind::Gear { .. } => return None,
+            _ => return None,
         };
         let points = [0, 1].map(|k| {
             let body = joint.bodies[k].0;

@@ -13,7 +13,8 @@
 //! group. Their multipliers, forces along n and moments across it, are open; zero is the smallest.
 
 use super::closure::{Closure, RowKind, rows_of};
-use super::mechanism::{Joint, JointKind, Mechanism, Side};
+use super::joint_kinds::JointKind;
+use super::mechanism::{Joint, Mechanism, Side};
 use super::plan::{Plan, Pose};
 use super::positions::OPEN;
 use super::tree::FreedomKind;

@@ -5,7 +5,7 @@ use super::assemble::RANK_TOLERANCE;
 use super::closure::{Closure, RowKind};
 use super::follow::nearly_parallel;
 use super::groups::Group;
-use super::mechanism::{JointKind, Mechanism};
+use super::mechanism::Mechanism;
 use super::plan::{Plan, Pose};
 use super::vector::Vec3;
 use crate::error::{AssemblyError, StructureError};
@@ -45,13 +45,13 @@ pub(super) struct Analysed {
     pub(super) independent: Vec<usize>,
 }
 
-/// Whether nothing but balls and rods with balls holds a body.
+/// Whether each joint of a body holds it at a point alone, as a ball does.
 fn hangs_between_balls(mechanism: &Mechanism, body: usize) -> bool {
-    let mut of_body = mechanism
-        .joints
-        .iter()
-        .filter(|j| j.bodies.contains(&BodyId(body)));
-    of_body.all(|j| matches!(j.kind, JointKind::Spherical | JointKind::Distance { .. }))
+    let mut sides = mechanism.joints.iter().flat_map(|joint| {
+        let of_body = (0..2).filter(|side| joint.bodies[*side] == BodyId(body));
+        of_body.map(|side| (joint.kind, side))
+    });
+    sides.all(|(kind, side)| kind.is_point_on(side))
 }
 
 impl Plan {

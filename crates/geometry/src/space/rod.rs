@@ -250,7 +250,8 @@ impl Plan {
 
 #[cfg(test)]
 mod tests {
-    use super::super::mechanism::{Actuator, Assembly, Joint, JointKind, Mechanism, Side};
+    use super::super::joint_kinds::JointKind;
+    use super::super::mechanism::{Actuator, Assembly, Joint, Mechanism, Side};
     use super::super::plan::Plan;
     use super::super::vector::{Vec3, vec3};
     use crate::Body;

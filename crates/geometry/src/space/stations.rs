@@ -201,7 +201,8 @@ fn towards_assembly(place: &[i32]) -> Vec<i32> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::mechanism::{Actuator, Assembly, Joint, JointKind, Mechanism, Side};
+    use super::super::joint_kinds::JointKind;
+    use super::super::mechanism::{Actuator, Assembly, Joint, Mechanism, Side};
     use super::super::plan::{Plan, Pose};
     use super::super::vector::{Vec3, vec3};
     use super::MAX_STATIONS;

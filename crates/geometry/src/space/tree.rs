@@ -1,6 +1,7 @@
 //! The spanning tree: each body is placed from its parent by one joint.
 
-use super::mechanism::{ActuatorKind, Assembly, JointKind, Mechanism, Placement, Side};
+use super::joint_kinds::{Condition, JointKind};
+use super::mechanism::{ActuatorKind, Assembly, Mechanism, Placement, Side};
 use super::vector::{Rotation, Vec3};
 use crate::error::StructureError;
 use crate::mechanism::{BodyId, JointId};
@@ -244,37 +245,41 @@ impl Tree {
         step
     }
 
-    /// The steps of a tree joint, with its freedoms.
+    /// The steps of a tree joint, with its freedoms: translations of the second point, then rotations.
     fn steps_of(&mut self, kind: JointKind) -> Vec<Step> {
-        let first = self.freedoms.len();
-        let (freedoms, steps): (&[FreedomKind], Vec<Step>) = match kind {
-            JointKind::Weld => (&[], Vec::new()),
-            JointKind::Revolute => (&[FreedomKind::Turn], vec![Step::Turn(first)]),
-            JointKind::Helical { pitch } => (&[FreedomKind::Screw(pitch)], vec![Step::Turn(first)]),
-            JointKind::Prismatic => (&[FreedomKind::Slide], vec![Step::Slide(2, first)]),
-            JointKind::Cylindrical => (
-                &[FreedomKind::Turn, FreedomKind::Slide],
-                vec![Step::Slide(2, first + 1), Step::Turn(first)],
-            ),
-            JointKind::Universal => (
-                &[FreedomKind::Turn; 2],
-                vec![Step::Turn(first), Step::NextAxis, Step::Turn(first + 1)],
-            ),
-            JointKind::Planar => (
-                &[FreedomKind::Slide, FreedomKind::Slide, FreedomKind::Turn],
-                vec![
-                    Step::Slide(0, first),
-                    Step::Slide(1, first + 1),
-                    Step::Turn(first + 2),
-                ],
-            ),
-            // A distance or a gear pair is never in the tree.
-            JointKind::Spherical | JointKind::Distance { .. } | JointKind::Gear { .. } => {
-                return vec![self.ball()];
-            }
+        if let JointKind::Helical { pitch } = kind {
+            return vec![Step::Turn(self.add(FreedomKind::Screw(pitch)))];
+        }
+        let mut steps = Vec::new();
+        // Of a cylindrical joint the angle is the first freedom, though its step is the last.
+        let angle = kind.has_angle().then(|| self.add(FreedomKind::Turn));
+        let slides: &[usize] = if kind.holds(Condition::OnLine) {
+            &[2]
+        } else if kind.holds(Condition::InPlane) {
+            &[0, 1]
+        } else {
+            &[]
         };
-        self.freedoms.extend(freedoms);
+        for axis in slides {
+            steps.push(Step::Slide(*axis, self.add(FreedomKind::Slide)));
+        }
+        let is_turned = kind.holds(Condition::Axes) && !kind.holds(Condition::Normals);
+        if is_turned {
+            let angle = angle.unwrap_or_else(|| self.add(FreedomKind::Turn));
+            steps.push(Step::Turn(angle));
+        } else if kind.holds(Condition::AxesAcross) {
+            let [first, second] = [(); 2].map(|()| self.add(FreedomKind::Turn));
+            steps.extend([Step::Turn(first), Step::NextAxis, Step::Turn(second)]);
+        } else if !kind.holds(Condition::Axes) {
+            steps.push(self.ball());
+        }
         steps
+    }
+
+    /// Adds a freedom; its number.
+    fn add(&mut self, freedom: FreedomKind) -> usize {
+        self.freedoms.push(freedom);
+        self.freedoms.len() - 1
     }
 
     /// The freedom that an actuator drives; none of a joint outside the tree.

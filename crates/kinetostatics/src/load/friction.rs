@@ -1,7 +1,7 @@
 //! The friction of a joint, as a magnitude of a load.
 
 use super::LoadKind;
-use dwell_geometry::{Component, Joint, JointId, JointKind, Mechanism, Reaction};
+use dwell_geometry::{Component, Joint, JointId, Mechanism, Reaction};
 
 /// Coulomb friction in a joint, which holds at zero speed or is regularised around it. The load must be a [`LoadKind::Torque`] on the bodies of
 /// a revolute joint or a [`LoadKind::SlideForce`] on those of a prismatic joint or slot; in space a
@@ -50,28 +50,15 @@ impl Friction {
     pub(super) fn validate(&self, joint: &Joint, kind: LoadKind) -> Result<(), &'static str> {
         self.validate_numbers()?;
         let bodies = joint.bodies;
-        let fits = match (joint.kind, self.contact) {
-            (JointKind::Revolute, FrictionContact::Pin { .. }) => {
-                kind == LoadKind::Torque { bodies }
+        let fits = match self.contact {
+            FrictionContact::Pin { .. } => {
+                joint.kind.is_pin() && kind == LoadKind::Torque { bodies }
             }
-            (
-                JointKind::Prismatic { .. } | JointKind::Slot { .. },
-                FrictionContact::Guide { .. },
-            ) => {
-                matches!(kind, LoadKind::SlideForce(guide) if guide.bodies == bodies)
+            FrictionContact::Guide { .. } => {
+                let slides = joint.kind.travel_axis().is_some();
+                slides && matches!(kind, LoadKind::SlideForce(guide) if guide.bodies == bodies)
             }
-            (JointKind::Revolute, FrictionContact::Guide { .. })
-            | (JointKind::Prismatic { .. } | JointKind::Slot { .. }, FrictionContact::Pin { .. })
-            | (_, FrictionContact::Bearing { .. })
-            | (
-                JointKind::Weld { .. }
-                | JointKind::Gear { .. }
-                | JointKind::Rack { .. }
-                | JointKind::Rolling { .. }
-                | JointKind::Distance { .. }
-                | JointKind::Coupling(_),
-                _,
-            ) => false,
+            FrictionContact::Bearing { .. } => false,
         };
         let misfit = "its joint is no revolute joint, prismatic joint or slot between its bodies";
         fits.then_some(()).ok_or(misfit)

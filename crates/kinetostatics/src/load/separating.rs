@@ -8,7 +8,7 @@
 
 use super::{Load, LoadKind, Magnitude};
 use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{BodyId, Component, Joint, JointId, JointKind, Reaction, Vec2};
+use dwell_geometry::{BodyId, Component, Condition, Joint, JointId, Reaction, Vec2};
 use dwell_numerics::Scalar;
 
 /// The teeth of two gears, or of a rack and its pinion, in mesh.
@@ -76,16 +76,11 @@ impl PressureAngle {
 impl Mesh {
     /// The teeth of a joint; none if it has no teeth.
     pub fn of(joint: &Joint) -> Option<Self> {
-        let pitch = match joint.kind {
-            JointKind::Gear { radii, internal } => PitchLines::Circles { radii, internal },
-            JointKind::Rack { axis, radius } => PitchLines::Line { axis, radius },
-            JointKind::Revolute
-            | JointKind::Prismatic { .. }
-            | JointKind::Slot { .. }
-            | JointKind::Weld { .. }
-            | JointKind::Rolling { .. }
-            | JointKind::Distance { .. }
-            | JointKind::Coupling(_) => return None,
+        let teeth = joint.kind.has_teeth();
+        let pitch = match joint.kind.conditions().next().filter(|_| teeth)? {
+            Condition::Meshed { radii, internal } => PitchLines::Circles { radii, internal },
+            Condition::Rolled { axis, radius } => PitchLines::Line { axis, radius },
+            _ => return None,
         };
         Some(Self {
             bodies: joint.bodies,

@@ -10,7 +10,7 @@ impl Model {
     /// actuator that turns its body from the ground.
     ///
     /// # Errors
-    /// [`ModelError::VaryingInertia`]: no such moving body, an inertia that is not above zero, or one over part of a revolution of
+    /// [`ModelError::VaryingInertia`]: no such moving body, an inertia of zero or less, or one over part of a revolution of
     /// a body that no actuator turns from the ground.
     pub fn with_varying_inertias(mut self, varying: &[VaryingInertia]) -> Result<Self, ModelError> {
         for one in varying {
@@ -25,7 +25,9 @@ impl Model {
             }
             let [smallest, largest] = one.inertia.extent();
             if !(smallest > 0.0 && largest.is_finite()) {
-                return Err(refused("its varying inertia is not above zero everywhere"));
+                return Err(refused(
+                    "its varying inertia must be greater than zero everywhere",
+                ));
             }
             if let Some(ends) = one.inertia.ends() {
                 let of_body =

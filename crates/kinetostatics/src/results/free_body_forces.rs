@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::model::stages::EvaluatedState;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{
-    ActuatorId, BodyId, Coupling, Guide, Joint, JointId, JointKind, Reaction, Vec2, vec2,
+    ActuatorId, BodyId, Condition, Coupling, Guide, Joint, JointId, JointKind, Reaction, Vec2, vec2,
 };
 
 /// Converts reactions and actuator forces into forces and couples on the bodies.
@@ -130,7 +130,6 @@ fn coupling_wrenches(
 }
 
 /// The wrenches of a joint on its two bodies.
-// Long because it has one arm for each kind of joint.
 fn joint_wrenches(
     joint: &Joint,
     value: impl Fn(usize) -> f64,
@@ -143,32 +142,32 @@ fn joint_wrenches(
     let second = two.joint_origin + two.moment_arm(points[1]);
     let axis_of = |axis: Vec2| axis.rotate(one.rotation);
     // The point where the force on the second body acts, that force, and the couple on it.
-    let (at, force, couple) = match joint.kind {
-        JointKind::Revolute => (second, vec2(value(0), value(1)), 0.0),
-        JointKind::Weld { .. } => (second, vec2(value(0), value(1)), value(2)),
-        JointKind::Prismatic { axes } => (second, axis_of(axes[0]).perp() * value(0), value(1)),
-        JointKind::Slot { axis } => (second, axis_of(axis).perp() * value(0), 0.0),
-        JointKind::Gear { radii, .. } => {
-            let found = Mesh::of(joint).and_then(|mesh| mesh.pitch_point(states));
-            let [to_pitch_point, _] = found.unwrap_or([Vec2::ZERO; 2]);
-            let tangent = to_pitch_point.perp() * (1.0 / radii[1]);
-            (second + to_pitch_point, tangent * value(0), 0.0)
+    let (mut at, mut force, mut couple) = (second, Vec2::ZERO, 0.0);
+    let mut next = 0..;
+    let mut value = || next.next().map_or(0.0, &value);
+    for condition in joint.kind.conditions() {
+        match condition {
+            Condition::Together => force = vec2(value(), value()),
+            Condition::OnLine { axis, .. } => force = axis_of(axis).perp() * value(),
+            Condition::Turned { .. } => couple = value(),
+            Condition::Rolled { axis, radius } => {
+                let t = axis_of(axis);
+                at = second - t.perp() * radius;
+                force += t * value();
+            }
+            Condition::Meshed { radii, .. } => {
+                let found = Mesh::of(joint).and_then(|mesh| mesh.pitch_point(states));
+                let [to_pitch_point, _] = found.unwrap_or([Vec2::ZERO; 2]);
+                at = second + to_pitch_point;
+                force = to_pitch_point.perp() * (1.0 / radii[1]) * value();
+            }
+            Condition::Apart { .. } => {
+                let length = (CoordinateFunction::Length { bodies, points }, points);
+                return coordinate_wrenches(length, value(), source, states, wrenches);
+            }
+            Condition::Coupled(_) => return,
         }
-        JointKind::Rack { axis, radius } => {
-            let t = axis_of(axis);
-            (second - t.perp() * radius, t * value(0), 0.0)
-        }
-        JointKind::Rolling { axis, radius } => {
-            let t = axis_of(axis);
-            let force = t.perp() * value(0) + t * value(1);
-            (second - t.perp() * radius, force, 0.0)
-        }
-        JointKind::Distance { .. } => {
-            let length = (CoordinateFunction::Length { bodies, points }, points);
-            return coordinate_wrenches(length, value(0), source, states, wrenches);
-        }
-        JointKind::Coupling(_) => return,
-    };
+    }
     opposite_wrenches(bodies, at, force, couple, source, states, wrenches);
 }
 

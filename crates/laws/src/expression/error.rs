@@ -1,16 +1,16 @@
-//! What can be wrong with a text.
+//! Errors in the text of an expression.
 
 use std::ops::Range;
 
-/// Why a text is no expression of the given variables.
+/// Why a text is not an expression of the given variables.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct ExpressionError {
-    /// The bytes of the text that are wrong; empty only for an empty text.
+    /// The byte range of the fault in the text; empty only for an empty text.
     pub span: Range<usize>,
-    /// What is wrong, without a full stop.
+    /// The fault, without a full stop.
     pub message: String,
-    /// What to write instead, where that is known.
+    /// What to write instead, if known.
     pub help: Option<String>,
 }
 
@@ -29,7 +29,7 @@ impl ExpressionError {
     }
 }
 
-/// Longest name that is compared with others: the distance takes the square of its length.
+/// Longest name that is compared with others: the cost of a distance is the square of the length.
 const MAX_COMPARED: usize = 64;
 
 /// The name that was probably meant: the one that differs in capitals only, or the nearest, with one slip
@@ -40,7 +40,7 @@ pub fn nearest<'n>(wrong: &str, names: impl Iterator<Item = &'n str> + Clone) ->
         return None;
     }
     let folded = wrong.to_lowercase();
-    // As it is written or as it sounds: `fi` is meant for `phi`, not for `pi`.
+    // Compared by spelling or by sound: `fi` means `phi`, not `pi`.
     let distance = |name: &str| {
         let name = name.to_lowercase();
         let sound = |name: &str| name.replace("ph", "f");

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{LN_10, PI, TAU};
 
-/// A number with a name. (Euler's has none: `e` is too likely a name of the scene.)
+/// A named number. (Euler's number has no name: `e` is a likely name in a scene.)
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Constant {
     Pi,
@@ -65,7 +65,7 @@ pub(crate) enum Comparison {
     GreaterOrEqual,
 }
 
-/// What a name before a parenthesis calls.
+/// The function that a name before a parenthesis refers to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Function {
     Unary(Unary),
@@ -111,7 +111,7 @@ impl Function {
         found.map_or("", |&(name, _)| name)
     }
 
-    /// How many arguments it takes, the comparison of `if` counted as one.
+    /// Number of arguments; the comparison of `if` counts as one.
     pub(super) fn argument_count(self) -> usize {
         match self {
             Self::Unary(_) => 1,
@@ -132,7 +132,7 @@ impl Comparison {
     }
 }
 
-/// −1, 0 or 1; not a number of what is none.
+/// −1, 0 or 1; NaN of NaN.
 pub(crate) fn sign(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x.signum() }
 }
@@ -222,15 +222,15 @@ impl Binary {
         }
     }
 
-    /// Whether `min` or `max` takes its first argument: on a tie it does, and not a number is taken
-    /// rather than hidden.
+    /// Whether `min` or `max` selects its first argument: on a tie it does. NaN is selected,
+    /// not hidden.
     pub(super) fn selects_first(self, a: f64, b: f64) -> bool {
         let is_selected = if self == Self::Min { a <= b } else { a >= b };
         a.is_nan() || (is_selected && !b.is_nan())
     }
 }
 
-/// aᵇ. The small powers as products, correctly rounded on every machine.
+/// aᵇ. Small integer powers are products, which are rounded in the same way on every machine.
 pub(super) fn power(a: f64, b: f64) -> f64 {
     if b == 1.0 {
         a

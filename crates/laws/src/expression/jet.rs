@@ -1,8 +1,8 @@
-//! Numbers that carry three derivatives with them, so that a tape gives them exactly.
+//! Numbers with three derivatives, which a tape propagates exactly.
 
 use super::function::{Binary, Unary, power, sign};
 
-/// What a tape can be run on.
+/// A number type in which a tape can be evaluated.
 pub(crate) trait TapeScalar: Copy {
     fn constant(value: f64) -> Self;
     fn value(self) -> f64;
@@ -33,13 +33,13 @@ impl TapeScalar for f64 {
     }
 }
 
-/// A value and its first three derivatives along one variable. The value is always computed as
-/// that of a plain number is, to the last bit.
+/// A value and its first three derivatives with respect to one variable. The value has the bits of an
+/// evaluation in `f64`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Jet {
     entries: [f64; 4],
-    /// Whether it moves with the variable at all. That its derivatives are zero does not show it:
-    /// those of x⁴ are, at 0, and those of its root are not.
+    /// Whether it depends on the variable. Zero derivatives do not decide this:
+    /// those of x⁴ at 0 are zero, those of its root are not.
     is_active: bool,
 }
 
@@ -65,7 +65,7 @@ impl Jet {
         }
     }
 
-    /// The value and its derivatives; all undefined where the value is.
+    /// The value and its derivatives; all NaN if the value is.
     pub(crate) fn derivatives(self) -> [f64; 4] {
         if self.entries[0].is_nan() {
             [f64::NAN; 4]
@@ -94,7 +94,7 @@ impl Jet {
         }
     }
 
-    /// |self|. Where it is zero, the first derivative that is not decides: an odd one changes the
+    /// |self|. Where the value is zero, the first non-zero derivative decides: an odd one changes the
     /// sign, and the derivatives are the mean of both sides, 0; an even one does not.
     fn abs(self) -> Self {
         let leading = self.entries.iter().position(|&d| d != 0.0);
@@ -127,8 +127,8 @@ impl Jet {
         Self::active([q, q1, q2, q3])
     }
 
-    /// A constant exponent needs no logarithm: any base will do, and the derivatives of a whole
-    /// power are exact at 0 too.
+    /// A constant exponent needs no logarithm: the base may have any sign, and the derivatives of an integer
+    /// power are exact at 0, too.
     fn power(self, exponent: Self) -> Self {
         let [x, n] = [self.entries[0], exponent.entries[0]];
         let value = power(x, n);

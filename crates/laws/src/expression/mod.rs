@@ -2,25 +2,25 @@
 //!
 //! # Language
 //! - Numbers: `2`, `0.5`, `.5`, `1e-3`, `1.5E+2`. There are no units: everything is SI.
-//! - Operators, the loosest first: `+ -`, `* /`, the sign `-x`, `^`. Equals are taken from the
-//!   left, powers from the right: `2^3^2` is 2⁹, `-x^2` is −(x²), `2^-x` is 2⁻ˣ.
+//! - Operators, by increasing precedence: `+ -`, `* /`, the sign `-x`, `^`. Operators of equal precedence associate to the
+//!   left, powers to the right: `2^3^2` is 2⁹, `-x^2` is −(x²), `2^-x` is 2⁻ˣ.
 //! - Names: letters, digits, `_` and `.`, not beginning with a digit or a point: `phi.velocity`. Any
 //!   other name stands between backticks: `` `my-body.angle` ``, since `my-body` is a difference.
-//! - Constants: `pi`, and `tau` = 2π; a variable of that name comes first. Euler's number is
-//!   `exp(1)`: an `e` would hide a name, or a forgotten one.
+//! - Constants: `pi`, and `tau` = 2π; a variable of the same name takes precedence. Euler's number is
+//!   `exp(1)`, because `e` is a likely name of a variable.
 //! - Functions: `sin cos tan asin acos atan sinh cosh tanh exp ln log10 sqrt abs sign floor step`
 //!   of x; `atan2(y, x)`, `hypot(x, y)`, `min(a, b)`, `max(a, b)`; `clamp(x, low, high)`, which is
 //!   `min(max(x, low), high)`; `if(a < b, x, y)`, also with `<=`, `>`, `>=`. `sign(0)` is 0;
 //!   `step(x)` is 0 for x < 0 and else 1.
 //!
 //! # Derivatives
-//! They are exact (Taylor arithmetic; A. Griewank, A. Walther, *Evaluating Derivatives*, chapter
-//! 13), up to the third. Where a function has none, they are defined so: those of `sign`, `floor`
-//! and `step` are 0 everywhere; those of `abs` at a change of sign are the mean of both sides, 0;
-//! `min` and `max` follow their smaller or greater argument, on a tie the first; `if` follows the
-//! branch taken. All else is NaN or infinite, as of `sqrt(x)` at 0, of `hypot` and `atan2` at the
-//! origin, of a power with a variable exponent unless its base is positive. What is not a number
-//! is never hidden by `min`, `max`, `clamp`, `step` or a comparison.
+//! Derivatives are exact (Taylor arithmetic; A. Griewank, A. Walther, *Evaluating Derivatives*, chapter
+//! 13), up to the third. Where a function is not differentiable, they are defined as follows. Those of `sign`, `floor`
+//! and `step` are 0 everywhere. Those of `abs` at a change of sign are the mean of both sides, 0.
+//! `min` and `max` follow the selected argument, on a tie the first. `if` follows the
+//! selected branch. Otherwise derivatives are NaN or infinite: of `sqrt(x)` at 0, of `hypot` and `atan2` at the
+//! origin, of a power with a variable exponent and a base that is not positive. `min`, `max`, `clamp`, `step` and
+//! comparisons never hide a NaN.
 
 mod error;
 mod function;
@@ -38,18 +38,18 @@ pub use tape::HeldPieces;
 use tape::Tape;
 pub(crate) use tape::{Op, Sides, run_held_parts, run_parts};
 
-/// An expression of named variables, ready to be evaluated. Its language is described
-/// [in the module](crate::expression).
+/// A parsed expression of named variables. The [module](crate::expression) describes
+/// the language.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expression {
     tape: Tape,
-    /// The variables that occur, in order of first use, and which of the given ones they are.
+    /// The variables that occur, in order of first use, and their indices among the given ones.
     names: Vec<String>,
     variable_indices: Vec<usize>,
 }
 
 impl Expression {
-    /// Reads `text`, in which the names of `variables` may occur.
+    /// Parses `text`, in which the names of `variables` may occur.
     ///
     /// # Errors
     /// One error, the first from the left: an unknown name or function, a wrong number of
@@ -83,7 +83,7 @@ impl Expression {
         &self.names
     }
 
-    /// The same expression of the variables that occur alone: it is then evaluated with a value for each of
+    /// The expression as a function of the variables that occur: its values are then those of
     /// [`variables`](Self::variables), in their order.
     pub fn retain_used(mut self) -> Self {
         for op in &mut self.tape.ops {
@@ -107,19 +107,19 @@ impl Expression {
         self.tape.run(|i| value(values, i))
     }
 
-    /// The value where some operations are held on one of their pieces ([`Switches::hold`](crate::Switches::hold)).
+    /// The value, with some operations held on one of their pieces ([`Switches::hold`](crate::Switches::hold)).
     pub fn eval_held(&self, values: &[f64], held: &HeldPieces) -> f64 {
         self.tape.run_held(|i| value(values, i), &held.sides)
     }
 
-    /// [`derivatives_wrt`](Self::derivatives_wrt) where some operations are held on one of their pieces.
+    /// [`derivatives_wrt`](Self::derivatives_wrt), with some operations held on one of their pieces.
     pub fn derivatives_held(&self, values: &[f64], variable: usize, held: &HeldPieces) -> [f64; 4] {
         let jet = |i| jet(values, variable, i);
         self.tape.run_held(jet, &held.sides).derivatives()
     }
 
-    /// The value, and its first three derivatives with respect to the variable of that place in
-    /// the list given to [`parse`](Self::parse), the others held.
+    /// The value and its first three partial derivatives with respect to the variable with this index in
+    /// the list given to [`parse`](Self::parse).
     pub fn derivatives_wrt(&self, values: &[f64], variable: usize) -> [f64; 4] {
         self.tape.run(|i| jet(values, variable, i)).derivatives()
     }

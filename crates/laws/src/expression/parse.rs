@@ -1,5 +1,5 @@
-//! The grammar: operators by precedence (V. R. Pratt, *Top down operator precedence*, 1973),
-//! written to the tape as they are read.
+//! The parser: operators by precedence (V. R. Pratt, *Top down operator precedence*, 1973),
+//! appended to the tape as they are read.
 
 use std::ops::Range;
 
@@ -8,10 +8,10 @@ use super::function::{Binary, Comparison, Constant, Function};
 use super::tape::{Op, STACK_SIZE, Sides, Tape, is_identifier, run};
 use super::token::{self, Token, TokenKind};
 
-/// How deep parentheses, powers and signs may nest: each takes a few calls of the parser.
+/// Maximum nesting of parentheses, powers and signs: each takes a few recursive calls of the parser.
 const MAX_NESTING: usize = 64;
 
-/// How tightly the sign of an operand binds: -x^2 is -(x^2), and -x*y is (-x)*y.
+/// Precedence of the sign of an operand: -x^2 is -(x^2), and -x*y is (-x)*y.
 const SIGN_BINDING: u8 = 6;
 
 /// A part of the text that has a value.
@@ -24,11 +24,11 @@ struct Operand {
 struct Parser<'a> {
     text: &'a str,
     variables: &'a [&'a str],
-    /// The token just consumed, and the one to come.
+    /// The token just consumed, and the next one.
     previous: Option<Token>,
     token: Token,
     tape: Tape,
-    /// How many results the tape keeps here.
+    /// Number of intermediate results at this point of the tape.
     stack_depth: usize,
     nesting: usize,
 }
@@ -51,7 +51,7 @@ pub(super) fn parse(text: &str, variables: &[&str]) -> Result<Tape, ExpressionEr
     }
 }
 
-/// The operation between two operands, and how tightly it binds the one before and after it.
+/// The operation between two operands, and its precedence to the left and to the right.
 fn infix(kind: TokenKind) -> Option<(Binary, u8, u8)> {
     Some(match kind {
         TokenKind::Plus => (Binary::Add, 1, 2),
@@ -74,7 +74,7 @@ impl<'a> Parser<'a> {
         self.text.get(span).unwrap_or("")
     }
 
-    /// Everything from here that binds at least as tightly as `least`.
+    /// Parses an operand whose operators have at least the precedence `min_binding`.
     fn operand(&mut self, min_binding: u8) -> Result<Operand, ExpressionError> {
         self.nesting += 1;
         if self.nesting > MAX_NESTING {
@@ -136,7 +136,7 @@ impl<'a> Parser<'a> {
                 None => Err(self.unknown_function(name, token)),
             };
         }
-        // Names of the scene come first: none of them is hidden by a constant.
+        // Variables take precedence over constants.
         if let Some(index) = self.variables.iter().position(|v| *v == name) {
             return self.emit(Op::Variable(index), token.span(), &[]);
         }
@@ -208,7 +208,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Writes an operation behind its operands.
+    /// Appends an operation to its operands.
     fn emit(
         &mut self,
         op: Op,
@@ -239,14 +239,14 @@ impl<'a> Parser<'a> {
         }
     }
 
-    // What can be wrong.
+    // Errors.
 
     fn too_deep(&self, span: Range<usize>) -> ExpressionError {
         ExpressionError::new(span, "too deep: the expression is nested too far")
             .help("take parentheses away, or put the longer operand first")
     }
 
-    /// The token to come cannot begin an operand.
+    /// The next token cannot begin an operand.
     fn missing_operand(&self) -> ExpressionError {
         let here = self.token;
         match (self.previous, here.kind) {
@@ -283,7 +283,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The token to come cannot follow an operand.
+    /// The next token cannot follow an operand.
     fn unexpected(&self) -> ExpressionError {
         let here = self.token;
         let what = self.slice(here.span());

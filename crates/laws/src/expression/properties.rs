@@ -1,4 +1,4 @@
-//! What holds for every expression, and every text.
+//! Properties of every expression, and of every text.
 
 use proptest::prelude::*;
 
@@ -98,7 +98,7 @@ proptest! {
         }
     }
 
-    /// With the variables that occur alone, it gives the same value and derivatives.
+    /// Without the variables that do not occur, value and derivatives are the same.
     #[test]
     fn variables_that_do_not_occur_can_be_left_out(text in any_text(), x in -3.0..3.0, y in -3.0..3.0) {
         if let Ok(expression) = Expression::parse(&text, &NAMES) {
@@ -115,7 +115,7 @@ proptest! {
         }
     }
 
-    /// The value that comes with derivatives is the value, to the last bit.
+    /// The value of a jet equals that of the `f64` evaluation bit for bit.
     #[test]
     fn jets_carry_the_plain_value(text in any_text(), x in -3.0..3.0, y in -3.0..3.0) {
         if let Ok(expression) = Expression::parse(&text, &NAMES) {

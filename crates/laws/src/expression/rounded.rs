@@ -1,12 +1,12 @@
-//! Numbers that carry a bound of their rounding with them, so that a tape tells what of its result is none.
+//! Numbers with a bound of their rounding error, which a tape propagates (running error analysis).
 
 use super::function::{Binary, Unary};
 use super::jet::{Jet, TapeScalar};
 
-/// Roundings of a variable: those of an integration's last steps.
+/// Rounding errors of a variable, from the last steps of an integration.
 const OF_VARIABLE: f64 = 4.0;
 
-/// A value and the largest error that rounding leaves it, to the first order.
+/// A value and the first-order bound of its rounding error.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rounded {
     value: f64,
@@ -19,12 +19,12 @@ impl Rounded {
         Self { value, error }
     }
 
-    /// As a jet whose rate is the error.
+    /// The number as a jet whose rate is the error.
     fn moving(self) -> Jet {
         Jet::moving(Some([self.value, self.error]))
     }
 
-    /// The result of an operation, from those in which one operand after the other moves.
+    /// The result of an operation, from its jets with respect to one operand after another.
     fn of(results: &[Jet]) -> Self {
         let value = results[0].value();
         let moved = results.iter().map(|result| result.derivatives()[1].abs());

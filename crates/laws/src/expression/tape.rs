@@ -1,4 +1,4 @@
-//! Expressions in the order of their evaluation: operands first, then what joins them.
+//! Expressions in the order of their evaluation: operands first, then the operation (postfix order).
 //!
 //! The tape is also the syntax tree, flat: it is compared and dropped without recursion, however long a sum is.
 
@@ -6,14 +6,14 @@ use super::function::{Binary, Comparison, Constant, Unary};
 use super::jet::TapeScalar;
 use std::f64::consts::TAU;
 
-/// How many intermediate results a tape may keep at once. The parser refuses a text that needs
-/// more, so that evaluation has a fixed place for all of them.
+/// Maximum number of intermediate results of a tape. The parser rejects a text that needs
+/// more, so evaluation uses a stack of fixed size.
 pub(super) const STACK_SIZE: usize = 32;
 
-/// As many do for most tapes: clearing all places would take longer than their evaluation.
+/// A smaller stack that suffices for most tapes: clearing the full stack would take longer than their evaluation.
 const SMALL_STACK_SIZE: usize = 5;
 
-/// The operations of an expression, and how many results they keep at once.
+/// The operations of an expression, and their stack size.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Tape {
     pub(super) ops: Vec<Op>,
@@ -25,19 +25,19 @@ pub(super) struct Tape {
 pub(crate) enum Op {
     Number(f64),
     Constant(Constant),
-    /// The variable of that place in the list given to the parser.
+    /// The variable with this index in the list given to the parser.
     Variable(usize),
     Negate,
     Unary(Unary),
     Binary(Binary),
-    /// Of a value, the lower and the upper bound.
+    /// Its operands are a value, the lower and the upper bound.
     Clamp,
-    /// Of the two numbers compared, the value if it holds, and the value else.
+    /// Its operands are the two compared numbers, the value if the comparison is true, and the value otherwise.
     If(Comparison),
 }
 
 impl Op {
-    /// How many results it takes from the places; it leaves one.
+    /// Number of operands that it takes from the stack; it pushes one result.
     pub(crate) fn arity(self) -> usize {
         match self {
             Self::Number(_) | Self::Constant(_) | Self::Variable(_) => 0,
@@ -60,7 +60,7 @@ impl Tape {
         }
     }
 
-    /// The result where some operations are held on one of their pieces.
+    /// The result, with some operations held on one of their pieces.
     pub(super) fn run_held<S: TapeScalar>(
         &self,
         variable: impl Fn(usize) -> S,
@@ -70,12 +70,12 @@ impl Tape {
     }
 }
 
-/// Which piece of a switching operation holds: the sign of its function (0 where it rests on zero), or the whole number below it.
-/// An operation has up to two functions (`clamp`). None: as its operands say.
+/// The piece on which a switching operation is held: the sign of its function (0 if it rests on zero), or the integer below it.
+/// An operation has up to two functions (`clamp`). `None`: not held.
 pub(crate) type Sides = [Option<f64>; 2];
 
-/// Which pieces of a function hold, wherever its variables are: those of an expression by operation, that of a table
-/// by its number.
+/// The pieces on which a function is held, whatever its variables are: of an expression by operation, of a table
+/// by number.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct HeldPieces {
     pub(crate) sides: Vec<Sides>,
@@ -91,7 +91,7 @@ impl HeldPieces {
         self.sides.is_empty()
     }
 
-    /// The pieces of a function that is held by the values of its variables, one for each.
+    /// The pieces of a function that switches at values of its variables, one for each variable.
     pub fn pieces(&self) -> impl Iterator<Item = Option<f64>> {
         self.sides.iter().map(|[piece, _]| *piece)
     }
@@ -101,7 +101,7 @@ fn sides_of(sides: &[Sides], op: usize) -> Sides {
     sides.get(op).copied().unwrap_or_default()
 }
 
-/// The result of operations that keep N results at once; `held` gives the sides on which each operation is held.
+/// The result of operations with the stack size N; `held` gives the sides on which each operation is held.
 pub(super) fn run<S: TapeScalar, const N: usize>(
     ops: &[Op],
     variable: impl Fn(usize) -> S,
@@ -144,11 +144,11 @@ pub(super) fn run<S: TapeScalar, const N: usize>(
     stack[0]
 }
 
-/// A switching operation on the piece that its sides name, wherever its operands are.
+/// A switching operation on the piece given by its sides, whatever its operands are.
 fn held_piece<S: TapeScalar>(op: Op, operands: &[S], [side, second]: Sides) -> S {
     let difference = |a: usize, b: usize| operands[a].value() - operands[b].value();
     if op == Op::Clamp {
-        // Each of its bounds is held or not.
+        // Each of its two bounds may be held.
         let above_low = side.unwrap_or_else(|| difference(0, 1)) > 0.0;
         let above_high = second.unwrap_or_else(|| difference(0, 2)) > 0.0
             || !above_low && difference(1, 2) > 0.0;
@@ -188,12 +188,12 @@ fn held_piece<S: TapeScalar>(op: Op, operands: &[S], [side, second]: Sides) -> S
     }
 }
 
-/// The value of a part of a tape, which is an expression of its own.
+/// The value of a part of a tape that is a complete expression.
 pub(crate) fn run_parts(ops: &[Op], variable: impl Fn(usize) -> f64) -> f64 {
     run_held_parts(ops, variable, &[])
 }
 
-/// The same where some of its operations are held on one of their pieces.
+/// The value of such a part, with some of its operations held on one of their pieces.
 pub(crate) fn run_held_parts<S: TapeScalar>(
     ops: &[Op],
     variable: impl Fn(usize) -> S,

@@ -65,7 +65,7 @@ fn numbers_and_names() {
     let of = |text, name| Expression::parse(text, &[name]).map(|e| e.eval(&[4.0]));
     assert_eq!(of("2*φ₁", "φ₁"), Ok(8.0));
     assert_eq!(of("e^2", "e"), Ok(16.0));
-    // What the scene names is not hidden by a constant or a function.
+    // A variable is not hidden by a constant or a function.
     assert_eq!(of("2*pi", "pi"), Ok(8.0));
     assert_eq!(of("sin + sin(0)", "sin"), Ok(4.0));
 }
@@ -181,7 +181,7 @@ fn derivatives_at_special_places() {
         ("sign(x)*x", -2.0, [2.0, -1.0, 0.0, 0.0]),
         ("clamp(x, -1, 1)", 2.0, [1.0, 0.0, 0.0, 0.0]),
         ("if(x < 0, -x, x^2)", 3.0, [9.0, 6.0, 2.0, 0.0]),
-        // The root of what stands still has derivatives, though the root has none there.
+        // The root of a constant zero has derivatives, although the root has none there.
         ("sqrt(0) + x", 1.0, [1.0, 1.0, 0.0, 0.0]),
         ("sqrt(max(0, x))", -1.0, [0.0; 4]),
         ("hypot(x, 0)", -2.0, [2.0, -1.0, 0.0, 0.0]),
@@ -195,7 +195,7 @@ fn derivatives_at_special_places() {
             "{text} at {x}"
         );
     }
-    // And where there is none, none is invented.
+    // And where derivatives do not exist, none are invented.
     for text in ["sqrt(x^4)", "hypot(x, x)", "atan2(x, x)", "sqrt(abs(x))"] {
         assert!(parse(text).derivatives_wrt(&[0.0], 0)[2].is_nan(), "{text}");
     }
@@ -203,14 +203,14 @@ fn derivatives_at_special_places() {
         parse("sqrt(x)").derivatives_wrt(&[0.0], 0)[1],
         f64::INFINITY
     );
-    // The others held; and along what does not occur.
+    // Partial derivatives; and with respect to a variable that does not occur.
     let e = parse("x^2*y");
     assert_eq!(e.derivatives_wrt(&[3.0, 5.0], 0), [45.0, 30.0, 10.0, 0.0]);
     assert_eq!(e.derivatives_wrt(&[3.0, 5.0], 1), [45.0, 9.0, 0.0, 0.0]);
     assert_eq!(e.derivatives_wrt(&[3.0, 5.0], 9), [45.0, 0.0, 0.0, 0.0]);
 }
 
-/// Every error: where it is, what it says, what it advises.
+/// Every error: its span, its message, its help.
 #[test]
 fn errors() {
     // Text, span of what is wrong, message, part of the help (empty: whatever).
@@ -357,7 +357,7 @@ fn deep_and_long() {
         assert!(error.message.starts_with("too deep"), "{}", error.message);
         assert!(start == 0 || error.span.start <= start, "{:?}", error.span);
     }
-    // Few parentheses, but many results that wait: 1 + (2 + (3 + …
+    // Few parentheses, but many intermediate results: 1 + (2 + (3 + …
     let waiting = |n: usize| "x + (".repeat(n) + "x" + &")".repeat(n);
     assert!(Expression::parse(&waiting(31), &NAMES).is_ok());
     let error = Expression::parse(&waiting(32), &NAMES).expect_err("too deep");

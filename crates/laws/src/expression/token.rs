@@ -1,4 +1,4 @@
-//! The text cut into numbers, names and signs.
+//! The text split into numbers, names and operators.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use super::error::ExpressionError;
 use super::function::Comparison;
 use super::tape::{continues_identifier, starts_identifier};
 
-/// What a piece of the text is.
+/// The kind of a token.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum TokenKind {
     Number(f64),
@@ -26,7 +26,7 @@ pub(super) enum TokenKind {
     EndOfText,
 }
 
-/// A piece of the text, from one byte to another.
+/// A token with its byte range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Token {
     pub(super) kind: TokenKind,
@@ -45,7 +45,7 @@ impl Token {
     }
 }
 
-/// The piece that begins at byte `from` or, after blanks, behind it.
+/// The next token at or after byte `start`, after blanks.
 pub(super) fn next_token(text: &str, start: usize) -> Result<Token, ExpressionError> {
     let tail = text.get(start..).unwrap_or("");
     let rest = tail.trim_start();

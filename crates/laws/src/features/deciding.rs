@@ -1,19 +1,19 @@
-//! On which side a switch is throughout an interval.
+//! The side of a switch throughout an interval.
 
 use super::enclosure::Enclosure;
 use super::interval::Interval;
 use super::switching::{NOTHING, Pieces, Switch};
 use crate::expression::Sides;
 
-/// So far from where it touches a level a function is apart from it by more than a rounding, as a part of time.
+/// Distance from a touching point, relative to the time, at which a function differs from the level by more than rounding.
 const TOUCH: f64 = 1e-7;
-/// Roundings of time on both sides of a switch in which its value is not trusted.
+/// Number of rounding errors of time on both sides of a switch within which its value is not trusted.
 pub(super) const ROUNDINGS: f64 = 2.0;
 
 pub(super) enum Decision {
     /// Throughout.
     Side(f64),
-    /// One switch within, where the function has this value; its values at the ends, less that.
+    /// One switch within the interval, at this value of the function, with the values at the ends relative to it.
     Root {
         level: f64,
         values: [f64; 2],
@@ -21,10 +21,12 @@ pub(super) enum Decision {
     Unknown,
 }
 
+/// The side of a switch in an interval of a problem that begins at `start`.
 pub(super) fn decide(
     pieces: &Pieces,
     switch: &Switch,
-    (over, start): (Interval, f64),
+    over: Interval,
+    start: f64,
     sides: &[Sides],
 ) -> Decision {
     let enclosure = pieces.enclose_switch(switch, over, sides);
@@ -48,14 +50,14 @@ pub(super) fn decide(
         0.0
     };
     let undecided = || {
-        let resting = || match switch.at_integers {
-            true => None,
-            false => pieces.resting_side(switch, over, sides),
+        let resting = || {
+            let resting_side = || pieces.resting_side(switch, over, sides);
+            (!switch.at_integers).then(resting_side).flatten()
         };
-        let touches = touching(pieces, switch, (over, start, sides), (enclosure, level));
+        let touches = touching(pieces, switch, over, start, sides, enclosure, level);
         // In a tail that underflows.
         let vanishes = || {
-            let [before, behind] = sides_around(pieces, switch, (over, over.lo), 0.0);
+            let [before, behind] = sides_around(pieces, switch, over, over.lo, 0.0);
             (value.magnitude() < NOTHING && before == behind).then_some(before)
         };
         touches
@@ -70,7 +72,7 @@ pub(super) fn decide(
     if values[0] * values[1] < 0.0 {
         return Decision::Root { level, values };
     }
-    // A zero at an end, or beyond it by rounding, is outside: it grows or falls throughout.
+    // The function is monotone; a zero at an end, or beyond it within rounding, is outside.
     let sum = values[0] + values[1];
     match (sum == 0.0 || sum.is_nan(), switch.at_integers) {
         (true, _) => undecided(),
@@ -79,20 +81,21 @@ pub(super) fn decide(
     }
 }
 
-/// The side of a switch in an interval of a few roundings.
-pub(super) fn side_within(pieces: &Pieces, switch: &Switch, (over, start): (Interval, f64)) -> f64 {
+/// The side of a switch in an interval of a few rounding errors.
+pub(super) fn side_within(pieces: &Pieces, switch: &Switch, over: Interval, start: f64) -> f64 {
     let apart = TOUCH * over.magnitude();
-    match sides_around(pieces, switch, (over, start), apart) {
+    match sides_around(pieces, switch, over, start, apart) {
         [before, behind] if before == behind => before,
         _ => switch.side(pieces.switch_value(switch, 0.5 * (over.lo + over.hi))),
     }
 }
 
-/// The sides of a switch before and behind a short interval: the same where nothing is before it.
+/// The sides of a switch before and after a short interval; equal if nothing precedes it.
 fn sides_around(
     pieces: &Pieces,
     switch: &Switch,
-    (over, start): (Interval, f64),
+    over: Interval,
+    start: f64,
     apart: f64,
 ) -> [f64; 2] {
     let ends = [over.lo - apart, over.hi + apart];
@@ -100,14 +103,17 @@ fn sides_around(
     [if ends[0] < start { ends[1] } else { ends[0] }, ends[1]].map(side_at)
 }
 
-/// The side of what touches its level in an interval, within a rounding of its value, and does not pass it.
+/// The side of a function that touches its level in an interval within rounding, and does not pass it.
 fn touching(
     pieces: &Pieces,
     switch: &Switch,
-    (over, start, sides): (Interval, f64, &[Sides]),
-    (enclosure, level): (Enclosure, f64),
+    over: Interval,
+    start: f64,
+    sides: &[Sides],
+    enclosure: Enclosure,
+    level: f64,
 ) -> Option<f64> {
-    /// So many times as far from the level as a parabola is by a rounding.
+    /// Multiple of the distance from the level at which a parabola differs from it by a rounding error.
     const CLEARLY: f64 = 4.0;
     let [value, _, second] = enclosure.0;
     let rounding = pieces.rounding(switch, over, sides);
@@ -117,7 +123,7 @@ fn touching(
     }
     let apart = CLEARLY * (rounding / second.magnitude()).sqrt();
     if apart > CLEARLY * over.magnitude() {
-        // It stays there as far as can be seen.
+        // It stays on the level within rounding.
         let middle = 0.5 * (over.lo + over.hi);
         return Some(switch.side(pieces.switch_value(switch, middle)));
     }
@@ -125,11 +131,11 @@ fn touching(
     if over.width() > apart {
         return None;
     }
-    let [before, behind] = sides_around(pieces, switch, (over, start), apart);
+    let [before, behind] = sides_around(pieces, switch, over, start, apart);
     (before == behind).then_some(before)
 }
 
-/// The last instant before a switch, and the first behind it, at which its function has the sign of that end.
+/// The last instant before a switch and the first after it at which the function has the sign of the respective end.
 pub(super) fn bracket(
     pieces: &Pieces,
     switch: &Switch,
@@ -138,7 +144,7 @@ pub(super) fn bracket(
     values: [f64; 2],
 ) -> [f64; 2] {
     let value = |x: f64| pieces.switch_value(switch, x) - level;
-    // The boundary between where the sign of one end holds and where it does not.
+    // The boundary of the region with the sign of one end.
     let boundary = |mut inside: f64, mut outside: f64, sign: f64| {
         loop {
             let middle = 0.5 * (inside + outside);

@@ -27,12 +27,12 @@ impl Enclosure {
         self.0[0]
     }
 
-    /// One of two numbers and whatever is between them.
+    /// Any number between two numbers, without known derivatives.
     pub(crate) fn between(low: f64, high: f64) -> Self {
         Self([Interval::checked(low, high), ZERO, ZERO])
     }
 
-    /// The number, if it is one that does not vary.
+    /// The number, if it is constant.
     pub(crate) fn number(self) -> Option<f64> {
         let Interval { lo, hi } = self.value();
         (lo == hi && self.is_constant()).then_some(lo)
@@ -102,7 +102,7 @@ impl Enclosure {
         self.unary(Unary::Ln).times(exponent).unary(Unary::Exp)
     }
 
-    /// A function; those made of straight pieces are unknown here, because which piece holds must be decided before.
+    /// A function of it. Piecewise linear functions give no bounds here, because their piece must be decided first.
     pub(crate) fn unary(self, function: Unary) -> Self {
         let x = self.value();
         let all = [f64::NEG_INFINITY, f64::INFINITY];
@@ -165,7 +165,7 @@ impl Enclosure {
                 let two = Self::constant(2.0);
                 self.power(two).plus(other.power(two)).sqrt()
             }
-            // arctan of y/x or x/y, where one of the two never vanishes.
+            // arctan of y/x or x/y, if one of the two is never zero.
             Binary::Atan2 if !other.value().contains(0.0) => {
                 let ratio = self.times(other.recip()).unary(Unary::Atan);
                 let half_turn = if other.value().lo > 0.0 {

@@ -13,7 +13,7 @@ pub(crate) struct Interval {
 }
 
 impl Interval {
-    /// Nothing is known.
+    /// All numbers: no bound.
     pub(crate) const ENTIRE: Self = Self {
         lo: f64::NEG_INFINITY,
         hi: f64::INFINITY,
@@ -23,7 +23,7 @@ impl Interval {
         Self::checked(x, x)
     }
 
-    /// From one bound to the other; everything where one is not a number.
+    /// The interval between two bounds; all numbers if one is NaN.
     pub(crate) fn checked(lo: f64, hi: f64) -> Self {
         if lo <= hi {
             Self { lo, hi }
@@ -32,7 +32,7 @@ impl Interval {
         }
     }
 
-    /// The same after rounding.
+    /// The interval between two bounds, widened by rounding.
     fn outward(lo: f64, hi: f64) -> Self {
         let slack = |x: f64| 4.0 * f64::EPSILON * x.abs() + f64::MIN_POSITIVE;
         let lower = if lo.is_finite() { lo - slack(lo) } else { lo };
@@ -103,12 +103,12 @@ impl Interval {
         self.mul(other.recip())
     }
 
-    /// A function that grows throughout.
+    /// The values of an increasing function.
     pub(crate) fn growing(self, f: impl Fn(f64) -> f64) -> Self {
         Self::outward(f(self.lo), f(self.hi))
     }
 
-    /// The same where it is defined from `from` to `to` only.
+    /// The values of an increasing function that is defined between `from` and `to` only.
     pub(crate) fn growing_within(self, [from, to]: [f64; 2], f: impl Fn(f64) -> f64) -> Self {
         if self.lo < from || self.hi > to {
             return Self::ENTIRE;
@@ -132,7 +132,7 @@ impl Interval {
             .max_zero()
     }
 
-    /// Without what lies below zero, for functions that are never negative.
+    /// The interval without negative numbers, for functions that are never negative.
     fn max_zero(self) -> Self {
         Self::checked(self.lo.max(0.0), self.hi)
     }
@@ -162,7 +162,7 @@ impl Interval {
     /// A sine whose crests are at `crest` and whole periods from there.
     fn wave(self, crest: f64, f: impl Fn(f64) -> f64) -> Self {
         let slack = 4.0 * f64::EPSILON * self.magnitude();
-        // The width of everything is not a number.
+        // The width of all numbers is NaN.
         let width = self.width();
         if width.is_nan() || width >= TAU {
             return Self { lo: -1.0, hi: 1.0 };
@@ -219,7 +219,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// What is inside stays inside, for every operation.
+        /// The result of every operation contains the results of its members.
         #[test]
         fn every_member_s_value_is_contained((a, x) in interval(), (b, y) in interval()) {
             let unary: [(Interval, f64); 11] = [
@@ -250,7 +250,7 @@ mod tests {
         }
     }
 
-    /// As narrow as they can be, not only wide enough.
+    /// Bounds are tight, not only valid.
     #[test]
     fn waves_and_squares_are_tight() {
         let over = |lo, hi| Interval::checked(lo, hi);

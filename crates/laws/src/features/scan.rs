@@ -6,31 +6,31 @@ use super::interval::Interval;
 use super::switching::{NOTHING, Pieces, Switch};
 use crate::expression::Sides;
 
-/// A piece is smooth if a parabola is as good as its terms, to this part of their largest values.
+/// A piece is smooth if its terms differ from parabolas by at most this fraction of their largest values.
 const SMOOTHNESS: f64 = 1e-3;
 /// Shortest piece, relative to the ends of the whole interval.
 const MIN_WIDTH: f64 = 64.0 * f64::EPSILON;
-/// Parts of the interval in which the largest values of the terms are looked for.
+/// Number of parts of the interval in which the largest values of the terms are searched.
 const SCALE_PARTS: usize = 128;
-/// Most cells that may be tried for one piece.
+/// Maximum number of cells that are tried for one piece.
 const MAX_TRIALS: usize = 100_000;
 
 /// A part of the interval in which everything is smooth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
-    /// Where it begins: after a switch, the first instant at which it has switched.
+    /// Its beginning: after a switch, the first instant at which it has switched.
     pub from: f64,
-    /// Where it ends: before a switch, the last instant at which it has not yet switched.
+    /// Its end: before a switch, the last instant at which it has not switched.
     pub to: f64,
-    /// The length over which everything in it is smooth.
+    /// The length over which all functions in it are smooth.
     pub width: f64,
-    /// Whether something switches, jumps or has a kink behind it.
+    /// Whether a function switches, jumps or has a kink at its end.
     pub restart: bool,
-    /// The source that bounds its width, if one does.
+    /// The source that limits its width, if any.
     pub source: Option<usize>,
 }
 
-/// An interval in which the switches of a source cannot be told apart.
+/// An interval in which the switches of a source cannot be separated.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("source {source_index} switches too often near {at}")]
 pub struct Unresolved {
@@ -44,18 +44,18 @@ pub struct Unresolved {
 #[derive(Debug, Clone)]
 pub struct Scan<'f> {
     features: &'f Features,
-    /// The cells still to be looked at, the first last.
+    /// The cells not yet examined, in reverse order.
     open: Vec<Cell>,
     /// The next knot, and the end.
     next_knot: usize,
     from: f64,
     to: f64,
-    /// Where the whole interval begins.
+    /// Start of the whole interval.
     start: f64,
     min_width: f64,
     /// By expression and term: its largest value.
     scales: Vec<Vec<f64>>,
-    /// The piece found last, whose end depends on what the next one says.
+    /// The last piece, whose end depends on the next one.
     held: Option<DecidedPiece>,
     failed: bool,
 }
@@ -64,22 +64,22 @@ pub struct Scan<'f> {
 struct Cell {
     from: f64,
     to: f64,
-    /// By expression and operation: what is decided.
+    /// By expression and operation: the decided sides.
     sides: Vec<Vec<Sides>>,
     restart: bool,
-    /// The source that bounds it, if one does.
+    /// The source that limits it, if any.
     source: Option<usize>,
 }
 
-/// A piece, and by expression and operation what is decided in it.
+/// A piece, with the decided sides by expression and operation.
 type DecidedPiece = (Piece, Vec<Vec<Sides>>);
 
-/// What is found about a cell.
+/// The result of examining a cell.
 enum Examined {
-    /// The source that bounds its width, if one does.
+    /// The source that limits its width, if any.
     Smooth(Option<usize>),
     Halve(usize),
-    /// Of an expression, a switch between two instants, with its sides before and behind.
+    /// A switch of an expression between two instants, with its sides before and after.
     SwitchAt {
         expression: usize,
         switch: Switch,
@@ -89,11 +89,14 @@ enum Examined {
 }
 
 impl<'f> Scan<'f> {
-    /// The pieces between switches, or with `smooth` those in which everything is smooth besides.
+    /// The pieces between switches; with `smooth` they are divided until all functions are smooth.
     pub(super) fn new(features: &'f Features, from: f64, to: f64, smooth: bool) -> Self {
-        let scales = features.expressions.iter().map(|(_, pieces)| match smooth {
-            true => term_scales(pieces, from, to),
-            false => Vec::new(),
+        let scales = features.expressions.iter().map(|(_, pieces)| {
+            if smooth {
+                term_scales(pieces, from, to)
+            } else {
+                Vec::new()
+            }
         });
         Self {
             scales: scales.collect(),
@@ -109,12 +112,12 @@ impl<'f> Scan<'f> {
         }
     }
 
-    /// Whether the last piece has been given.
+    /// Whether the last piece has been returned.
     pub fn is_exhausted(&self) -> bool {
         self.held.is_none() && self.open.is_empty() && self.from >= self.to
     }
 
-    /// The interval from where the last knot was to the next.
+    /// The interval from the last knot to the next.
     fn next_cell(&mut self) -> Option<Cell> {
         if self.from >= self.to {
             return None;
@@ -154,10 +157,10 @@ impl<'f> Scan<'f> {
                 if is_decided || pieces.is_unused(switch.op, sides) {
                     continue;
                 }
-                match decide(pieces, switch, (over, self.start), sides) {
+                match decide(pieces, switch, over, self.start, sides) {
                     Decision::Side(side) => sides[switch.op][switch.function] = Some(side),
                     Decision::Unknown if is_short => {
-                        let side = side_within(pieces, switch, (over, self.start));
+                        let side = side_within(pieces, switch, over, self.start);
                         sides[switch.op][switch.function] = Some(side);
                     }
                     Decision::Unknown => return Examined::Halve(*source),
@@ -182,7 +185,7 @@ impl<'f> Scan<'f> {
         for (e, (source, pieces)) in self.features.expressions.iter().enumerate() {
             for (&term, &scale) in pieces.terms.iter().zip(&self.scales[e]) {
                 let [value, slope, second] = pieces.enclose(term, over, &cell.sides[e]).0;
-                // From a parabola, a line or a constant: where an exponential overflows, only the value is bounded.
+                // Difference from a parabola, a line or a constant: if an exponential overflows, only the value is bounded.
                 let w = over.width();
                 let deviations = [
                     second.width() * w * w / 16.0,
@@ -201,12 +204,12 @@ impl<'f> Scan<'f> {
         Examined::Smooth(narrowest)
     }
 
-    /// The first instant of the first cell at which its switches are on their sides: one may switch exactly where it begins.
+    /// The first instant of the first cell at which its switches are on their sides: a switch may lie exactly at the start.
     fn first_instant(&self, cell: &Cell) -> f64 {
         const GROWTH: f64 = 16.0;
         let rounding = (f64::EPSILON * cell.from.abs()).max(NOTHING);
-        let shifts = std::iter::successors(Some(rounding), |shift| Some(GROWTH * shift));
-        let shifts = shifts.take_while(|&shift| shift < self.min_width);
+        let shifts = std::iter::successors(Some(rounding), |shift| Some(GROWTH * shift))
+            .take_while(|&shift| shift < self.min_width);
         let instants = || std::iter::once(cell.from).chain(shifts.clone().map(|s| cell.from + s));
         let mut first = cell.from;
         for ((_, pieces), sides) in self.features.expressions.iter().zip(&cell.sides) {
@@ -221,7 +224,7 @@ impl<'f> Scan<'f> {
         first.min(cell.to)
     }
 
-    /// The piece of a smooth cell, with the laws that are smooth over shorter lengths.
+    /// The piece of a smooth cell, shortened by laws that are smooth over shorter lengths.
     fn piece(&self, cell: &Cell, source: Option<usize>) -> Piece {
         let middle = 0.5 * (cell.from + cell.to);
         let (mut width, mut source) = (cell.to - cell.from, source.or(cell.source));
@@ -243,7 +246,7 @@ impl<'f> Scan<'f> {
     }
 }
 
-/// The largest absolute value of each term, or somewhat more.
+/// An upper bound of the absolute value of each term.
 pub(super) fn term_scales(pieces: &Pieces, from: f64, to: f64) -> Vec<f64> {
     let part = |k: usize| from + (to - from) * k as f64 / SCALE_PARTS as f64;
     let sides = vec![[None; 2]; pieces.len()];
@@ -251,9 +254,10 @@ pub(super) fn term_scales(pieces: &Pieces, from: f64, to: f64) -> Vec<f64> {
         let of = |k: usize| {
             let over = Interval::checked(part(k), part(k + 1));
             let bound = pieces.enclose(term, over, &sides).value().magnitude();
-            match bound.is_finite() {
-                true => bound,
-                false => pieces.term_value(term, over.lo).abs(),
+            if bound.is_finite() {
+                bound
+            } else {
+                pieces.term_value(term, over.lo).abs()
             }
         };
         let finite = (0..SCALE_PARTS).map(of).filter(|s| s.is_finite());
@@ -281,7 +285,7 @@ impl Iterator for Scan<'_> {
                 && !held.restart
                 && differ(held_sides, &sides)
             {
-                // Something switches exactly where two cells meet.
+                // A function switches exactly where two cells meet.
                 held.restart = true;
                 let rounding = ROUNDINGS * f64::EPSILON * piece.from.abs();
                 held.to = (held.to - rounding).max(held.from);
@@ -295,7 +299,7 @@ impl Iterator for Scan<'_> {
     }
 }
 
-/// Whether a switch is on one side in the one and on the other in the other.
+/// Whether a switch is on different sides in two decisions.
 fn differ(one: &[Vec<Sides>], other: &[Vec<Sides>]) -> bool {
     let pairs = one.iter().flatten().zip(other.iter().flatten());
     let mut sides = pairs.flat_map(|(a, b)| a.iter().zip(b));

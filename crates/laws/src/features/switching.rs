@@ -1,40 +1,40 @@
-//! Where an expression's pieces meet: the comparisons, kinks and jumps that depend on one variable alone.
+//! Where the pieces of an expression meet: the comparisons, kinks and jumps that depend on one variable only.
 
 use super::enclosure::Enclosure;
 use super::interval::Interval;
 use crate::expression::{Binary, Expression, Op, Sides, Unary, run_held_parts, run_parts, sign};
 
-/// What is below this is nothing in any unit: the tail of a pulse where it underflows.
+/// Values below this are zero in any unit: the tail of a pulse where it underflows.
 pub(super) const NOTHING: f64 = 1e-280;
 
-/// An expression in one of its variables, the others unknown.
+/// An expression as a function of one of its variables, with the others unknown.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Pieces {
     ops: Vec<Op>,
     variable: usize,
-    /// By operation: where that of its first operand begins.
+    /// By operation: index of the first operation of its first operand.
     starts: Vec<usize>,
     /// The functions whose zeros separate the pieces, inner ones first, and the condition of an `if` before its branches.
     pub(super) switches: Vec<Switch>,
-    /// The terms that depend on the variable alone and on nothing else, by their last operation.
+    /// The terms that depend on the variable only, by their last operation.
     pub(super) terms: Vec<usize>,
 }
 
-/// A function of the variable whose zeros (or whole values) separate two pieces.
+/// A function of the variable whose zeros (or integer values) separate pieces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Switch {
-    /// The operation that switches, and which of its functions this is.
+    /// The switching operation, and the index of this function of it.
     pub(crate) op: usize,
     pub(crate) function: usize,
     /// The last operation of the minuend and of the subtrahend, if there is one.
     pub(crate) left: usize,
     pub(crate) right: Option<usize>,
-    /// Whether it switches at every whole value, not only at zero.
+    /// Whether it switches at every integer, not only at zero.
     pub(crate) at_integers: bool,
 }
 
 impl Switch {
-    /// The side of a value of its function.
+    /// The side on which a value of its function is.
     pub(super) fn side(&self, value: f64) -> f64 {
         if self.at_integers {
             value.floor()
@@ -44,9 +44,9 @@ impl Switch {
     }
 }
 
-/// The operations of an expression with what they depend on.
+/// The operands and dependencies of the operations of an expression.
 pub(crate) struct Operands {
-    /// By operation: where that of its first operand begins.
+    /// By operation: index of the first operation of its first operand.
     pub(crate) starts: Vec<usize>,
     /// By operation: whether it depends on the variable, and on another one.
     pub(crate) depends: Vec<[bool; 2]>,
@@ -79,7 +79,7 @@ impl Operands {
         found
     }
 
-    /// Whether two operands are the same text, so that their difference is zero everywhere.
+    /// Whether two operands are identical, so that their difference is zero everywhere.
     pub(crate) fn is_same(&self, ops: &[Op], a: usize, b: usize) -> bool {
         ops[self.starts[a]..=a] == ops[self.starts[b]..=b]
     }
@@ -139,7 +139,7 @@ impl Pieces {
         self.ops.len()
     }
 
-    /// Bounds of the part that ends with operation `last`, over an interval of the variable on which these sides hold.
+    /// Bounds of the part that ends with operation `last`, over an interval of the variable with these sides.
     pub(super) fn enclose(&self, last: usize, over: Interval, sides: &[Sides]) -> Enclosure {
         let first = self.starts[last];
         let is_own = |index| index == self.variable;
@@ -167,15 +167,15 @@ impl Pieces {
         }
     }
 
-    /// The side of a switch whose function is zero throughout an interval but for rounding: 0 where that is exact, as of `abs(t) - t`
-    /// behind 0. Where both pieces meet, as of `max(sin(t), t)` near 0, either will do.
+    /// The side of a switch whose function is zero within rounding throughout an interval: 0 if it is exactly zero, as `abs(t) - t`
+    /// after 0. If both pieces agree within rounding, as `max(sin(t), t)` near 0, either side is taken.
     pub(super) fn resting_side(
         &self,
         switch: &Switch,
         over: Interval,
         sides: &[Sides],
     ) -> Option<f64> {
-        /// Roundings of the slopes of all parts together, as a part of the largest.
+        /// Rounding error of the slopes of all parts together, relative to the largest.
         const ROUNDING: f64 = 1e-13;
         let middle = 0.5 * (over.lo + over.hi);
         let values = [over.lo, middle, over.hi].map(|x| self.switch_value(switch, x));
@@ -195,14 +195,14 @@ impl Pieces {
         is_zero.then(|| sign(values[1]))
     }
 
-    /// The rounding of a switch's function.
+    /// The rounding error of a switch's function.
     pub(super) fn rounding(&self, switch: &Switch, over: Interval, sides: &[Sides]) -> f64 {
         const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
         let parts = std::iter::once(switch.left).chain(switch.right);
         ROUNDINGS * parts.map(|last| self.size(last, over, sides)).sum::<f64>()
     }
 
-    /// What the rounding of a part is relative to: its terms, which may cancel each other.
+    /// The scale of the rounding error of a part: the size of its terms, which may cancel.
     fn size(&self, last: usize, over: Interval, sides: &[Sides]) -> f64 {
         let of_operands = |count: usize| {
             let ends =
@@ -218,15 +218,16 @@ impl Pieces {
         }
     }
 
-    /// Whether an operation is in the branch that a decided `if` does not take.
+    /// Whether an operation belongs to the branch that a decided `if` does not take.
     pub(super) fn is_unused(&self, op: usize, sides: &[Sides]) -> bool {
         let outer = self.ops.iter().zip(sides).enumerate().skip(op + 1);
         let mut unused = outer.filter_map(|(i, (outer, [side, _]))| match (outer, side) {
             (Op::If(comparison), &Some(side)) => {
                 let no = self.starts[i - 1];
-                Some(match comparison.holds(side, 0.0) {
-                    true => no..i,
-                    false => self.starts[no - 1]..no,
+                Some(if comparison.holds(side, 0.0) {
+                    no..i
+                } else {
+                    self.starts[no - 1]..no
                 })
             }
             _ => None,
@@ -236,8 +237,9 @@ impl Pieces {
 
     /// The largest slope of all parts of a switch's function.
     fn largest_slope(&self, switch: &Switch, over: Interval, sides: &[Sides]) -> f64 {
-        let parts = std::iter::once(switch.left).chain(switch.right);
-        let parts = parts.flat_map(|last| self.starts[last]..=last);
+        let parts = std::iter::once(switch.left)
+            .chain(switch.right)
+            .flat_map(|last| self.starts[last]..=last);
         let slopes = parts.map(|last| self.enclose(last, over, sides).0[1].magnitude());
         slopes.fold(0.0, f64::max)
     }
@@ -257,7 +259,7 @@ impl Pieces {
     }
 }
 
-/// Bounds of an expression where its variables have these, on the sides that hold.
+/// Bounds of an expression from bounds of its variables, on the given sides.
 pub(crate) fn enclose_ops(
     ops: &[Op],
     sides: &[Sides],
@@ -326,7 +328,7 @@ fn enclose_op(
     }
 }
 
-/// The sides that are held, and where none is, those on which the values that an operation compares are.
+/// The held sides of an operation, or, if none is held, the sides that its compared values determine.
 fn decided(op: Op, operands: &[Enclosure], [side, second]: Sides) -> Sides {
     let decide = |held: Option<f64>, difference: Enclosure| {
         let Interval { lo, hi } = difference.value();
@@ -347,13 +349,13 @@ fn decided(op: Op, operands: &[Enclosure], [side, second]: Sides) -> Sides {
     }
 }
 
-/// The value of an operation on numbers that do not vary, as its evaluation yields it: what rests on a threshold is not beside it.
+/// The value of an operation on constants, as evaluation yields it: a constant on a threshold is exactly on it.
 fn exact(op: Op, operands: &[Enclosure], sides: Sides) -> Option<f64> {
     if op.arity() == 0 {
         return None;
     }
     if operands.iter().any(|o| o.number().is_none()) {
-        // Nothing times zero varies.
+        // A product with zero is constant.
         let is_zero = |o: &Enclosure| o.number() == Some(0.0);
         let is_product = op == Op::Binary(Binary::Multiply);
         return (is_product && operands.iter().any(is_zero)).then_some(0.0);
@@ -389,7 +391,7 @@ pub(crate) fn switches_of(operation: Op, op: usize, operands: &[usize]) -> Vec<S
             vec![zero(0, x, Some(low)), zero(1, x, Some(high))]
         }
         (Op::If(_), &[a, b, ..]) => vec![zero(0, a, Some(b))],
-        // Smooth wherever they are finite. Every kind is named, so that a new one is judged.
+        // Smooth wherever they are finite. Every kind is listed, so that a new one must be classified.
         (
             Op::Number(_)
             | Op::Constant(_)
@@ -420,7 +422,7 @@ pub(crate) fn switches_of(operation: Op, op: usize, operands: &[usize]) -> Vec<S
             ),
             _,
         ) => Vec::new(),
-        // The parser gives each operation its operands.
+        // The parser guarantees the operands of each operation.
         (
             Op::Unary(Unary::Abs | Unary::Sign | Unary::Step | Unary::Floor)
             | Op::Binary(Binary::Min | Binary::Max | Binary::Atan2)

@@ -1,4 +1,4 @@
-//! Every switch is found, to rounding, and between switches every piece is as smooth as it says.
+//! Every switch is located to rounding, and every piece between switches is as smooth as stated.
 
 use super::*;
 use proptest::prelude::*;
@@ -67,7 +67,7 @@ fn switches_are_where_they_are_by_hand() {
     }
 }
 
-/// Within a piece nothing switches: the values at both ends, and close to them, are of the same side.
+/// No function switches within a piece: the values at both ends, and close to them, are on the same side.
 #[test]
 fn a_piece_ends_before_the_switch_and_the_next_begins_behind_it() {
     let text = "if(sin(20*t) > 0.3, 1, 0) + step(cos(7*t)) + sign(t - 1)";
@@ -198,7 +198,7 @@ proptest! {
     }
 }
 
-/// Where two pieces meet within a rounding, in tails that underflow, and in branches that are not taken, nothing is searched for.
+/// Pieces that agree within rounding, tails that underflow, and branches that are not taken need no search.
 #[test]
 fn what_a_rounding_decides_is_not_searched() {
     let touching = "floor(2 - cos(2*t)) + floor(max(t - 0.25, t*t))";

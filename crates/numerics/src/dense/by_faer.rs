@@ -1,4 +1,4 @@
-//! By faer, for matrices of any size.
+//! Decompositions by faer, for matrices of any size.
 
 use super::{Matrix, Svd};
 use faer::{Mat, MatRef};

@@ -1,13 +1,13 @@
-//! Eigenvalues of a real matrix: reflections give it the form of Hessenberg, then steps of the QR method with two shifts at once
-//! split one or two eigenvalues off after another.
+//! Eigenvalues of a real matrix: Householder reflections reduce it to Hessenberg form, then double-shift QR steps split off one or two
+//! eigenvalues at a time.
 //!
 //! Source: R. S. Martin, G. Peters, J. H. Wilkinson, *The QR algorithm for real Hessenberg matrices*, Numer. Math. 14 (1970).
 
 use super::Matrix;
 
-/// Steps for one or two eigenvalues; two or three are usual.
+/// Maximum number of steps for one or two eigenvalues; two or three are usual.
 const MAX_STEPS: usize = 90;
-/// After so many steps in vain the shifts are others.
+/// Number of steps without convergence after which exceptional shifts are used.
 const STEPS_IN_VAIN: usize = 10;
 
 pub(super) fn eigenvalues(matrix: &Matrix) -> Option<Vec<[f64; 2]>> {
@@ -15,7 +15,7 @@ pub(super) fn eigenvalues(matrix: &Matrix) -> Option<Vec<[f64; 2]>> {
     reduce(&mut a);
     let mut found = Vec::with_capacity(a.rows);
     let mut shifted = 0.0;
-    // The part that is left ends before this row.
+    // The remaining active block ends before this row.
     let mut end = a.rows;
     let mut steps = 0;
     while end > 0 {
@@ -51,7 +51,7 @@ fn reduce(a: &mut Matrix) {
             continue;
         }
         let head = a[(k, k - 1)];
-        // Away from cancellation.
+        // The sign that avoids cancellation.
         let alpha = -length.copysign(head);
         let mut v: Vec<f64> = (k..n).map(|i| a[(i, k - 1)]).collect();
         v[0] -= alpha;
@@ -70,7 +70,7 @@ fn reduce(a: &mut Matrix) {
     }
 }
 
-/// The first row of the last part that no subdiagonal entry joins to those before.
+/// The first row of the last block that is decoupled from the rows before it.
 fn split(a: &Matrix, last: usize) -> usize {
     let is_zero = |k: &usize| {
         let beside = a[(*k - 1, *k - 1)].abs() + a[(*k, *k)].abs();
@@ -80,7 +80,7 @@ fn split(a: &Matrix, last: usize) -> usize {
     (1..=last).rev().find(is_zero).unwrap_or(0)
 }
 
-/// The eigenvalues of the two rows that end with `last`.
+/// The eigenvalues of the 2 × 2 block that ends with row `last`.
 fn of_two(a: &Matrix, last: usize) -> [[f64; 2]; 2] {
     let (x, y) = (a[(last, last)], a[(last - 1, last - 1)]);
     let product = a[(last, last - 1)] * a[(last - 1, last)];
@@ -95,7 +95,7 @@ fn of_two(a: &Matrix, last: usize) -> [[f64; 2]; 2] {
     [[x + far, 0.0], [x + near, 0.0]]
 }
 
-/// Two shifts, by the corner of the matrix of which they are the eigenvalues: its diagonal, and the product of the others.
+/// Two shifts, the eigenvalues of the last 2 × 2 block, given by its diagonal and the product of its other entries.
 struct Shifts {
     x: f64,
     y: f64,
@@ -111,7 +111,7 @@ impl Shifts {
         }
     }
 
-    /// Those of the source against cycles; the diagonal is shifted, too.
+    /// The exceptional shifts of the source, which end cycles; the diagonal is shifted, too.
     fn others(a: &mut Matrix, last: usize, shifted: &mut f64) -> Self {
         let by = a[(last, last)];
         *shifted += by;
@@ -140,7 +140,7 @@ impl Shifts {
 
 /// A step with two shifts on the rows from `first` to `last`.
 fn step(a: &mut Matrix, first: usize, last: usize, shifts: &Shifts) {
-    // It may begin at a row that two small entries separate from those before.
+    // The step may start at a row that two small entries decouple from the rows before it.
     let mut begin = last - 2;
     let mut column = shifts.column(a, begin);
     while begin > first {
@@ -171,8 +171,8 @@ fn step(a: &mut Matrix, first: usize, last: usize, shifts: &Shifts) {
             }
             column = column.map(|c| c / size);
         }
-        let length = column.iter().map(|c| c * c).sum::<f64>().sqrt();
-        let length = length.copysign(column[0]);
+        let norm = column.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let length = norm.copysign(column[0]);
         if length == 0.0 {
             continue;
         }
@@ -181,26 +181,44 @@ fn step(a: &mut Matrix, first: usize, last: usize, shifts: &Shifts) {
         } else if first < begin {
             a[(k, k - 1)] = -a[(k, k - 1)];
         }
-        reflect(a, (first, k, last), rows, (column, length));
+        let reflection = Reflection {
+            k,
+            rows,
+            column,
+            length,
+        };
+        reflection.apply(a, first, last);
     }
 }
 
-/// Applies the reflection that makes all entries but the first of a column zero to rows and columns from `k` on.
-fn reflect(
-    a: &mut Matrix,
-    (first, k, last): (usize, usize, usize),
+/// The reflection that makes all entries but the first of a column of two or three `rows` from row `k` on zero.
+struct Reflection {
+    k: usize,
     rows: usize,
-    (column, length): ([f64; 3], f64),
-) {
-    let head = column[0] + length;
-    let of_rows = [head / length, column[1] / length, column[2] / length];
-    let others = [1.0, column[1] / head, column[2] / head];
-    for j in k..=last {
-        let part: f64 = (0..rows).map(|i| others[i] * a[(k + i, j)]).sum();
-        (0..rows).for_each(|i| a[(k + i, j)] -= part * of_rows[i]);
-    }
-    for i in first..=(k + 3).min(last) {
-        let part: f64 = (0..rows).map(|j| of_rows[j] * a[(i, k + j)]).sum();
-        (0..rows).for_each(|j| a[(i, k + j)] -= part * others[j]);
+    column: [f64; 3],
+    /// Length of the column, with the sign of its first entry.
+    length: f64,
+}
+
+impl Reflection {
+    /// Applies it to the active rows and columns from `first` to `last`.
+    fn apply(&self, a: &mut Matrix, first: usize, last: usize) {
+        let Self {
+            k,
+            rows,
+            column,
+            length,
+        } = *self;
+        let head = column[0] + length;
+        let of_rows = [head / length, column[1] / length, column[2] / length];
+        let others = [1.0, column[1] / head, column[2] / head];
+        for j in k..=last {
+            let part: f64 = (0..rows).map(|i| others[i] * a[(k + i, j)]).sum();
+            (0..rows).for_each(|i| a[(k + i, j)] -= part * of_rows[i]);
+        }
+        for i in first..=(k + 3).min(last) {
+            let part: f64 = (0..rows).map(|j| of_rows[j] * a[(i, k + j)]).sum();
+            (0..rows).for_each(|j| a[(i, k + j)] -= part * others[j]);
+        }
     }
 }

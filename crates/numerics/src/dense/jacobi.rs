@@ -1,16 +1,16 @@
-//! Singular values by rotations of pairs of columns until all are orthogonal: their lengths are the singular values.
+//! Singular values by one-sided Jacobi rotations: pairs of columns are rotated until all are orthogonal. Their lengths are the singular values.
 //!
 //! Source: M. R. Hestenes, *Inversion of matrices by biorthogonalization and related results*, J. SIAM 6 (1958); G. H. Golub,
 //! C. F. Van Loan, *Matrix Computations*, 8.6.3.
 
 use super::{Matrix, Svd};
 
-/// Sweeps over all pairs; about ten are needed.
+/// Maximum number of sweeps over all pairs; about ten are needed.
 const MAX_SWEEPS: usize = 60;
-/// Columns are orthogonal if the cosine of their angle is no larger than this times the square root of their length: roundings.
+/// Columns count as orthogonal if the cosine of their angle is at most this times the square root of the number of rows (rounding).
 const ORTHOGONAL: f64 = 8.0 * f64::EPSILON;
 
-/// What is zero but for rounding.
+/// Bounds below which numbers are rounding errors.
 struct Limits {
     /// The cosine of the angle between two columns.
     cosine: f64,
@@ -39,7 +39,7 @@ pub(super) fn svd(matrix: &Matrix) -> Option<Svd> {
         is_done = true;
         for q in 1..n {
             for p in 0..q {
-                is_done &= !make_orthogonal(&mut columns, &mut turns, (p, q), &limits);
+                is_done &= !make_orthogonal(&mut columns, &mut turns, p, q, &limits);
             }
         }
         if is_done {
@@ -51,7 +51,7 @@ pub(super) fn svd(matrix: &Matrix) -> Option<Svd> {
     order.sort_by(|&a, &b| lengths[b].total_cmp(&lengths[a]));
     let values: Vec<f64> = order.iter().map(|&k| lengths[k]).collect();
     let largest = values.first().copied().unwrap_or(0.0);
-    // A column that is rounding has no direction.
+    // A column of rounding errors has no direction.
     let zero = matrix.rows as f64 * f64::EPSILON * largest;
     let mut left = Vec::new();
     for &k in order.iter().take_while(|&&k| lengths[k] > zero) {
@@ -69,11 +69,12 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-/// Turns two columns in their plane until they are orthogonal; whether they were not.
+/// Rotates the columns p < q in their plane until they are orthogonal. Returns whether they were not orthogonal before.
 fn make_orthogonal(
     columns: &mut [Vec<f64>],
     turns: &mut [Vec<f64>],
-    (p, q): (usize, usize),
+    p: usize,
+    q: usize,
     limits: &Limits,
 ) -> bool {
     let [pp, qq, pq] = [(p, p), (q, q), (p, q)].map(|(i, j)| dot(&columns[i], &columns[j]));
@@ -93,14 +94,14 @@ fn make_orthogonal(
     true
 }
 
-/// Adds unit vectors that are orthogonal to those there are, until they span the whole space of so many dimensions.
+/// Adds unit vectors orthogonal to the given ones until they span the space of `dimensions` dimensions.
 fn complete(vectors: &mut Vec<Vec<f64>>, dimensions: usize) {
     while vectors.len() < dimensions {
         let mut longest = (0.0, Vec::new());
         for k in 0..dimensions {
             let mut rest = vec![0.0; dimensions];
             rest[k] = 1.0;
-            // Twice, for what rounding leaves.
+            // Twice, to remove the rounding error of the first projection.
             for _ in 0..2 {
                 for other in vectors.iter() {
                     let part = dot(&rest, other);

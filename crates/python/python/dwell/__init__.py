@@ -1,6 +1,6 @@
 """Kinematics, forces, the reduced model and motions of mechanisms, in the plane and in space.
 
-A mechanism is read from a scene file, or built; it is assembled, and then asked:
+A mechanism is read from a scene file, or built, and then assembled:
 
 >>> import numpy as np, dwell
 >>> m = dwell.Builder("Pendulum")
@@ -12,7 +12,7 @@ Builder('Pendulum')
 >>> round(bob.at(np.pi / 2).actuator_force("phi"), 6)  # held horizontally, N m
 9.81
 
-Points with three numbers make a mechanism one in space:
+A mechanism whose points have three numbers is in space:
 
 >>> scene = dwell.Scene('''
 ... bodies.ground.points = { O = [0, 0, 0] }
@@ -26,8 +26,8 @@ Points with three numbers make a mechanism one in space:
 >>> round(state.actuator_force("phi"), 6), state.position("bob.P").tolist()
 (-9.81, [0.5, 0.0, 0.0])
 
-Everything is in SI: m, rad, kg, s, N. Reactions are named ``joint.component``: the force or moment of the joint's first-named body
-on the second. Points are named ``body.point``. Results know their units, and convert to pandas, polars and xarray where these are
+All units are SI: m, rad, kg, s, N. Reactions are named ``joint.component``: the force or moment of the joint's first-named body
+on the second. Points are named ``body.point``. Results have units, and convert to pandas, polars and xarray if these are
 installed.
 """
 
@@ -84,6 +84,6 @@ if not TYPE_CHECKING:
 def read(path: str | os.PathLike[str]) -> Mechanism:
     """Reads a scene file and assembles its mechanism: ``Scene.read(path).assemble()``.
 
-    Raises SceneError with everything that is wrong in the file, each with its place.
+    Raises SceneError with all errors in the file, each with its place.
     """
     return Scene.read(path).assemble()

@@ -1,4 +1,4 @@
-"""Building a mechanism in a program: keyword calls that are the keys of a scene file."""
+"""The builder of mechanisms: keyword arguments are the keys of a scene file."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from ._mechanism import Mechanism
 from ._scene import Scene
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+\Z")
-#: What stands in the text for a Python function: without it, every evaluation fails and names the load.
+#: The text in place of a Python function; without the function, every evaluation fails and names the load.
 _NO_VALUE = "0/(t - t)"
 
 
 class Builder:
-    """Collects the parts of a mechanism; ``assemble()`` puts them together. All numbers are in SI.
+    """Collects the parts of a mechanism; ``assemble()`` assembles it. All numbers are in SI units.
 
-    Keyword arguments are the keys of a scene file, with ``_`` for ``-``. Calls may be chained. Points with three numbers make it a
-    mechanism in space.
+    Keyword arguments are the keys of a scene file, with ``_`` for ``-``. Calls may be chained. A mechanism whose points have three numbers is in
+    space.
 
     >>> m = Builder("Slider-crank")
     >>> m.body("ground", A=(0, 0), G=(0, 0.025))
@@ -65,7 +65,7 @@ class Builder:
         return self._add("joints", name, keys)
 
     def pin(self, name: str, first: str, second: str) -> Builder:
-        """Adds a revolute joint between the points of that name on two bodies."""
+        """Adds a revolute joint between the points with the joint's name on two bodies."""
         return self.joint(name, revolute=(f"{first}.{name}", f"{second}.{name}"))
 
     def actuator(self, name: str, **keys: Any) -> Builder:
@@ -73,8 +73,8 @@ class Builder:
         return self._add("actuators", name, keys)
 
     def assembly(self, **values: Any) -> Builder:
-        """Where it is assembled: coordinates of actuators (exact), angles of bodies in rad (approximate: they select the mode); of bodies
-        in space their place and turn, ``rod={"at": (0.1, 0, 0), "turn": (0, 0.7, 0)}``."""
+        """Sets coordinates of actuators at assembly (exact) and initial guesses of the angles of bodies, rad, which select the assembly mode; for bodies
+        in space their placements, ``rod={"at": (0.1, 0, 0), "turn": (0, 0.7, 0)}``."""
         self._sections.setdefault("assembly", {}).update(values)
         return self
 
@@ -112,7 +112,7 @@ class Builder:
         return self
 
     def request(self, **keys: Any) -> Builder:
-        """Restricts what is computed: ``request(reactions=["A", "guide.normal"])``."""
+        """Restricts the computed results: ``request(reactions=["A", "guide.normal"])``."""
         self._sections.setdefault("requests", {}).update(_dashed(keys))
         return self
 
@@ -122,7 +122,7 @@ class Builder:
         return self
 
     def to_toml(self) -> str:
-        """The mechanism as the text of a scene file. A Python function is not in it: a comment says so, and the load has no value."""
+        """The mechanism as the text of a scene file. A load that is a Python function has a comment and no value there."""
         lines = [f"title = {_value(self.title)}"]
         for name, (points, keys) in self._bodies.items():
             lines += ["", f"[bodies.{_key(name)}]", f"points = {_value(points)}"]
@@ -136,14 +136,14 @@ class Builder:
         return "\n".join(lines) + "\n" + self._text
 
     def scene(self) -> Scene:
-        """The scene of this mechanism. Raises SceneError with everything that is wrong."""
+        """The scene of this mechanism. Raises SceneError with all errors."""
         scene = Scene(self.to_toml())
         for load, signals, function, breakpoints in self._functions:
             scene = scene.with_function(load, signals, function, breakpoints=breakpoints)
         return scene
 
     def assemble(self) -> Mechanism:
-        """Assembles the mechanism. Raises SceneError with everything that is wrong, by the names of bodies and joints."""
+        """Assembles the mechanism. Raises SceneError with all errors, which name bodies and joints."""
         return self.scene().assemble()
 
     def _add(self, section: str, name: str, keys: Mapping[str, Any]) -> Builder:
@@ -158,7 +158,7 @@ class Builder:
 
 
 def _dashed(keys: Mapping[str, Any]) -> dict[str, Any]:
-    """Keys as a scene writes them."""
+    """Keys in the spelling of a scene."""
     return {key.replace("_", "-"): value for key, value in keys.items()}
 
 
@@ -167,7 +167,7 @@ def _key(text: str) -> str:
 
 
 def _value(value: Any) -> str:
-    """As TOML writes it, in one line."""
+    """The value as TOML, in one line."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

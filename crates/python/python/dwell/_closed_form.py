@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 #: A line of the function that gives a name a value, with what the name means if it is a constant of the mechanism. A value is numbers, names,
-#: operators and parentheses: the text of a scene, which stands in comments, is not run whatever it holds.
+#: operators and parentheses only; text of a scene is in comments and is never executed.
 _ASSIGNMENT = re.compile(r"^    ([A-Za-z]\w*) = ((?:[A-Za-z]\w*|[\d.]+(?:e[+-]?\d+)?|[-+*/(), ])+?)(?:  # (.*))?$", re.MULTILINE)
 #: A quantity in the description of the function: name, meaning.
 _QUANTITY = re.compile(r"^    (\w+): (.*)$", re.MULTILINE)
@@ -20,7 +20,7 @@ class ClosedForm:
     """Positions, m, half_dm, and a and b of a reaction of a mechanism made of dyads, in closed form.
 
     ``expressions`` are SymPy expressions of ``coordinate`` and of the constants of the mechanism, whose values are in ``constants``;
-    ``meanings`` says what each name is, with its unit; ``code`` is the same as a function in Python.
+    ``meanings`` has the meaning and unit of each name; ``code`` is a function in Python.
     """
 
     coordinate: Any
@@ -35,7 +35,7 @@ class ClosedForm:
 
 
 def closed_form(code: str) -> ClosedForm:
-    """The function that the native half wrote, evaluated with symbols."""
+    """The generated function, evaluated with symbols."""
     import sympy
 
     signature = re.search(r"^def reduced\((\w+)\):$", code, re.MULTILINE)

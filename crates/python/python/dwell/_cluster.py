@@ -1,7 +1,7 @@
 """Sweeps on a cluster: a study's numbered points in blocks that Ray or Dask spreads over its workers.
 
-A block is a shard of ``dwell sweep``: which points it has follows from the study alone, and its rows are Parquet files that are written
-beside their place and renamed when they are complete. So a block of a worker that was killed goes on, without a row too many or too few.
+A block is a shard of ``dwell sweep``: its points follow from the study, and its rows are Parquet files that are written
+under temporary names and renamed when they are complete. The block of a killed worker therefore continues without missing or repeated rows.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from typing import Any, Callable, Sequence
 from ._native import DwellError
 from ._progress import Progress
 
-#: How often a block is tried again on another worker.
+#: Maximum number of repetitions of a block on another worker.
 RETRIES = 5
 
 
 @dataclass(frozen=True)
 class StoredSweep:
-    """A sweep in a folder of Parquet files. ``summary`` is what ``dwell sweep`` writes of it: extremes, means, failed points."""
+    """A sweep in a folder of Parquet files. ``summary`` is the summary of ``dwell sweep``: extremes, means, failed points."""
 
     folder: pathlib.Path
     summary: dict[str, Any]
 
     @property
     def rows(self) -> int:
-        """How many rows the files have."""
+        """Number of rows in the files."""
         return int(self.summary["results"]["rows"]["value"])
 
     @property
@@ -45,7 +45,7 @@ class StoredSweep:
         return pandas.read_parquet(self.folder, columns=list(columns) if columns is not None else None)
 
     def to_polars(self) -> Any:
-        """A polars LazyFrame, which reads only what is asked for."""
+        """A polars LazyFrame, which reads only what a query needs."""
         import polars
 
         return polars.scan_parquet(f"{self.folder}/part-*.parquet")
@@ -53,7 +53,7 @@ class StoredSweep:
 
 @dataclass(frozen=True)
 class _Study:
-    """What every worker is given."""
+    """The arguments of every worker."""
 
     command: str
     options: tuple[str, ...]
@@ -61,7 +61,7 @@ class _Study:
 
     @property
     def scene(self) -> pathlib.Path:
-        """The scene's file, beside the results: its name is theirs."""
+        """The scene file beside the results, which has their name."""
         return pathlib.Path(self.folder) / "study.toml"
 
     def run(self, *shard: str, threads: int | None = None) -> None:
@@ -80,7 +80,7 @@ class _Study:
 
 
 def _block(study: _Study, number: int, of: int) -> int:
-    """A block, on one core of a worker."""
+    """Computes a block on one core of a worker."""
     study.run("--shard", f"{number}/{of}", threads=1)
     return number
 
@@ -90,7 +90,7 @@ def _by_ray(study: _Study, blocks: int, progress: Progress) -> None:
 
     if not ray.is_initialized():
         ray.init(log_to_driver=False, include_dashboard=False)
-    # A worker that dies takes no block with it; what the command says is no reason to try again.
+    # A block of a crashed worker is repeated; an error of the command is not.
     task = ray.remote(max_retries=RETRIES)(_block)
     pending = [task.remote(study, k, blocks) for k in range(1, blocks + 1)]
     while pending:
@@ -110,7 +110,7 @@ def _by_dask(study: _Study, blocks: int, progress: Progress) -> None:
         try:
             client, own = dask.Client(threads_per_worker=1), True
         except RuntimeError as error:
-            # Its workers import the script anew, and would start workers in turn.
+            # Its workers import the script again, and would start workers themselves.
             needed = 'Dask cannot start its workers: put what a script runs under `if __name__ == "__main__":`'
             raise RuntimeError(needed) from error
     try:
@@ -140,7 +140,7 @@ def sweep_on(
     study.scene.write_text(scene, encoding="utf-8")
     with Progress("sweep") as progress:
         ENGINES[engine](study, blocks, progress)
-    # All points are there: this computes nothing, merges the files of the blocks, checks every file and finds the extremes.
+    # All points exist: this computes nothing, merges the files of the blocks, checks every file and finds the extremes.
     study.run()
     summary = json.loads((place / "study-sweep.json").read_text(encoding="utf-8"))
     for left in place.glob(f"study-sweep-*-of-{blocks}.json"):

@@ -1,4 +1,4 @@
-"""Pictures with matplotlib, where it is installed."""
+"""Pictures with matplotlib, if it is installed."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class _Placed(Protocol):
 
 
 class Drawn(Protocol):
-    """What a picture needs of a mechanism, in the plane or in space."""
+    """The interface of a drawn mechanism, in the plane or in space."""
 
     @property
     def scene(self) -> _Titled: ...
@@ -43,7 +43,7 @@ class Drawn(Protocol):
 
 
 def places(mechanism: Drawn, q: float | Sequence[float] | Array | None) -> dict[str, dict[str, Array]]:
-    """By body, where its points are at coordinates q; absent, at assembly."""
+    """By body, the positions of its points at coordinates q (default: at assembly)."""
     state = mechanism.at(mechanism.start if q is None else q)  # type: ignore[arg-type]
     return {
         body: {point: state.position(f"{body}.{point}") for point in points} for body, points in mechanism.points.items()
@@ -51,7 +51,7 @@ def places(mechanism: Drawn, q: float | Sequence[float] | Array | None) -> dict[
 
 
 def hull(points: Array) -> Array:
-    """The corners of the convex hull in order (Andrew 1979): one or two points are their own."""
+    """The corners of the convex hull in order (Andrew 1979): one or two points are returned unchanged."""
     ordered = sorted({(float(x), float(y)) for x, y in points})
     if len(ordered) < 3:
         return np.array(ordered)
@@ -71,7 +71,7 @@ def hull(points: Array) -> Array:
 
 
 def pins(bodies: dict[str, dict[str, Array]]) -> list[tuple[Array, bool]]:
-    """Where points of two bodies meet, and whether one of them is the ground's."""
+    """Positions at which points of two bodies coincide, and whether one of the bodies is the ground."""
     every = [(body, at) for body, points in bodies.items() for at in points.values()]
     size = np.ptp(np.array([at for _, at in every]), axis=0).max() if every else 0.0
     found: list[tuple[Array, bool]] = []
@@ -91,7 +91,7 @@ def _pyplot() -> Any:
 
 
 def plot_mechanism(mechanism: Drawn, q: float | Sequence[float] | None, axes: Any = None, labels: bool = True) -> Any:
-    """Draws the mechanism into matplotlib axes (absent: new ones), and returns them. In space they are axes of three dimensions."""
+    """Draws the mechanism into matplotlib axes (default: new ones), and returns them. In space they are axes of three dimensions."""
     bodies = places(mechanism, q)
     moving = [(body, np.array(list(points.values()))) for body, points in bodies.items() if body != "ground" and points]
     size = next((len(at) for points in bodies.values() for at in points.values()), 2)
@@ -117,7 +117,7 @@ def plot_mechanism(mechanism: Drawn, q: float | Sequence[float] | None, axes: An
     if size == 3:
         axes.set_zlabel("z (m)")
         axes.xaxis.labelpad = axes.yaxis.labelpad = 10
-        # Of an axis that is short, as many numbers as have room.
+        # As many numbers as fit on a short axis.
         extents = np.ptp([at for points in bodies.values() for at in points.values()], axis=0)
         for name, extent in zip("xyz", extents):
             axes.locator_params(axis=name, nbins=max(1, round(6 * extent / max(extents.max(), 1e-9))))
@@ -128,7 +128,7 @@ def plot_mechanism(mechanism: Drawn, q: float | Sequence[float] | None, axes: An
 
 
 def _outline(points: Array) -> Array:
-    """The line that shows a body: in the plane around its points, in space from each of its points to the next."""
+    """The outline of a body: in the plane around its points, in space from each of its points to the next."""
     corners = hull(points) if points.shape[1] == 2 else points
     return np.vstack([corners, corners[:1]])
 
@@ -172,7 +172,7 @@ def animate_mechanism(mechanism: Drawn, motion: Results | None, frames: int, int
 
 
 def plot_columns(results: Results, names: Sequence[str], x: str) -> Any:
-    """Columns over another one: one axis for each unit."""
+    """Plots columns over another one, with one axis for each unit."""
     chosen = list(names) or [name for name in results if name != x][:1]
     units = list(dict.fromkeys(results.units[name] for name in chosen if results[name] is not None))
     figure, all_axes = _pyplot().subplots(len(units), sharex=True, squeeze=False, layout="constrained")

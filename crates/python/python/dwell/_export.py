@@ -7,7 +7,7 @@ import pathlib
 
 from . import _native
 
-#: What ``Scene.export`` writes.
+#: The targets of ``Scene.export``.
 EXPORT_TARGETS = ("c", "exact-c", "rust", "matlab", "fmu", "exact-fmu", "fmu2", "exact-fmu2")
 
 

@@ -1,4 +1,4 @@
-"""Assembled mechanisms, and what can be asked of them."""
+"""Assembled mechanisms and their results."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ Array = npt.NDArray[np.float64]
 class State:
     """Positions, velocities, accelerations and forces at one position. Points are ``body.point``, reactions ``joint.component``.
 
-    Vectors are in the axes of the ground: positions and what follows from them have two numbers in the plane and three in space; what
-    turns is a number in the plane, about z, and three in space.
+    Vectors are in the axes of the ground. Positions, velocities and accelerations have two numbers in the plane and three in space; angular
+    quantities are a number in the plane, about z, and three numbers in space.
     """
 
     def __init__(self, native: _native.State) -> None:
@@ -64,8 +64,8 @@ class State:
         return value, velocity, acceleration
 
     def reaction(self, name: str) -> float:
-        """A reaction, N or N m: of the joint's first-named body on the second. ``magnitude`` of a joint with a force in any direction is
-        the length of that. Raises DwellError where redundant constraints leave it open."""
+        """A reaction, N or N m: of the joint's first-named body on the second. The component ``magnitude`` is
+        the magnitude of the force. Raises DwellError if redundant constraints leave it undetermined."""
         return self._native.reaction(name)
 
     def actuator_force(self, name: str) -> float:
@@ -81,7 +81,7 @@ def _turning(numbers: list[float]) -> float | Array:
 class Mechanism:
     """An assembled mechanism, in the plane or in space: constant, and safe to use in several threads. Coordinates are those of the actuators, in their order.
 
-    In a notebook it shows itself as a picture; ``plot()`` draws it with matplotlib.
+    A notebook shows it as a picture; ``plot()`` draws it with matplotlib.
     """
 
     def __init__(self, native: _native.Mechanism, scene: Scene) -> None:
@@ -100,12 +100,12 @@ class Mechanism:
 
     @property
     def determined_reactions(self) -> list[str]:
-        """Those of them that redundant constraints do not leave open."""
+        """The reactions that equilibrium determines."""
         return self._native.determined_reactions
 
     @property
     def dimension(self) -> int:
-        """How many numbers a point has: 2 in the plane, 3 in space."""
+        """The number of coordinates of a point: 2 in the plane, 3 in space."""
         return self._native.dimension
 
     @property
@@ -124,8 +124,8 @@ class Mechanism:
         return np.array(self._native.start)
 
     def reduced(self, reactions: Sequence[str] | None = None) -> ReducedModel:
-        """The reduced model with these reactions: joints (``A``) or components (``guide.normal``); without a list, all that
-        redundant constraints do not leave open.
+        """The reduced model with these reactions: joints (``A``) or components (``guide.normal``); by default all that
+        equilibrium determines.
 
         Raises DwellError unless there is exactly one actuator.
         """
@@ -147,7 +147,7 @@ class Mechanism:
             return Motion(self._native.statics(progress)).check()
 
     def kinetostatics(self) -> Results:
-        """Everything of ``kinematics`` and the forces that the motion needs."""
+        """The columns of ``kinematics``, and the forces of the motion."""
         with Progress("kinetostatics") as progress:
             return Motion(self._native.kinetostatics(progress)).check()
 
@@ -161,8 +161,8 @@ class Mechanism:
     ) -> Motion:
         """The free motion of the scene under its loads, drives and friction.
 
-        accuracy: the cheapest method that reaches it, with an error estimate. Otherwise ``method`` ("bdf", "esdirk34", "tr-bdf2",
-        "tsit45", "dop853") with a relative and absolute tolerance; without either, BDF at 1e-10, as the command. sample_interval: s; absent, a thousandth of the duration.
+        accuracy: selects the cheapest method that reaches it, with an error estimate. Otherwise ``method`` ("bdf", "esdirk34", "tr-bdf2",
+        "tsit45", "dop853") with a relative and absolute tolerance; the default is BDF at 1e-10, as for the command. sample_interval: s (default: a thousandth of the duration).
         """
         with Progress("simulate") as progress:
             return Motion(self._native.simulate(accuracy, method, tolerance, sample_interval, progress))
@@ -209,7 +209,7 @@ class Mechanism:
         tolerance: float = 1e-10,
         fluctuation: float | None = None,
     ) -> Cycle:
-        """The steady cycle of a rotating machine, and the flywheel that keeps its coefficient of fluctuation to ``fluctuation``."""
+        """The steady cycle of a rotating machine, and the flywheel for the coefficient of fluctuation ``fluctuation``."""
         with Progress("cycle") as progress:
             found = self._native.cycle(accuracy, method, tolerance, fluctuation, progress)
         return Cycle(
@@ -222,7 +222,7 @@ class Mechanism:
         )
 
     def plot(self, q: float | Sequence[float] | None = None, **options: Any) -> Any:
-        """Draws the mechanism with matplotlib at coordinates q (absent: at assembly). Returns the axes."""
+        """Draws the mechanism with matplotlib at coordinates q (default: at assembly). Returns the axes."""
         from ._drawing import plot_mechanism
 
         return plot_mechanism(self, q, **options)
@@ -234,11 +234,11 @@ class Mechanism:
         return animate_mechanism(self, motion, frames, interval)
 
     def _repr_svg_(self) -> str:
-        # As wide as a picture in a text; the height follows.
+        # As wide as a picture in a text; the height follows from the drawing.
         return re.sub('width="[0-9]+" height="[0-9]+"', 'width="640"', self._native.svg(list(self.start)), count=1)
 
     def _coordinates(self, values: float | Sequence[float]) -> list[float]:
-        """A number for each actuator: one stands for all of them."""
+        """A number for each actuator; a single number applies to all."""
         array = np.asarray(values, dtype=np.float64)
         return [float(array)] * len(self.actuators) if array.ndim == 0 else [float(value) for value in array]
 
@@ -250,18 +250,18 @@ class Mechanism:
         *,
         t: float = 0.0,
     ) -> State:
-        """State and forces with coordinates q, velocities and accelerations, under all loads at time t (s): the inverse dynamics. At
-        rest it is statics. A number stands for the only coordinate, or for all of them.
+        """State and forces at coordinates q, velocities and accelerations, under all loads at time t (s): inverse dynamics. At
+        rest this is statics. A single number applies to all coordinates.
 
-        Raises DwellError where the mechanism cannot reach q.
+        Raises DwellError if the mechanism cannot reach q.
         """
         return State(self._native.at(self._coordinates(q), self._coordinates(q_dot), self._coordinates(q_ddot), float(t)))
 
     def paths(self, points: str | Sequence[str], q: npt.ArrayLike) -> Array:
-        """Where points ``body.point`` are at many positions, m. Only positions are computed.
+        """Positions of points ``body.point`` at many coordinates, m. Only positions are computed.
 
         q: coordinates of any shape, rad or m; with several actuators its last axis has one coordinate for each. The result has the shape
-        of the positions, then an axis for the points (absent for one name), then x and y, and z in space::
+        of the positions, then an axis for the points (omitted for one name), then x and y, and z in space::
 
             x, y = mechanism.paths("coupler.P", np.linspace(0, 2 * np.pi, 361)).T
 
@@ -280,7 +280,7 @@ class Mechanism:
     def rhs(self) -> tuple[Callable[[float, Array], Array], Callable[[float, Array], Array], Array]:
         """The free motion as plain functions for an integrator such as ``scipy.integrate.solve_ivp``: f(t, y), its Jacobian, and the
         state at t = 0. States: free coordinates, their velocities, states of drives and contacts, works of the sources without a
-        potential. The functions share one working memory: one thread at a time.
+        potential. The functions share one working memory: call them from one thread at a time.
         """
         equation = self._native.equation()
         states = len(equation.initial_state)

@@ -1,4 +1,4 @@
-"""What is found of moving mechanisms: equilibria, linearised motions, cycles, periods."""
+"""Results of machines: equilibria, linearised motions, cycles, periods."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Equilibrium:
 class StateSpace:
     """A linearised motion, ẋ = A x + B u, z = C x + D u, in deviations from the operating point.
 
-    ``scipy.signal.StateSpace(*s.matrices)`` and ``control.ss(*s.matrices)`` take it.
+    Use it as ``scipy.signal.StateSpace(*s.matrices)`` or ``control.ss(*s.matrices)``.
     """
 
     states: list[str]
@@ -55,7 +55,7 @@ class StateSpace:
 @dataclass(frozen=True)
 class Cycle:
     """A steady cycle: period (s), mean speed (rad/s), coefficient of fluctuation, whether a small disturbance decays, the work of each
-    load and drive in a cycle (J), and the moment of inertia to be added for the fluctuation that was asked for (kg m²)."""
+    load and drive in a cycle (J), and the moment of inertia to be added for the requested fluctuation (kg m²)."""
 
     period: float
     mean_speed: float

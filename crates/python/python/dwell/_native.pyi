@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 _Array = npt.NDArray[np.float64]
-# Called with what is done, and of how much.
+# Called with the number of completed steps, and of all steps.
 _Progress = Callable[[int, int], None]
 
 __version__: str

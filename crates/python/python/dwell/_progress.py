@@ -8,14 +8,14 @@ import warnings
 from types import TracebackType
 from typing import Any
 
-#: After so many seconds it is shown.
+#: Seconds after which it is shown.
 SILENT = 2.0
 
 
 class Progress:
-    """Called while a computation runs with what is done and of how much (0 where that is not known).
+    """Called during a computation with the number of completed steps, and of all steps (0 if unknown).
 
-    After two seconds it shows a bar by tqdm, or a line where tqdm is not installed; only in a terminal or a notebook.
+    After two seconds it shows a bar by tqdm, or a line if tqdm is not installed; only in a terminal or a notebook.
     """
 
     def __init__(self, name: str) -> None:
@@ -35,7 +35,7 @@ class Progress:
     def _tqdm(self, of: int) -> Any:
         try:
             with warnings.catch_warnings():
-                # In a notebook without widgets tqdm shows text, and says so.
+                # In a notebook without widgets tqdm shows text, and warns.
                 warnings.simplefilter("ignore")
                 from tqdm.auto import tqdm
         except ImportError:
@@ -54,7 +54,7 @@ class Progress:
 
 
 class _Line:
-    """A line that is written over."""
+    """A line that overwrites itself."""
 
     def __init__(self, name: str) -> None:
         self._name, self._begin = name, time.monotonic() - SILENT

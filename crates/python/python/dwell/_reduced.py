@@ -18,7 +18,7 @@ class Coefficients:
     """The coefficients of a reduced model at coordinates ``q``; every array has the shape of ``q``.
 
     m, half_dm: kg m² (kg if the coordinate is a length). a, b: by reaction, of q̈ and q̇². w: by load, its generalised force per unit of
-    its magnitude. c: by load, then by reaction, its share per unit of its magnitude.
+    its magnitude. c: by load, then by reaction, its contribution per unit of its magnitude.
     """
 
     q: Array
@@ -85,13 +85,13 @@ class ReducedModel:
         )
 
     def table(self, accuracy: float = 1e-9) -> Table:
-        """The model as piecewise polynomials: every coefficient to an accuracy relative to its largest value. Raises DwellError where
+        """The model as piecewise polynomials; ``accuracy`` bounds the error of every coefficient relative to its largest value. Raises DwellError if
         no table reaches it."""
         return Table(self._native.table(accuracy), self.reactions, self.loads)
 
 
 class Table:
-    """A reduced model as piecewise polynomials: it does not need the mechanism any more."""
+    """A reduced model as piecewise polynomials, independent of the mechanism."""
 
     def __init__(self, native: _native.Table, reactions: Sequence[str], loads: Sequence[str]) -> None:
         self._native = native
@@ -99,7 +99,7 @@ class Table:
 
     @property
     def error_bound(self) -> float:
-        """The largest error of a coefficient, relative to its largest value: a bound."""
+        """An upper bound of the error of a coefficient, relative to its largest value."""
         return self._native.error_bound
 
     def __call__(self, q: float) -> Coefficients:

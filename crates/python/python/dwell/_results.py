@@ -1,4 +1,4 @@
-"""Rows of numbers under named columns with units: what motions and sweeps give."""
+"""Rows of numbers under named columns with units: the results of motions and sweeps."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Results(Mapping[str, Array]):
 
     @property
     def rows(self) -> int:
-        """How many rows each column has."""
+        """Number of rows of each column."""
         return len(next(iter(self._columns.values()), ()))
 
     def to_pandas(self) -> Any:
@@ -74,7 +74,7 @@ class Results(Mapping[str, Array]):
         return xarray.Dataset(data).set_coords(first)
 
     def plot(self, *names: str, x: str | None = None) -> Any:
-        """The columns of these names over the first one (or ``x``), with matplotlib: one axis for each unit. Returns the axes."""
+        """Plots columns over the first one (or ``x``), with matplotlib: one axis for each unit. Returns the axes."""
         from ._drawing import plot_columns
 
         return plot_columns(self, names, x or next(iter(self._columns)))
@@ -97,10 +97,10 @@ class Results(Mapping[str, Array]):
 
 
 class Motion(Results):
-    """A motion in time: rows, events, and what is known of its error.
+    """A motion in time: rows, events, and its estimated error.
 
-    events: list of (time in s, name). estimated_error: where an accuracy was asked for. early_stop: why the motion ended early or is
-    less accurate than asked for, or None; ``check()`` raises it.
+    events: list of (time in s, name). estimated_error: if an accuracy was required. early_stop: the reason why the motion ended early or is
+    less accurate than required, or None; ``check()`` raises it.
 
     Called with times (s), it interpolates coordinates and their velocities by polynomials of degree five through value, velocity and
     acceleration of the rows on either side:
@@ -133,7 +133,7 @@ class Motion(Results):
         time = self["t"]
         if at.size and not (np.all(at >= time[0]) and np.all(at <= time[-1])):
             raise ValueError(f"the motion lasts from {time[0]} to {time[-1]} s")
-        # A row before the last one, and one after: an event may write two rows at one instant.
+        # A row before, and one after: an event may write two rows at one instant.
         left = np.clip(np.searchsorted(time, at, side="right") - 1, 0, max(len(time) - 2, 0))
         found: dict[str, Array] = {}
         for name in self._columns:

@@ -56,7 +56,7 @@ class Scene:
 
     @property
     def text(self) -> str:
-        """Its text, with what ``with_value`` changed."""
+        """Its text, with the changes of ``with_value``."""
         return self._native.text
 
     def value(self, path: str) -> float:
@@ -64,7 +64,7 @@ class Scene:
         return self._native.value(path)
 
     def with_value(self, path: str, value: float) -> Scene:
-        """The same scene with a number replaced."""
+        """A copy of the scene with a number replaced."""
         return Scene._of(self._native.with_value(path, value))
 
     def with_function(
@@ -75,15 +75,15 @@ class Scene:
         *,
         breakpoints: Mapping[str, Sequence[float]] | Literal[False] | None = None,
     ) -> Scene:
-        """The same scene with the magnitude of a load computed by a Python function.
+        """A copy of the scene whose load has a magnitude given by a Python function.
 
-        It is called with the signals, in their order: ``t`` (s), coordinates (rad or m), velocities such as ``phi.velocity``.
-        One call costs about 1 µs more than an expression. Where the function jumps or has a kink is not searched: name the values of the
-        signals, ``breakpoints={"x.velocity": [-0.02], "t": [0.5]}``, and a motion stops at each of them and is integrated on one side at a
-        time, as with an expression. A jump that is not named makes the steps so short that the motion ends there, and a short pulse may be
-        missed. ``breakpoints=False`` says that the function is smooth; without either a warning says so.
+        The function is called with the signals, in their order: ``t`` (s), coordinates (rad or m), velocities such as ``phi.velocity``.
+        One call costs about 1 µs more than an expression. Jumps and kinks of the function are not searched: give the values of the
+        signals at which they occur, ``breakpoints={"x.velocity": [-0.02], "t": [0.5]}``. The integration of a motion stops at each of them and restarts,
+        as with an expression. An unnamed jump makes the steps so short that the motion ends there, and a short pulse may be
+        missed. ``breakpoints=False`` states that the function is smooth; without either, a warning is issued.
 
-        An exception in the function makes the magnitude not a number: the evaluation fails there and names the load.
+        If the function raises an exception, the evaluation fails and names the load.
         """
         if breakpoints is None:
             warnings.warn(
@@ -97,10 +97,10 @@ class Scene:
     def export(self, target: str, folder: str | os.PathLike[str] = ".", *, accuracy: float = 1e-9) -> list[pathlib.Path]:
         """Writes the machine as code into a folder, and returns the files: ``"c"`` (C99), ``"exact-c"`` (the model's own operations),
         ``"rust"`` (a crate without the standard library), ``"matlab"`` (also for Octave), ``"fmu"`` (FMI 3.0; ``"fmu2"``: FMI 2.0) or
-        ``"exact-fmu"`` (``"exact-fmu2"``). An FMU has a library for this platform where a C compiler is found, else sources only.
+        ``"exact-fmu"`` (``"exact-fmu2"``). An FMU has a library for this platform if a C compiler is found, otherwise sources only.
 
-        In cells every function of the coordinate is within ``accuracy`` of its largest value; exact code has that of rounding. Raises
-        SceneError where the machine cannot be exported, with what to change.
+        With cells, the error of every function of the coordinate is at most ``accuracy`` times its largest value; exact code has rounding errors only. Raises
+        SceneError if the machine cannot be exported, with a suggestion.
 
         >>> import dwell, tempfile
         >>> m = dwell.Builder("Pendulum")
@@ -115,16 +115,16 @@ class Scene:
     def symbolic(self, reaction: str | None = None) -> ClosedForm:
         """Closed forms of positions, m, half_dm, and a and b of a reaction (of the first that the scene requests), as SymPy objects.
 
-        For mechanisms made of dyads. Needs SymPy. Raises SceneError where there is no closed form.
+        For mechanisms made of dyads. Needs SymPy. Raises SceneError if there is no closed form.
         """
         return closed_form(self._native.closed_form(reaction))
 
     def check(self) -> str:
-        """What ``dwell check`` prints: degrees of freedom, range, groups, assembly modes, loads and requests."""
+        """The output of ``dwell check``: degrees of freedom, range, groups, assembly modes, loads and requests."""
         return self._native.check()
 
     def assemble(self) -> Mechanism:
-        """Assembles its mechanism. Raises SceneError where it cannot be assembled or a load does not fit it."""
+        """Assembles its mechanism. Raises SceneError if it cannot be assembled or a load does not fit it."""
         return Mechanism(self._native.assemble(), self)
 
     def reduce(self, q: npt.ArrayLike, reactions: Sequence[str] | None = None, *, threads: int = 0) -> Coefficients:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class SweepResults(Results):
-    """A row for each variant, NaN where a variant has no such result. ``messages``: by row, why results are missing."""
+    """A row for each variant, NaN where a variant has no such result. ``messages``: by row, the reason if results are missing."""
 
     messages: list[str | None]
 
@@ -60,18 +60,18 @@ def sweep(
     blocks: int = 64,
     command: str = "dwell",
 ) -> SweepResults | StoredSweep:
-    """Results of every combination of numbers of a scene, computed on all cores, as ``dwell sweep`` computes them.
+    """Results of every combination of numbers of a scene, computed on all cores, as by ``dwell sweep``.
 
     vary: by path of a number, in the scene's unit: a list of values, or a text: ``=FROM:TO:COUNT``, ``~normal(MEAN,SD)``,
-    ``~uniform(FROM,TO)``, ``±TOLERANCE``, ``±PERCENT%``. With random numbers ``samples`` and ``seed`` say how many and which.
+    ``~uniform(FROM,TO)``, ``±TOLERANCE``, ``±PERCENT%``. For random numbers, ``samples`` and ``seed`` give their number and the seed.
 
-    results: ``m.min``, ``m.max``, ``period``, ``phi.actuator_force.max_abs``, ``guide.normal.max_abs`` …; without any, all.
+    results: ``m.min``, ``m.max``, ``period``, ``phi.actuator_force.max_abs``, ``guide.normal.max_abs`` … (default: all).
 
-    engine: ``"ray"`` or ``"dask"`` spreads the points in this many ``blocks`` over the engine's workers, of the cluster that is
-    connected or of one of this machine's processes. Each runs the ``command`` on one core; the rows go to Parquet files in ``folder``,
-    which all workers must reach. The block of a worker that is killed is computed again. A second call goes on where a first one stopped.
+    engine: ``"ray"`` or ``"dask"`` distributes the points in ``blocks`` blocks over the engine's workers: those of the connected
+    cluster, or processes of this machine. Each runs the ``command`` on one core; the rows go to Parquet files in ``folder``,
+    which all workers must reach. The block of a killed worker is repeated. A second call continues where the first stopped.
 
-    Raises SceneError where the sweep is not valid, DwellError where a worker's command fails.
+    Raises SceneError if the sweep is invalid, DwellError if a worker's command fails.
     """
 
     def text(value: str | Sequence[float]) -> str:

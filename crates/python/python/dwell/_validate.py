@@ -13,10 +13,10 @@ from ._progress import Progress
 def validate(
     *cases: str, repository: str | os.PathLike[str] = ".", folder: str | os.PathLike[str] = "reports", command: str = "dwell"
 ) -> str:
-    """Runs ``dwell validate`` on the cases of a repository of Dwell, or on the named ones, against independent truths; reports and the
-    verification manual go into ``folder``. Returns what the command prints. Raises DwellError where a finding fails, with the same.
+    """Runs ``dwell validate`` on the cases of a repository of Dwell, or on the named ones, against independent references; reports and the
+    verification manual are written to ``folder``. Returns the printed summary. Raises DwellError with it if a finding fails.
 
-    ``command`` is the installed command or its path: cases, truths and pictures are not in this package.
+    ``command`` is the installed command or its path: cases, references and pictures are not in this package.
     """
     arguments = [shutil.which(command) or command, "validate", *cases, "--out", os.path.abspath(folder)]
     environment = {**os.environ, "NO_COLOR": "1"}

@@ -16,7 +16,7 @@ pub(super) fn gear(fields: &TableReader<'_>) -> Option<JointKind> {
     )?;
     let rule = NumberRule::new(&fields.units().length, SignRule::Positive);
     let rule =
-        rule.because("a pitch radius is above zero; a ring gear is one with `internal = true`");
+        rule.because("the pitch radius of a ring gear is positive, too: add `internal = true`");
     let names = ["the first", "the second"];
     let radius = |value: Value<'_>, name: String| value.quantity_with_sign(&rule, name);
     let all = format!("the radii of {what}");
@@ -51,7 +51,7 @@ pub(super) fn on_a_line(fields: &TableReader<'_>) -> Option<(Vec2, f64)> {
     // Its sign gives the side of the line on which the wheel is.
     let rule = NumberRule::new(&fields.units().length, SignRule::NotZero);
     let rule = rule.because("a wheel without a radius cannot roll");
-    let help = "add `radius = 20`: above zero to the left of the axis, below to its right";
+    let help = "add `radius = 20`: positive to the left of the axis, negative to its right";
     let radius = fields.number("radius", help, &rule);
     Some((axis?, radius?))
 }

@@ -85,15 +85,16 @@ impl<'a> Joints<'a> {
     /// The prismatic joint or slot of that name, which has a travel.
     pub(crate) fn sliding(&self, name: &str, at: &Span) -> Option<JointId> {
         let first = self.find(name, at)?.start;
+        let has_travel = |kind: JointKind| kind.travel_axis().is_some();
         let kind = self.list[first].joint.as_ref()?.kind;
         if has_travel(kind) {
             return Some(JointId(first));
         }
-        let has_travel = |j: &&ParsedJoint| j.joint.as_ref().is_some_and(|j| has_travel(j.kind));
-        let sliding = self.list.iter().filter(has_travel).map(|j| j.name.as_str());
+        let slides = |j: &&ParsedJoint| j.joint.as_ref().is_some_and(|j| has_travel(j.kind));
+        let sliding = self.list.iter().filter(slides).map(|j| j.name.as_str());
         let help = self.log.choices("", "prismatic joints and slots", sliding);
         let message = format!("joint `{}` has no travel", shorten(name));
-        let label = format!("its kind is {}", kind_name(kind));
+        let label = format!("its kind is {}", kind.name());
         self.log.reject(message, &[(at, &label)], help)
     }
 
@@ -219,26 +220,6 @@ fn joint_kind(kind: &Entry<'_>, fields: &TableReader<'_>) -> Option<JointKind> {
             Some(JointKind::Rolling { axis, radius })
         }
         _ => reject_unread_kind(kind),
-    }
-}
-
-/// Whether a joint of that kind has a travel.
-fn has_travel(kind: JointKind) -> bool {
-    matches!(kind, JointKind::Prismatic { .. } | JointKind::Slot { .. })
-}
-
-/// What a scene calls the kind.
-pub(crate) fn kind_name(kind: JointKind) -> &'static str {
-    match kind {
-        JointKind::Revolute => "revolute",
-        JointKind::Prismatic { .. } => "prismatic",
-        JointKind::Slot { .. } => "slot",
-        JointKind::Weld { .. } => "weld",
-        JointKind::Gear { .. } => "gear",
-        JointKind::Rack { .. } => "rack",
-        JointKind::Rolling { .. } => "rolling",
-        JointKind::Distance { .. } => "distance",
-        JointKind::Coupling(_) => "coupling",
     }
 }
 

@@ -113,7 +113,7 @@ fn require_freedom(kind: ActuatorKind, parsed: &ParsedJoint<'_>, at: &Span) -> O
         ),
         ActuatorKind::Travel(_) => (
             "travel",
-            "prismatic, cylindrical and helical joints have a travel",
+            "prismatic, cylindrical, helical and point-on-line joints have a travel",
         ),
         ActuatorKind::Length(_) => ("length", "a `distance` has a length that can be driven"),
     };

@@ -1,6 +1,6 @@
 //! Friction in joints: loads that depend on the joints' own reactions and velocities.
 
-use super::joints::{Joints, kind_name};
+use super::joints::Joints;
 use crate::friction::{FrictionForm, check_static_coefficient, push_loads};
 use crate::keys::table;
 use crate::table_reader::{Entry, TableReader};
@@ -77,15 +77,9 @@ fn form(entry: &Entry<'_>, kind: JointKind) -> Option<FrictionForm<'static>> {
         JointKind::Revolute => ("revolute-friction-in-space", true),
         JointKind::Prismatic => ("prismatic-friction-in-space", false),
         JointKind::Cylindrical => ("cylindrical-friction", false),
-        JointKind::Weld
-        | JointKind::Helical { .. }
-        | JointKind::Universal
-        | JointKind::Spherical
-        | JointKind::Planar
-        | JointKind::Distance { .. }
-        | JointKind::Gear { .. } => {
+        _ => {
             let message = format!("joint `{}` cannot have friction", shorten(entry.name));
-            let label = format!("its kind is {}", kind_name(kind));
+            let label = format!("its kind is {}", kind.name());
             let help = "revolute, prismatic and cylindrical joints can have friction; a `joint-torque` or a damper in [loads] \
                         can stand for that of another";
             return entry.reject(message, &label, help);
@@ -93,7 +87,7 @@ fn form(entry: &Entry<'_>, kind: JointKind) -> Option<FrictionForm<'static>> {
     };
     Some(FrictionForm {
         table: table(table_id),
-        joint_kind: kind_name(kind),
+        joint_kind: kind.name(),
         is_angular,
         has_pin: kind != JointKind::Prismatic,
         is_slot: false,

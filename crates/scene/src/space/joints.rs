@@ -12,7 +12,7 @@ use crate::table_reader::{Entry, TableReader};
 use crate::value::{NumberRule, SignRule};
 use crate::wording::shorten;
 use dwell_geometry::JointId;
-use dwell_geometry::space::{Joint, JointKind, Side, Vec3};
+use dwell_geometry::space::{Condition, Joint, JointKind, Side, Vec3};
 use std::f64::consts::TAU;
 
 /// A joint as read; nothing in it if it was wrong, while its name still counts as known.
@@ -76,7 +76,7 @@ impl<'a> Joints<'a> {
 const PLANAR_KINDS: [(&str, &str); 4] = [
     (
         "slot",
-        "a prismatic and a revolute joint with a body between them do what a slot does",
+        "`point-on-line` keeps a point of the second body on a line of the first, as a slot does in the plane",
     ),
     (
         "rack",
@@ -118,12 +118,15 @@ fn read_joint(entry: &Entry<'_>, id: JointId, bodies: &Bodies<'_, Space>) -> Opt
     for key in ["axis", "axes"] {
         fields.place(key, SceneLocation::Axis(id));
     }
-    if kind == "gear" {
+    let Some(kind) = JointKind::named(kind) else {
+        return reject_unread_kind(kind_entry);
+    };
+    if kind.holds(Condition::Teeth) {
         return gear(entry.name, id, kind_entry, &fields, bodies).map(|joint| (joint, true));
     }
     let what = fields.name_of(kind_entry);
     let points = bodies.find_two_points(kind_entry.value, TWO_POINTS, what);
-    let joint_kind = joint_kind(kind, kind_entry, &fields);
+    let joint_kind = with_numbers(kind, &fields);
     let directions = directions(kind, &fields);
     let [a, b] = points?;
     let message = |name: &str| format!("{} joins body `{name}` to itself", fields.what);
@@ -151,32 +154,10 @@ fn read_joint(entry: &Entry<'_>, id: JointId, bodies: &Bodies<'_, Space>) -> Opt
     ))
 }
 
-/// The name of a kind of joint.
-pub(super) fn kind_name(kind: JointKind) -> &'static str {
-    match kind {
-        JointKind::Revolute => "revolute",
-        JointKind::Prismatic => "prismatic",
-        JointKind::Cylindrical => "cylindrical",
-        JointKind::Helical { .. } => "helical",
-        JointKind::Universal => "universal",
-        JointKind::Spherical => "spherical",
-        JointKind::Planar => "planar",
-        JointKind::Weld => "weld",
-        JointKind::Distance { .. } => "distance",
-        JointKind::Gear { .. } => "gear",
-    }
-}
-
-fn joint_kind(kind: &str, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<JointKind> {
+/// A kind with its numbers.
+fn with_numbers(kind: JointKind, fields: &TableReader<'_>) -> Option<JointKind> {
     Some(match kind {
-        "revolute" => JointKind::Revolute,
-        "prismatic" => JointKind::Prismatic,
-        "cylindrical" => JointKind::Cylindrical,
-        "universal" => JointKind::Universal,
-        "spherical" => JointKind::Spherical,
-        "planar" => JointKind::Planar,
-        "weld" => JointKind::Weld,
-        "helical" => {
+        JointKind::Helical { .. } => {
             let help = "add `pitch = 5`: the travel for one revolution";
             let rule = NumberRule::new(&fields.units().length, SignRule::NotZero);
             let rule = rule.because("without travel it is a revolute joint");
@@ -184,15 +165,15 @@ fn joint_kind(kind: &str, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option
             JointKind::Helical { pitch }
         }
         // Whether an actuator drives it is seen when all are read.
-        "distance" if fields.get("length").is_none() => JointKind::Distance { length: 0.0 },
-        "distance" => {
+        JointKind::Distance { .. } if fields.get("length").is_none() => kind,
+        JointKind::Distance { .. } => {
             let help = "add `length = 200`: the distance the two points keep";
             let rule = NumberRule::new(&fields.units().length, SignRule::Positive);
             let rule = rule.because("two coinciding points are a spherical joint");
             let length = fields.number("length", help, &rule)?;
             JointKind::Distance { length }
         }
-        _ => return reject_unread_kind(entry),
+        _ => kind,
     })
 }
 
@@ -250,12 +231,13 @@ struct Directions {
     has_zero: bool,
 }
 
-fn directions(kind: &str, fields: &TableReader<'_>) -> Option<Directions> {
+fn directions(kind: JointKind, fields: &TableReader<'_>) -> Option<Directions> {
     let axes = axes(kind, fields)?;
     let given = two(fields, "normals");
     let is_common = axes[0] == axes[1];
     let has_zero = is_common || given.is_some();
-    if !has_zero && matches!(kind, "prismatic" | "helical" | "weld") {
+    let needs_zero = kind.holds(Condition::Normals) || kind.holds(Condition::Thread);
+    if !has_zero && needs_zero {
         let why = "with two axes nothing says how the bodies stand to each other";
         return missing_normals(fields, fields.get("axes"), why);
     }
@@ -290,9 +272,10 @@ fn two(fields: &TableReader<'_>, key: &str) -> Option<Option<[Vec3; 2]>> {
 }
 
 /// The axis of a joint in the frame of each body.
-fn axes(kind: &str, fields: &TableReader<'_>) -> Option<[Vec3; 2]> {
-    match (kind, fields.get("axis"), two(fields, "axes")) {
-        ("spherical" | "distance" | "weld", None, None) => Some([Side::default().axis; 2]),
+fn axes(kind: JointKind, fields: &TableReader<'_>) -> Option<[Vec3; 2]> {
+    let is_needed = kind.has_axis() && kind != JointKind::Weld;
+    match (is_needed, fields.get("axis"), two(fields, "axes")) {
+        (false, None, None) => Some([Side::default().axis; 2]),
         (_, Some(axis), None) => {
             let axis = direction(axis.value, format_args!("the axis of {}", fields.what))?;
             Some([axis; 2])
@@ -304,12 +287,16 @@ fn axes(kind: &str, fields: &TableReader<'_>) -> Option<[Vec3; 2]> {
             None
         }
         (_, None, None) => {
-            let (missing, help) = match kind {
-                "universal" => (
+            let (missing, help) = match kind.is_point_on(1) {
+                _ if kind == JointKind::Universal => (
                     "`axes` is missing",
                     "add `axes = [[0, 1, 0], [1, 0, 0]]`: the axis of the cross on each body",
                 ),
-                _ => (
+                true => (
+                    "`axis` is missing",
+                    "add `axis = [0, 0, 1]`, in the frame of the first body",
+                ),
+                false => (
                     "`axis` is missing",
                     "add `axis = [0, 0, 1]`, in the frames of both bodies, or `axes` with one for each",
                 ),

@@ -38,24 +38,12 @@ pub(super) fn component_name(component: Component) -> &'static str {
 
 /// Whether a joint of a kind can have a component that is not zero.
 fn exists(kind: JointKind, component: Component) -> bool {
-    match (kind, component) {
-        (kind, Component::Moment(..)) if !has_axis(kind) => false,
-        (kind, Component::Force(Axes::Joint, _)) if !has_axis(kind) => false,
-        (JointKind::Revolute | JointKind::Universal, Component::Moment(Axes::Joint, 2)) => false,
-        (JointKind::Prismatic, Component::Force(Axes::Joint, 2)) => false,
-        // A force along the normal of the teeth, at the pitch point.
-        (JointKind::Gear { .. }, Component::Moment(..) | Component::Force(Axes::Joint, 0 | 1)) => {
-            false
-        }
-        (
-            JointKind::Cylindrical,
-            Component::Force(Axes::Joint, 2) | Component::Moment(Axes::Joint, 2),
-        ) => false,
-        (
-            JointKind::Planar,
-            Component::Force(Axes::Joint, 0 | 1) | Component::Moment(Axes::Joint, 2),
-        ) => false,
-        _ => true,
+    let [force, moment] = kind.reaction();
+    match component {
+        Component::Force(Axes::Joint, k) => kind.has_axis() && force[k],
+        Component::Moment(Axes::Joint, k) => moment[k],
+        Component::Force(Axes::Ground, _) => true,
+        Component::Moment(Axes::Ground, _) => kind.has_moment(),
     }
 }
 
@@ -65,11 +53,12 @@ pub(super) fn in_ground_axes(joint: &Joint, ground: usize) -> Vec<Component> {
     let own_axis = own_axis.map(|k| joint.sides[k].axis);
     // Where the joint's axis is one of the ground's, the component along it is the axial one.
     let is_along = |k: usize| own_axis.is_some_and(|u| Vec3::AXES[k].cross(u).norm() == 0.0);
-    let is_gear = matches!(joint.kind, JointKind::Gear { .. });
+    // A force along the axis alone, as of teeth.
+    let is_axial = joint.kind.reaction() == [[false, false, true], [false; 3]];
     let is_never_zero = |component: &Component| match *component {
-        Component::Force(_, k) if is_gear => own_axis.is_none_or(|u| Vec3::AXES[k].dot(u) != 0.0),
+        Component::Force(_, k) if is_axial => own_axis.is_none_or(|u| Vec3::AXES[k].dot(u) != 0.0),
         Component::Force(_, k) if is_along(k) => {
-            exists(joint.kind, Component::Force(Axes::Joint, 2)) || !has_axis(joint.kind)
+            exists(joint.kind, Component::Force(Axes::Joint, 2)) || !joint.kind.has_axis()
         }
         Component::Moment(_, k) if is_along(k) => {
             exists(joint.kind, Component::Moment(Axes::Joint, 2))
@@ -78,11 +67,6 @@ pub(super) fn in_ground_axes(joint: &Joint, ground: usize) -> Vec<Component> {
     };
     let all = COMPONENTS[..6].iter().map(|(_, component)| *component);
     all.filter(is_never_zero).collect()
-}
-
-/// A ball and a link have no axes of their own.
-fn has_axis(kind: JointKind) -> bool {
-    !matches!(kind, JointKind::Spherical | JointKind::Distance { .. })
 }
 
 /// `[requests]`.

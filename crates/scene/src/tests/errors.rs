@@ -75,7 +75,7 @@ fn all_errors_of_a_file_come_at_once_and_in_order() {
             "unknown unit of angle `grad`",
             "the mass of body `crank` is negative",
             "body `rod` has no point `X`",
-            "periods in [motion] is not above zero",
+            "periods in [motion] must be greater than zero",
         ]
     );
 }

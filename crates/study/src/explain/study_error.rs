@@ -73,11 +73,11 @@ pub enum SweepError {
     #[error("`{0}` is not a shard: write it as 2/8, the second of eight")]
     Shard(String),
     /// The folder or file holds another study.
-    #[error("{} holds another study: {difference}", path.display())]
+    #[error("{} holds another study, {difference}", path.display())]
     DifferentStudy {
         /// The file.
         path: PathBuf,
-        /// The first difference.
+        /// The first difference, as "with the axes `a` instead of `b`".
         difference: String,
     },
     /// A file is damaged or foreign, or cannot be read or written.

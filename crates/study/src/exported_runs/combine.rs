@@ -319,7 +319,7 @@ impl ExportedRuns {
         }
         if self.contradiction > CONTRADICTION {
             let message = format!(
-                "the runs contradict each other: the changes of m do not agree with ½m′: they differ by {:.1e} of the largest m",
+                "the runs are inconsistent: the changes of m do not agree with ½m′: they differ by {:.1e} of the largest m",
                 self.contradiction
             );
             return Err(wrong(

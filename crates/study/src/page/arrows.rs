@@ -78,41 +78,34 @@ impl JointForces<'_> {
 
     /// Whatever can be drawn of it. Couples have no arrow.
     fn arrows(&self) -> Vec<ForceArrow> {
-        match self.joint.kind {
-            JointKind::Gear { .. } | JointKind::Rack { .. } => tooth_arrows(self),
-            JointKind::Rolling { axis, radius } => rolling_arrows(self, axis, radius),
-            JointKind::Coupling(k) => coupling_arrow(self, k).into_iter().collect(),
-            JointKind::Revolute
-            | JointKind::Weld { .. }
-            | JointKind::Prismatic { .. }
-            | JointKind::Slot { .. }
-            | JointKind::Distance { .. } => {
-                let direction = self.at_its_point();
-                direction.map(|d| self.on_second(d)).into_iter().collect()
-            }
+        let kind = self.joint.kind;
+        if let JointKind::Coupling(k) = kind {
+            return coupling_arrow(self, k).into_iter().collect();
         }
+        if kind.has_teeth() {
+            return tooth_arrows(self);
+        }
+        if let Some((axis, radius)) = kind.rolled() {
+            return rolling_arrows(self, axis, radius);
+        }
+        let direction = self.at_its_point();
+        direction.map(|d| self.on_second(d)).into_iter().collect()
     }
 
     /// The force at the second body's point of a joint that is no contact.
     fn at_its_point(&self) -> Option<Direction> {
-        let along = |axis: Vec2| {
+        if let Some(axis) = self.joint.kind.travel_axis() {
             let part = self.part(Component::Normal, axis.perp())?;
-            Some(along_body(self.joint.bodies[0], vec![part]))
-        };
-        match self.joint.kind {
-            JointKind::Prismatic { axes } => along(axes[0]),
-            JointKind::Slot { axis } => along(axis),
-            JointKind::Distance { .. } => {
-                let ends = anchors(self.joint.bodies, self.joint.points);
-                Some(pushing_apart(self.component(Component::Axial)?, ends))
-            }
-            _ => {
-                let components = [Component::X, Component::Y];
-                let columns = components.into_iter().map(|c| self.component(c));
-                let columns = columns.collect::<Option<_>>()?;
-                Some(Direction::Components { columns })
-            }
+            return Some(along_body(self.joint.bodies[0], vec![part]));
         }
+        if let JointKind::Distance { .. } = self.joint.kind {
+            let ends = anchors(self.joint.bodies, self.joint.points);
+            return Some(pushing_apart(self.component(Component::Axial)?, ends));
+        }
+        let components = [Component::X, Component::Y];
+        let columns = components.into_iter().map(|c| self.component(c));
+        let columns = columns.collect::<Option<_>>()?;
+        Some(Direction::Components { columns })
     }
 
     fn on_second(&self, direction: Direction) -> ForceArrow {

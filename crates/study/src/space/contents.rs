@@ -39,7 +39,7 @@ fn components(v: Vec3) -> [f64; 3] {
     [v.x, v.y, v.z]
 }
 
-/// The whole mass and its centre at the start, and the mass of each body.
+/// The total mass, the centre of mass at the start, and the mass of each body.
 fn describe_masses(
     scene: &SpaceScene,
     places: Option<&[Placement]>,

@@ -281,7 +281,7 @@ fn explain_several(scene: &SpaceScene, joints: &[JointId], error: &PositionError
         }
     };
     let help =
-        "the motion cannot go on in this assembly mode: end it earlier, or drive other joints";
+        "the motion cannot continue in this assembly mode: end it earlier, or drive other joints";
     scene_error(
         scene,
         message,

@@ -67,16 +67,18 @@ fn study_difference(stored: &HashMap<String, String>, study: &StudyIdentity) -> 
         // The scene's hash is independent of line ends and a byte order mark, its text is not.
         let text = |text: &str| text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
         if *key == SCENE_TEXT && text(found) != text(expected) {
-            let fault =
-                "the file is damaged (the scene's text is not that of its hash): move the folder";
+            let fault = "the file is damaged (the text of the scene does not match its hash): move the folder";
             return Some(StoreFault::Reason(fault.to_owned()));
         }
         if *key != SCENE_TEXT && found != expected {
             return Some(StoreFault::Differs(match *key {
-                "scene_sha256" => "the scene has changed since".to_owned(),
+                "scene_sha256" => "of a scene that has changed since".to_owned(),
                 key => {
-                    let [found, expected] = [found, expected].map(shortened);
-                    format!("its {key}: {found}, not {expected}")
+                    let [existing, own] = [found, expected].map(shortened);
+                    format!(
+                        "with the {} {existing} instead of {own}",
+                        key.replace('_', " ")
+                    )
                 }
             }));
         }

@@ -163,21 +163,6 @@ pub(crate) fn spring_outline(a: Vec2, b: Vec2, half: f64) -> Vec<Vec2> {
     points
 }
 
-/// The axis of a joint along which a point goes.
-pub(crate) fn axis_of(kind: JointKind) -> Option<Vec2> {
-    match kind {
-        JointKind::Prismatic { axes } => Some(axes[0]),
-        JointKind::Slot { axis }
-        | JointKind::Rack { axis, .. }
-        | JointKind::Rolling { axis, .. } => Some(axis),
-        JointKind::Revolute
-        | JointKind::Weld { .. }
-        | JointKind::Gear { .. }
-        | JointKind::Distance { .. }
-        | JointKind::Coupling(_) => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -15,7 +15,7 @@ use crate::bodies::{BodyPose, point_position};
 use crate::ranges::extent;
 use dwell_geometry::{Joint, vec2};
 use dwell_scene::PlaneScene;
-use kinematic::{axis_of, drawn_size};
+use kinematic::drawn_size;
 
 /// Reference length of the symbols, in sizes of the mechanism.
 const SYMBOL_RATIO: f64 = 0.6;
@@ -40,7 +40,7 @@ fn symbol_size(scene: &PlaneScene, positions: &[Vec<BodyPose>]) -> f64 {
 /// By joint: the range of its second point along its axis over all positions, m.
 fn travels(scene: &PlaneScene, positions: &[Vec<BodyPose>]) -> Vec<Option<[f64; 2]>> {
     let travel = |joint: &Joint| {
-        let axis = axis_of(joint.kind)?;
+        let axis = joint.kind.line()?;
         let [one, two] = joint.bodies.map(|b| b.0);
         let travel_along = |body_poses: &Vec<BodyPose>| {
             let at = |body, k: usize| point_position(body_poses, body, joint.points[k]);

@@ -87,14 +87,7 @@ fn slide_axis(scene: &PlaneScene, body: usize) -> Option<Vec2> {
             let end = joint.bodies.iter().position(|b| *b == BodyId(body))?;
             Some(axes[end])
         }
-        JointKind::Revolute
-        | JointKind::Slot { .. }
-        | JointKind::Weld { .. }
-        | JointKind::Gear { .. }
-        | JointKind::Rack { .. }
-        | JointKind::Rolling { .. }
-        | JointKind::Distance { .. }
-        | JointKind::Coupling(_) => None,
+        _ => None,
     })
 }
 

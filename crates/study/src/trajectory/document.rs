@@ -392,8 +392,9 @@ impl<'a> Document<'a> {
             return String::new();
         }
         let residual = self.results.power_residual;
-        let mut text =
-            format!("  power balance closes to {residual:.1e} of the sum of its absolute terms\n");
+        let mut text = format!(
+            "  residual of the power balance: {residual:.1e} of the sum of its absolute terms\n"
+        );
         if residual > MAX_BALANCE_RESIDUAL {
             text += "  this is more than rounding error: a limit position may be near\n";
         }

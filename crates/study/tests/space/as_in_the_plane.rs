@@ -400,7 +400,7 @@ fn a_scene_is_described_with_its_loads_and_motions() {
     let text = describe_scene(&space).unwrap_or_else(|e| panic!("{e:?}"));
     for line in [
         "overall size at the start: 0.3 by",
-        "moving mass 4.1 kg, its centre at the start at (",
+        "moving mass 4.1 kg, with its centre of mass at (",
         "    rod: 1.2 kg, [0.0051, 0.006, 0.0085] kg m² about its centre of mass, in its axes",
         "    weight: gravity, 9.81 m/s²",
         "    spring: spring between ground and rod, 300 N/m",

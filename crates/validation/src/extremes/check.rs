@@ -6,8 +6,8 @@ use super::series::{
 use dwell_findings::{Check, Finding};
 use dwell_study::ranges::extent;
 
-/// The findings: of each row its floor and the safe side of its estimates, and of all rows how near the
-/// estimates are.
+/// The findings: for each row whether it keeps its required digits and its estimates are safe, and for all rows the ratio of
+/// estimates to errors.
 pub fn check(results: &[SeriesResult]) -> Vec<Finding> {
     let mut findings: Vec<Finding> = results
         .iter()
@@ -17,7 +17,7 @@ pub fn check(results: &[SeriesResult]) -> Vec<Finding> {
     findings
 }
 
-/// The cell with the most of something, and how much that is.
+/// The cell with the largest value of a function, and that value.
 fn cell_with_max(
     result: &SeriesResult,
     of: impl Fn(&ResultCell) -> Option<f64>,
@@ -26,7 +26,7 @@ fn cell_with_max(
     all.max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// A finding on a row, in parts of what is allowed, with the largest of them and its cell.
+/// A finding on a row, relative to the allowed value, with the largest value and its cell.
 fn row_finding(result: &SeriesResult, key: &str, max: Option<(f64, &ResultCell)>) -> Finding {
     let series = &result.series;
     let [from, to] = extent(series.values.iter().copied());
@@ -48,11 +48,11 @@ fn row_finding(result: &SeriesResult, key: &str, max: Option<(f64, &ResultCell)>
     }
 }
 
-/// Whether every cell keeps its floor, or is a typed error where the condition is bad.
+/// Whether every cell keeps its required digits, or is a typed error if the condition number permits that.
 pub(super) fn check_digits(result: &SeriesResult) -> Finding {
-    // Errors over what the floor allows; an error that is not allowed is as bad as can be.
+    // Errors relative to the allowed ones; a typed error that is not permitted counts as infinite.
     let excess = |cell: &ResultCell| match cell.digits() {
-        // Where the condition takes all digits, none is required.
+        // If the condition number leaves no digits, none is required.
         Some(_) if cell.requirement.min_digits <= 0.0 => None,
         Some(digits) => Some(10.0_f64.powf(cell.requirement.min_digits - digits)),
         None if cell.meets_requirement() => None,
@@ -77,7 +77,7 @@ pub(super) fn check_estimates(result: &SeriesResult) -> Finding {
     }
 }
 
-/// Whether the estimates are within a hundred times the true errors, in nearly all cells.
+/// Whether the estimates are at most a hundred times the true errors, in nearly all cells.
 fn check_estimate_ratios(results: &[SeriesResult]) -> Finding {
     let cells = results.iter().flat_map(|m| &m.cells);
     let ratios: Vec<f64> = cells.filter_map(ResultCell::estimate_ratio).collect();

@@ -1,4 +1,4 @@
-//! Closed forms in double-double numbers: the references of the grid. They share no line with what they check.
+//! Closed forms in double-double numbers: the references of the grid. They share no code with the computations that they check.
 
 use super::mechanisms::{FourBar, SliderCrank};
 use dwell_geometry::{Vec2, vec2};
@@ -15,10 +15,10 @@ pub(crate) fn at_rest(point: Point) -> [Point; 3] {
     [point, Vec2::zero(), Vec2::zero()]
 }
 
-/// A body at unit speed of the coordinate, or at other rates: its motion, and what it adds to m and ½m′.
+/// The motion of a body at unit velocity of the coordinate (or other rates), for its contributions to m and ½m′.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct UnitSpeedBody {
-    /// A point of it, where that is, its velocity and its acceleration at zero q̈.
+    /// Position, velocity and acceleration (at zero q̈) of its origin.
     origin_motion: [Point; 3],
     /// Direction of its x axis, angular velocity and acceleration.
     axis: Point,
@@ -47,7 +47,7 @@ impl UnitSpeedBody {
         Self::new(at_rest(pivot), vec2(cos, sin), [dd(1.0), dd(0.0)], mass)
     }
 
-    /// Place, velocity and acceleration of a point by its distances along the axis and across it.
+    /// Position, velocity and acceleration of a point, given by its coordinates along and perpendicular to the axis.
     pub(crate) fn point_motion(&self, local: Point) -> [Point; 3] {
         let offset = self.axis * local.x + self.axis.perp() * local.y;
         let [position, velocity, acceleration] = self.origin_motion;
@@ -73,8 +73,8 @@ impl UnitSpeedBody {
         [mass * v.dot(v) + inertia * w * w, half_dm]
     }
 
-    /// Rate of the angular momentum about a point that neither velocity nor acceleration of the body
-    /// makes: at unit q̈ (the velocities stand for accelerations) and at unit q̇.
+    /// Rate of the angular momentum about a point: at unit q̈ (with velocities in place of accelerations), and at
+    /// unit q̇.
     pub(crate) fn moment_terms(&self, about: Point) -> [DoubleDouble; 2] {
         let [position, v, a] = self.center_motion();
         let (mass, inertia) = (dd(self.mass.mass), dd(self.mass.inertia));
@@ -96,7 +96,7 @@ fn solve_2x2(u: Point, v: Point, w: Point) -> [DoubleDouble; 2] {
 pub(crate) struct FourBarCoefficients {
     pub(crate) m: DoubleDouble,
     pub(crate) half_dm: DoubleDouble,
-    /// Of joint C: what multiplies q̈ and q̇².
+    /// Coefficients of q̈ in the reaction of joint C.
     pub(crate) a: Point,
     pub(crate) b: Point,
 }
@@ -115,7 +115,7 @@ pub(crate) fn four_bar_bodies(
     let line = d - b;
     let square = line.dot(line);
     let along = (square + coupler * coupler - rocker * rocker) / (dd(2.0) * square);
-    // Heron's product: the difference of squares would lose what is left near a limit position.
+    // Heron's product: a difference of squares would lose digits near a limit position.
     let (sum, gap) = (coupler + rocker, coupler - rocker);
     let rest = (sum * sum - square) * (square - gap * gap);
     let across = rest.sqrt() / (dd(2.0) * square);
@@ -168,8 +168,9 @@ pub(crate) fn slider_crank(parts: &SliderCrank, q: DoubleDouble) -> [DoubleDoubl
     let e = (rise * w * w - ab.y) / run;
     let axis = vec2(run, rise) * (dd(1.0) / rod);
     let two = UnitSpeedBody::new([b, vb, ab], axis, [w, e], parts.masses[1]);
-    let end = two.point_motion(vec2(rod, dd(0.0)));
-    let end = end.map(|p| vec2(p.x, dd(0.0)));
+    let end = two
+        .point_motion(vec2(rod, dd(0.0)))
+        .map(|p| vec2(p.x, dd(0.0)));
     let axis = Vec2::IDENTITY.cast();
     let three = UnitSpeedBody::new(end, axis, [dd(0.0); 2], parts.masses[2]);
     let sums = [one, two, three].map(|body| body.inertia_terms());
@@ -187,7 +188,7 @@ pub(crate) fn parallelogram(mechanism: &FourBar) -> [DoubleDouble; 2] {
     [m, dd(0.0)]
 }
 
-/// ∮ √m dq over a revolution of a four-bar's crank, by the trapezoid rule: spectral.
+/// ∮ √m dq over a revolution of a four-bar's crank, by the trapezoidal rule, which has spectral accuracy.
 pub(crate) fn root_inertia_integral(mechanism: &FourBar, points: usize) -> DoubleDouble {
     let step = DoubleDouble::PI * dd(2.0) / dd(points as f64);
     let mut sum = dd(0.0);
@@ -229,7 +230,7 @@ pub(crate) fn elliptic_e(k_square: DoubleDouble, complement: DoubleDouble) -> Do
 
 /// e^x, by its series at x/2ᵏ, squared k times.
 pub(crate) fn exponential(x: DoubleDouble) -> DoubleDouble {
-    // Of −1 and nearly 1 few digits would be left; beyond, a number has none at all.
+    // Below this, the result underflows.
     if x.hi < -700.0 {
         return dd(0.0);
     }
@@ -243,7 +244,7 @@ pub(crate) fn exponential(x: DoubleDouble) -> DoubleDouble {
         term = term * small / dd(f64::from(n));
         sum += term;
     }
-    // e^2x − 1 = (e^x − 1)(e^x + 1) keeps the digits of what is small.
+    // e^2x − 1 = (e^x − 1)(e^x + 1) keeps the digits of small values.
     for _ in 0..halvings {
         sum = sum * (sum + dd(2.0));
     }

@@ -1,4 +1,4 @@
-//! A reduced model in a form, with the errors that it states.
+//! A reduced model in one form of evaluation, with its stated errors.
 
 use super::forms::{Evaluated, Form};
 use super::mechanisms::scene;
@@ -22,27 +22,27 @@ use std::sync::Arc;
 
 /// Writes the coefficients at a coordinate.
 type Evaluate = Box<dyn FnMut(f64, &mut Coefficients) -> Result<(), PositionError> + Send>;
-/// Yields one with memory of its own.
+/// Creates an evaluator with its own memory.
 type NewEvaluate = Box<dyn Fn() -> Evaluate + Send + Sync>;
 
 /// A reduced model in a form.
 pub(super) struct FormModel {
     form: Form,
-    /// The planar mechanism, of which are the derivatives that Newton's method uses.
+    /// The planar mechanism, whose derivatives Newton's method uses.
     plane: ExactModel,
     evaluate: NewEvaluate,
     statement: Statement,
 }
 
-/// How a form states its errors.
+/// The origin of a form's stated errors.
 enum Statement {
-    /// By the same evaluation in wider numbers, and two roundings of its own.
+    /// Difference from the evaluation in wider numbers, plus two rounding errors.
     Wider(NewEvaluate),
-    /// As it was measured against the planar model: the absolute error of each coefficient.
+    /// Measured against the planar model: the absolute error of each coefficient.
     Measured(Coefficients),
 }
 
-/// By reaction of the plane: the reactions in space that it is the sum of, each times a factor.
+/// By planar reaction: the spatial reactions of which it is a linear combination, with their factors.
 type Sums = Vec<Vec<(usize, f64)>>;
 
 /// Both unit passes in a kind of number.
@@ -102,7 +102,7 @@ fn exported<R: Real + Send + Sync + 'static>(
     })
 }
 
-/// The planar scene obliquely in space, at a distance from the origin and with heights in proportion to it.
+/// The planar scene in an oblique plane in space, at a distance from the origin and with heights in proportion to it.
 fn in_space(
     scene: &PlaneScene,
     reactions: &[Reaction],
@@ -118,14 +118,17 @@ fn in_space(
         heights: &|j| 0.04 * size * j as f64,
     };
     let model = compile_model(scene, &[])?;
-    let lifted = plane.lift(&model, &scene.masses);
-    let lifted = lifted.ok_or("a joint has no counterpart in space")?;
+    let lifted = plane
+        .lift(&model, &scene.masses)
+        .ok_or("a joint has no counterpart in space")?;
     let (mut all, mut sums) = (Vec::new(), Vec::new());
     for reaction in reactions {
         let along = |axis: usize, of: fn(Axes, usize) -> SpaceComponent| {
             let Vec3 { x, y, z } = tilted.rotation.apply(Vec3::AXES[axis]);
-            let parts = [x, y, z].into_iter().enumerate();
-            let parts = parts.map(|(k, part)| (of(Axes::Ground, k), part));
+            let parts = [x, y, z]
+                .into_iter()
+                .enumerate()
+                .map(|(k, part)| (of(Axes::Ground, k), part));
             parts.collect::<Vec<_>>()
         };
         let parts = match reaction.component {
@@ -145,9 +148,10 @@ fn in_space(
         }
         sums.push(sum);
     }
-    let compile = match planes {
-        true => SpaceModel::new,
-        false => SpaceModel::without_planes,
+    let compile = if planes {
+        SpaceModel::new
+    } else {
+        SpaceModel::without_planes
     };
     let model = compile(&lifted.mechanism, &lifted.masses, &lifted.assembly, &all)?;
     Ok((model, sums))
@@ -176,7 +180,7 @@ impl FormModel {
     ) -> Result<Self, Box<dyn Error>> {
         let plane = reduced_model(&scene, &reactions)?;
         let interval = around.map(|[q, width]| (q - 0.5 * width, q + 0.5 * width));
-        // What never repeats has a table over the rows.
+        // An unbounded range has a table over the rows.
         let unbounded = plane.range() == Range::Unbounded;
         let interval = interval.or(unbounded.then_some((0.0, TAU)));
         let (evaluate, statement) = match form.evaluated {
@@ -207,7 +211,7 @@ impl FormModel {
         })
     }
 
-    /// The coefficients at a coordinate, and the error that the form states of each.
+    /// The coefficients at a coordinate, with their stated errors.
     pub(super) fn coefficients_with_errors(
         &self,
         q: f64,
@@ -227,7 +231,7 @@ impl FormModel {
                     |v: f64, w: f64, size: f64| (v - w).abs() + roundings * v.abs().max(size);
                 combined(&values, &at(wider)?, error)
             }
-            // What is fitted states nothing about the model that it is fitted to, which states its own rounding.
+            // A fit states its own error only; the fitted model states its rounding error.
             Statement::Measured(errors) => {
                 let (_, of_model) = estimate::coefficients_with_errors(self.plane.model(), q)?;
                 combined(errors, &of_model, |a, b, _| a + b)
@@ -237,7 +241,7 @@ impl FormModel {
     }
 }
 
-/// Something of two values of each coefficient, and the largest of its kind.
+/// Combines two values of each coefficient and the largest of its kind.
 fn combined(
     one: &Coefficients,
     other: &Coefficients,

@@ -12,7 +12,7 @@ use dwell_study::ranges::extent;
 /// Digits of double precision, the most that the figure shows.
 const MAX_DIGITS: f64 = 16.0;
 
-/// The findings of each form: its floors, and the safe side of the errors that it states.
+/// The findings of each form: required digits, and safety of the stated errors.
 pub fn check(results: &[(Form, Vec<SeriesResult>)]) -> Vec<Finding> {
     let of_form = |(form, results): &(Form, Vec<SeriesResult>)| {
         [
@@ -27,7 +27,7 @@ pub fn check(results: &[(Form, Vec<SeriesResult>)]) -> Vec<Finding> {
     results.iter().flat_map(of_form).collect()
 }
 
-/// The worst finding of the series of a form, which stands for all of them.
+/// The worst finding of the series of a form, which represents all of them.
 fn combined(form: Form, what: &str, findings: impl Iterator<Item = Finding>) -> Finding {
     let findings: Vec<Finding> = findings.collect();
     let key = format!(
@@ -89,7 +89,7 @@ pub fn add_to(outcome: &mut Outcome, plane: &[SeriesResult], name: &str) {
     report.add_to(outcome);
 }
 
-/// What every machine reproduces: how many series each form runs, and its floors.
+/// The reproducible text: the number of series of each form, and the required digits.
 fn snapshot(results: &[(Form, Vec<SeriesResult>)]) -> String {
     let mut text = "Extremes in other forms\n\n".to_owned();
     for (form, all) in results {
@@ -101,7 +101,7 @@ fn snapshot(results: &[(Form, Vec<SeriesResult>)]) -> String {
     text
 }
 
-/// Series by form: the digits kept, with those that the condition takes.
+/// Series by form: the remaining digits, together with those lost by the condition number.
 fn figure(plane: &[SeriesResult], results: &[(Form, Vec<SeriesResult>)]) -> Figure {
     let cell = |series: &SeriesResult| {
         let kept = series.cells.iter().filter_map(|cell| {

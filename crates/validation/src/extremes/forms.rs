@@ -1,5 +1,5 @@
-//! The forms in which a result of the grid is computed: in the plane, obliquely in space, in single precision, on a table, as exported
-//! code. The series are the same, with the same references; each form states what it may lose of their digits.
+//! The forms of evaluation of the grid: in the plane, in an oblique plane in space, in single precision, on a table, as exported
+//! code. All forms have the same series and references; each form states how many digits it may lose.
 
 use super::all_in;
 pub(super) use super::form_model::FormModel;
@@ -11,20 +11,20 @@ use std::sync::Arc;
 /// A kind of evaluation, in a kind of number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Form {
-    /// What is evaluated.
+    /// The evaluated object.
     pub evaluated: Evaluated,
     /// Its numbers.
     pub precision: Precision,
 }
 
-/// What is evaluated.
+/// The evaluated object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Evaluated {
     /// The planar mechanism.
     Plane,
     /// The mechanism in an oblique plane in space, which may take its planar equivalent.
     Space,
-    /// The same with every loop closed in space.
+    /// The mechanism in space without its planar equivalent, with every loop closed in space.
     Loops,
     /// Its table.
     Table,
@@ -34,23 +34,23 @@ pub enum Evaluated {
     Operations,
 }
 
-/// The accuracy that is asked of tables and cells.
+/// The required accuracy of tables and cells.
 const ACCURACY: f64 = 1e-9;
-/// The same of cells in single precision.
+/// The required accuracy of cells in single precision.
 const SINGLE_ACCURACY: f64 = 1e-6;
-/// What the operations of a model may differ by, in double and in single precision: beyond, the export refuses them.
+/// Largest difference of exported operations from the model, in double and in single precision, that the export accepts.
 const OPERATIONS: [f64; 2] = [1e-7, 1e-3];
-/// A peak within so small a part of its domain needs more samples than a table takes.
+/// A peak narrower than this fraction of its domain needs more samples than a table takes.
 const NARROW: f64 = 1e-4;
-/// Roundings of the lift: the points and directions of the ground are rounded when they are placed in an oblique plane, and so are the numbers
+/// Rounding errors of the lift: points and directions of the ground are rounded when they are placed in an oblique plane, as are the numbers
 /// of a motion in each form.
 const STATED: f64 = 8.0;
-/// Roundings of a form, or its accuracies, that a result may err by: twice the 16 of a dyad, since the numbers are rounded, too, and in a
-/// cell a value may be a small part of the largest.
+/// Allowed error of a result, in rounding errors or accuracies of the form: twice the 16 of a dyad, because the numbers are rounded, too, and in a
+/// cell a value may be a small fraction of the largest.
 const ALLOWED: f64 = 32.0;
-/// Values of a series that are run in each form, and as exported code, which measures itself at thousands of coordinates.
+/// Number of values of a series that are run in each form, and as exported code, whose own measurement takes thousands of coordinates.
 const VALUES: [usize; 2] = [5, 3];
-/// What takes long is the grid's own: values above these are not run in other forms.
+/// Values above these take long and are run in the plane only.
 const LARGEST_VALUES: [(&str, f64); 2] = [("revolutions", 100.0), ("large-group", 8.0)];
 
 impl Form {
@@ -77,7 +77,7 @@ impl Form {
         }
     }
 
-    /// The form in which the grid itself runs a series, by its key.
+    /// The default form of a series, by its key.
     pub(super) fn of_grid(key: &str) -> Self {
         match key {
             "place-in-space" => Self::of(Evaluated::Loops, Precision::Double),
@@ -108,12 +108,12 @@ impl Form {
         matches!(self.evaluated, Evaluated::Space | Evaluated::Loops)
     }
 
-    /// Whether it keeps an accuracy that is asked for, relative to the largest value, instead of that of its numbers.
+    /// Whether its accuracy is requested (relative to the largest value) instead of given by its number type.
     pub(super) fn is_fitted(self) -> bool {
         matches!(self.evaluated, Evaluated::Table | Evaluated::Cells)
     }
 
-    /// The error of one of its numbers or functions.
+    /// The relative error of its numbers or functions.
     pub(super) fn accuracy(self) -> f64 {
         match (self.is_fitted(), self.is_single()) {
             (true, false) => ACCURACY,
@@ -123,21 +123,22 @@ impl Form {
         }
     }
 
-    /// The nearest coordinate that it can be asked for.
+    /// The nearest coordinate that its number type can represent.
     pub(super) fn coordinate(self, q: f64) -> f64 {
         self.precision.round(q)
     }
 
-    /// The tolerance of a motion in it: below the rounding of its numbers step control has nothing to go by.
+    /// The tolerance of a motion in it: below its rounding error, step control is meaningless.
     pub(super) fn tolerance(self, tolerance: f64) -> f64 {
-        match self.is_single() {
-            true => tolerance.max(SINGLE_ACCURACY),
-            false => tolerance,
+        if self.is_single() {
+            tolerance.max(SINGLE_ACCURACY)
+        } else {
+            tolerance
         }
     }
 
-    /// What it has to keep where double precision in the plane has to keep this: it loses as many roundings of its own numbers. A typed
-    /// error is an answer where half of its digits are lost, or beyond what an export or a table says it needs.
+    /// Its requirement, from that of double precision in the plane: it loses as many rounding errors of its own numbers. A typed
+    /// error is permitted if half of its digits are lost, or beyond the limits that an export or a table states.
     fn requirement(self, plane: Requirement, is_motion: bool) -> Requirement {
         if self == Self::PLANE {
             return plane;
@@ -151,7 +152,7 @@ impl Form {
         let rounding = ALLOWED * self.accuracy();
         let refusable_from = match (self.evaluated, self.is_single()) {
             (Evaluated::Table | Evaluated::Cells, _) => NARROW.recip(),
-            // One quantity of the worst condition is enough for the whole export to be refused.
+            // One quantity of the worst condition suffices to reject the whole export.
             (Evaluated::Operations, single) => 0.1 * OPERATIONS[usize::from(single)] / rounding,
             (_, true) => self.accuracy().sqrt().recip(),
             (_, false) => plane.refusable_from,
@@ -162,7 +163,7 @@ impl Form {
         }
     }
 
-    /// Why a series is not run in it, by its key.
+    /// The reason why a series is not run in it, by its key.
     pub fn not_run(self, key: &str) -> Option<&'static str> {
         let own = NOT_RUN.iter().find(|(evaluated, keys, _)| {
             evaluated.contains(&self.evaluated) && keys.contains(&key)
@@ -175,7 +176,7 @@ impl Form {
     }
 }
 
-/// What has no counterpart in a form, or is refused there, by the keys of the series; and why.
+/// Series without counterpart in a form, or rejected there, by key, with the reason.
 const NOT_RUN: [(&[Evaluated], &[&str], &str); 5] = [
     (
         SPACE,
@@ -210,15 +211,15 @@ fn is_motion(series: &ParameterSeries) -> bool {
     ["motions", "tolerances", "stiff", "edges"].contains(&series.figure.0)
 }
 
-/// A series as it is run in a form: some of its values, what the form has to keep of them, and what it states.
+/// A series in a form: some of its values, with the requirements and stated errors of the form.
 fn in_form(mut series: ParameterSeries, form: Form) -> ParameterSeries {
     let (motion, quantities) = (is_motion(&series), series.quantities.len());
     let (plane, run) = (series.requirement, series.run);
     let required = move |at, quantity| form.requirement(plane(at, quantity), motion);
-    // Of a motion of which nothing is left there is nothing to see, and single precision does not hold the fourth power of a long length.
+    // A motion without correct digits shows nothing, and single precision overflows for the fourth power of a large length.
     let overflows = form.is_single() && series.key == "power-of-two";
     let slow = LARGEST_VALUES.iter().find(|(key, _)| *key == series.key);
-    // What a compiler's own sines make of a last digit is not of this study either.
+    // The last digits of a compiler's own sines are not part of this study.
     let drops = motion || (form.is_single() && form.evaluated == Evaluated::Operations);
     series.values.retain(|&at| {
         let kept = (0..quantities).all(|quantity| required(at, quantity).min_digits > 0.0);
@@ -259,6 +260,6 @@ pub fn evaluate(forms: &[Form]) -> Vec<(Form, Vec<SeriesResult>)> {
     forms.iter().map(one).collect()
 }
 
-/// What is evaluated in the form that is asked for, besides the series of tolerances; all else runs once.
+/// The series that run in each form, besides those of tolerances; all others run once.
 const IN_FORMS: &str = "limit-four-bar limit-slider-crank flat-parallelogram mass-ratio length power-of-two placement speed revolutions \
                         light-crank short-crank guide-near-path gear-ratio cam-steepness long-links large-group";

@@ -12,9 +12,9 @@ use std::sync::LazyLock;
 
 /// The crank where the motions start, rad.
 const START_ANGLE: f64 = 1.125;
-/// Points of the rule for the period; half of them differ by 1e-28.
+/// Points of the rule for the period; with half as many, the result differs by 1e-28.
 const QUADRATURE_POINTS: usize = 256;
-/// Tolerances that a step errs by in energy at most.
+/// Largest energy error of a step, in tolerances.
 const ENERGY_ERROR_PER_STEP: f64 = 4.0;
 /// Steps of a revolution at a tolerance of one.
 const STEPS_PER_REVOLUTION: f64 = 8.0;
@@ -32,9 +32,9 @@ static REFERENCE_REVOLUTION: LazyLock<[DoubleDouble; 2]> = LazyLock::new(|| {
     [m, integral / m.sqrt()]
 });
 
-/// Page of these rows, and its title.
+/// File name and title of the figure of these rows.
 const FIGURE: (&str, &str) = ("motions", "Speeds and revolutions");
-/// The same of the rows of tolerances.
+/// File name and title of the figure of the rows of tolerances.
 const TOLERANCES_FIGURE: (&str, &str) = ("tolerances", "Tolerances");
 
 pub(super) fn series(form: Form, slow: bool) -> Vec<ParameterSeries> {
@@ -43,7 +43,7 @@ pub(super) fn series(form: Form, slow: bool) -> Vec<ParameterSeries> {
     series
 }
 
-/// Order of the error that a method's step control sees.
+/// Order of the error estimate of a method's step control.
 fn order(method: Method) -> f64 {
     match method {
         Method::Bdf => 5.0,
@@ -54,7 +54,7 @@ fn order(method: Method) -> f64 {
     }
 }
 
-/// A revolution takes 8 tol^(−1/(p + 1)) steps, each of which errs by some tolerances in energy, always with the same
+/// A revolution takes 8 tol^(−1/(p + 1)) steps, each with an energy error of some tolerances, always with the same
 /// sign; the phase error is half of that, summed over the revolutions.
 fn required(method: Method, tolerance: f64, revolutions: f64, quantity: usize) -> Requirement {
     let steps = STEPS_PER_REVOLUTION * tolerance.powf(-1.0 / (order(method) + 1.0));
@@ -82,14 +82,14 @@ fn solve_revolutions(
     };
     let mut angle = dd(START_ANGLE);
     let runs = if parts > 1.0 {
-        wrapped_free_motion(model, start, (parts as usize, duration), advance, options)?
+        wrapped_free_motion(model, start, parts as usize, duration, advance, options)?
     } else {
         angle += advance;
         free_motion(model, start, duration, options)?
     };
-    // The double-precision end is not quite the end of the revolutions.
+    // The end in double precision differs slightly from the end of the revolutions.
     let angle = angle + (dd(duration) - exact_duration) * dd(speed) * dd(parts);
-    // A last place of the angle is lost in each part, and of the time.
+    // Each part loses one unit in the last place of the angle and of the time.
     let rounding = 2.0 * f64::EPSILON * (advance.value() + angle.value()) * parts.sqrt();
     let end_angle = runs.final_value(|y| y[0], rounding);
     let energy = dd(0.5) * m * dd(speed) * dd(speed);

@@ -1,4 +1,4 @@
-//! What the commands find in the text of a scene, as cells: the row with the largest error, and the error that the command
+//! Results of commands on the text of a scene, as cells: the row with the largest error, and the error that the command
 //! states.
 
 use super::forms::{Form, FormModel};
@@ -9,13 +9,13 @@ use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_scene::PlaneScene;
 use dwell_study::{Analysis, StudyError, compute_reduction, compute_trajectory, no_progress};
 
-/// Rows from one that another form is evaluated at to the next: those beside the peaks are among them.
+/// Distance of the rows at which another form is evaluated; rows next to the peaks are included.
 const ROW_STEP: usize = 15;
 
-/// A table that a command finds, with the errors that it states.
+/// A table of a command, with its stated errors.
 pub(super) struct StatedTable {
     table: Table,
-    /// Of m, of ½m′, of all else: as a part of the largest value.
+    /// Errors of m, of ½m′, and of all other columns, relative to the largest value.
     errors: [f64; 3],
 }
 
@@ -30,7 +30,7 @@ pub fn column(table: &Table, name: &str) -> Result<Vec<f64>, String> {
 pub(super) type ReferenceColumn<'a> = (&'a str, Vec<DoubleDouble>);
 
 impl StatedTable {
-    /// What `reduce` finds in a scene, at a number of positions; in another form, what that finds at its rows.
+    /// The table of `reduce` for a scene, at a number of positions; in another form, the coefficients at the same rows.
     pub(super) fn reduced(
         form: Form,
         text: &str,
@@ -49,7 +49,7 @@ impl StatedTable {
         found.in_form(form, &FormModel::new(form, scene, reactions, None)?)
     }
 
-    /// The same rows by a model in another form.
+    /// The rows by a model in another form.
     fn in_form(
         mut self,
         form: Form,
@@ -78,7 +78,7 @@ impl StatedTable {
         }
         let relative = |k: usize| {
             let error = largest(&mut errors.iter().map(|row: &Vec<f64>| row[k]));
-            // The largest value is off by the error itself.
+            // The largest value itself has the error.
             let size = largest(&mut self.table.rows.iter().map(|row| row[1 + k]));
             if size > 0.0 {
                 error / (size - error).max(0.1 * size)
@@ -91,7 +91,7 @@ impl StatedTable {
         Ok(self)
     }
 
-    /// What `kinetostatics` finds.
+    /// The table of `kinetostatics`.
     pub(super) fn kinetostatics(text: &str, points: usize) -> Result<Self, StudyError> {
         let scene = PlaneScene::parse("scene.toml", text)?;
         let points = Some(points);
@@ -111,7 +111,7 @@ impl StatedTable {
         column(&self.table, name)
     }
 
-    /// Of each group of columns, for which one error is stated, the number with the largest error; it is relative to the largest
+    /// For each group of columns with one stated error, the number with the largest error relative to the largest
     /// value of its column.
     pub(super) fn compare(&self, groups: &[Vec<ReferenceColumn<'_>>]) -> RunResult {
         groups.iter().map(|group| self.worst(group)).collect()

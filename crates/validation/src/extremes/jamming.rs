@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 const FIGURE: (&str, &str) = ("use", "Friction near a jam, and many periods");
 /// The crank where the motion starts, rad.
 const START_ANGLE: f64 = 1.125;
-/// Points of the rule for the period; half of them differ by 1e-28.
+/// Points of the rule for the period; with half as many, the result differs by 1e-28.
 const QUADRATURE_POINTS: usize = 256;
 
 pub(super) fn series() -> Vec<ParameterSeries> {
@@ -58,7 +58,7 @@ fn jamming() -> ParameterSeries {
     }
 }
 
-/// The crank-rocker after many periods, as simulate writes it.
+/// The crank-rocker after many periods, as `simulate` writes it.
 fn periods() -> ParameterSeries {
     let run = |count: f64| -> RunResult {
         let m = four_bar(&CRANK_ROCKER, dd(START_ANGLE)).m;
@@ -81,7 +81,7 @@ fn periods() -> ParameterSeries {
         let motion = compute_free_motion(&scene, &solver, &no_progress)?;
         let angles = column(&motion.computed.table, "phi")?;
         let end = angles.last().ok_or("no rows")?;
-        // At the end the duration is rounded, by less than the crank turns in it.
+        // The rounding of the duration changes the final angle, which is taken into account.
         let late = dd(duration) - exact;
         let angle = dd(START_ANGLE) + DoubleDouble::from_revolutions(count) + late;
         let error = motion.estimated_error.unwrap_or(f64::NAN);

@@ -1,5 +1,5 @@
-//! Groups of many bodies that only Newton's method places together: rings of ternary links, each held by a strut. From forty
-//! unknowns on faer factors them.
+//! Groups of many bodies that require Newton's method: rings of ternary links, each held by a strut. From forty
+//! unknowns on, faer factors them.
 
 use super::closed_forms::dd;
 use super::forms::Form;
@@ -17,22 +17,22 @@ use dwell_verify::check_states;
 
 /// Positions of a revolution.
 const POINTS: usize = 13;
-/// Points are on a grid of so many lines per metre.
+/// Points are on a grid with this number of lines per metre.
 const GRID: f64 = 8192.0;
 /// Links of the ring that is checked by dense equations.
 const DENSE_LINKS: usize = 20;
 /// States in which it is checked.
 const DENSE_STATES: usize = 8;
 
-/// A ring of ternary links on a disk: each link is joined to both neighbours and, by a strut that leans to one side or the other,
-/// to the disk. All bodies have the frame of the disk, so that they turn with it: m and the reactions of the disk's central pin are
-/// sums over the bodies, whereas every other joint force follows from the group alone.
+/// A ring of ternary links on a disk: each link is joined to both neighbours and, by a strut that is inclined to one side or the other,
+/// to the disk. All bodies rotate with the disk: m and the reactions of the disk's central pin are
+/// sums over the bodies, whereas every other joint force follows from the group.
 struct Ring {
     text: String,
     bodies: Vec<Mass>,
 }
 
-/// A link and its strut of number `k` of so many: the points and the mass of each, and the strut's foot on the disk.
+/// Link `k` of `links` and its strut: the points and the mass of each, and the strut's foot on the disk.
 fn pair(k: usize, links: usize) -> ([(String, Mass); 2], [f64; 2]) {
     let angle = |k: f64| k * std::f64::consts::TAU / links as f64;
     // Differences of points are exact: the errors are those of the group.
@@ -106,11 +106,14 @@ pub(super) fn series(form: Form) -> Vec<ParameterSeries> {
         let found = StatedTable::reduced(form, &ring.text, POINTS)?;
         let (m, [x, y]) = ring.sums();
         // Ground on disk: F = Σ M c̈, which for c̈ = q̈ k × c − q̇² c is a and b.
-        let turned = found.column("phi")?.into_iter().map(|q| {
-            let (sin, cos) = dd(q).sin_cos();
-            [x * cos - y * sin, x * sin + y * cos]
-        });
-        let turned: Vec<_> = turned.collect();
+        let turned: Vec<_> = found
+            .column("phi")?
+            .into_iter()
+            .map(|q| {
+                let (sin, cos) = dd(q).sin_cos();
+                [x * cos - y * sin, x * sin + y * cos]
+            })
+            .collect();
         let of =
             |pick: &dyn Fn(&[DoubleDouble; 2]) -> DoubleDouble| turned.iter().map(pick).collect();
         found.compare(&[
@@ -139,7 +142,7 @@ pub(super) fn series(form: Form) -> Vec<ParameterSeries> {
     }]
 }
 
-/// The same ring by dense equations, which share no group, dyad or factors with it.
+/// Findings on the ring by the dense equations, which share no group, dyad or factors with it.
 pub(super) fn dense_findings() -> Vec<Finding> {
     let ring = Ring::new(DENSE_LINKS);
     match findings_of(&ring.text.replace("reactions = [\"O\"]", "")) {

@@ -44,10 +44,10 @@ pub(super) fn series(form: Form) -> Vec<ParameterSeries> {
     vec![four_bar(form), slider_crank(form), parallelogram(form)]
 }
 
-/// m, ½m′ and what C's reaction has of q̈ and q̇² (the component along x).
+/// m, ½m′, and the coefficients of q̈ and q̇² in the reaction of C (component along x).
 pub(super) const QUANTITIES: [&str; 4] = ["m", "½m′", "a of C", "b of C"];
 
-/// The reduced parameters of a four-bar against circle and circle.
+/// The reduced parameters of a four-bar against the closed form by the intersection of circles.
 pub(super) fn compare_four_bar(four_bar: &FourBar, model: &FormModel, q: f64) -> RunResult {
     let (computed, error) = model.coefficients_with_errors(q)?;
     let reference = closed_forms::four_bar(four_bar, dd(q));
@@ -151,8 +151,8 @@ mod tests {
     use super::*;
     use dwell_kinetostatics::Coefficients;
 
-    /// The same plan in two words keeps twice as many digits as in one, at every distance: 1e-31 × some
-    /// hundred roundings × the condition.
+    /// The plan in double-double numbers keeps twice as many digits as in double precision, at every distance: 1e-31 × some
+    /// hundred rounding errors × the condition number.
     #[test]
     fn val_the_plan_in_two_words() {
         let exact = reduced(&ROCKER.text(), "C").expect("a model");

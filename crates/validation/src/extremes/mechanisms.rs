@@ -46,7 +46,7 @@ pub struct FourBar {
     pub base: [Vec2; 2],
     /// Crank, coupler and rocker, m.
     pub lengths: [f64; 3],
-    /// Of the same.
+    /// Masses of crank, coupler and rocker.
     pub masses: [Mass; 3],
     /// Coordinate and approximate angle of the coupler at assembly, rad.
     pub assembly: [f64; 2],
@@ -74,7 +74,7 @@ impl FourBar {
         )
     }
 
-    /// The same with all lengths scaled.
+    /// Scales all lengths.
     pub fn scaled(mut self, factor: f64) -> Self {
         self.base = self.base.map(|p| p * factor);
         self.lengths = self.lengths.map(|l| l * factor);
@@ -86,7 +86,7 @@ impl FourBar {
     }
 }
 
-/// A crank-rocker in no special proportion; its numbers are exact in binary.
+/// A crank-rocker without special proportions; its numbers are exact in binary.
 pub const CRANK_ROCKER: FourBar = FourBar {
     base: [Vec2::ZERO, vec2(4.0, 0.0)],
     lengths: [1.0, 3.5, 2.5],
@@ -117,9 +117,10 @@ impl SliderCrank {
         let [crank, rod] = self.lengths;
         let [one, two, three] = &self.masses;
         let [q, initial_guess] = self.assembly;
-        let (actuator, guessed) = match actuated_slider {
-            true => ("length = \"guide\"", "crank"),
-            false => ("angle = [\"ground\", \"crank\"]", "rod"),
+        let (actuator, guessed) = if actuated_slider {
+            ("length = \"guide\"", "crank")
+        } else {
+            ("angle = [\"ground\", \"crank\"]", "rod")
         };
         format!(
             "[bodies]\nground = {{ points = {{ A = [0, 0], G = [0, {}] }} }}\n{}{}{}\

@@ -1,6 +1,6 @@
-//! The extremes: rows of parameters driven as far as they go, each with the digits that it must keep stated
-//! beforehand, compared with closed forms in 32 digits. Every result carries the estimate of its error, and the
-//! estimates are checked too.
+//! The study of extreme parameters: rows of parameter values up to their limits, each with the required digits stated
+//! beforehand, compared with closed forms in 32 digits. Every result has an estimated error, and the
+//! estimates are checked, too.
 
 mod check;
 mod closed_forms;
@@ -36,10 +36,10 @@ use dwell_study::StudyError;
 use forms::Form;
 use rayon::prelude::*;
 
-/// The whole study: `extremes`, or `extremes-long` with the rows that take minutes.
+/// The study: `extremes`, or `extremes-long` with the rows that take minutes.
 ///
 /// # Errors
-/// [`StudyError`] where a picture cannot be drawn.
+/// [`StudyError`] if a picture cannot be drawn.
 pub fn study(slow: bool) -> Result<Outcome, StudyError> {
     let name = if slow { "extremes-long" } else { "extremes" };
     let results = evaluate(all_series(slow));

@@ -1,7 +1,7 @@
-//! Narrow peaks of the inertia: a body that swings by half a turn within a small part of the coordinate.
+//! Narrow peaks of the inertia: a body that rotates by half a revolution within a small interval of the coordinate.
 //!
-//! Both mechanisms turn a body by y while the coordinate turns by x, with tan y = tan x / c. Of z, with tan z = tan x / √c, both are
-//! functions whose peaks have the width √c, and the period is the integral of a smooth periodic function of z:
+//! In both mechanisms a body rotates by y while the coordinate changes by x, with tan y = tan x / c. As functions of z, with tan z = tan x / √c, both
+//! have peaks of the width √c, and the period is the integral of a smooth periodic function of z:
 //!
 //! ```text
 //! x′ = √c / (cos² z + c sin² z),   y′ = √c / (c cos² z + sin² z)                                    (1)
@@ -21,41 +21,42 @@ use dwell_study::models::compile_model;
 
 /// Figure of these rows, and its title.
 const FIGURE: (&str, &str) = ("narrow-peaks", "Narrow peaks of the inertia");
-/// Points over 1/√c: what they leave of (2) and (3) is below 1e-32 of it.
+/// Number of points relative to 1/√c: the quadrature error of (2) and (3) is below a relative 1e-32.
 const POINTS: f64 = 64.0;
 /// Moments of inertia of the driving and of the swinging body, kg m², and the speed of the coordinate at the start, rad/s.
 const INERTIAS: [f64; 2] = [1.0, 0.5];
 const SPEED: f64 = 1.0;
 
-/// Down to where the assembly modes, or the positions, are no longer told apart: then an error says so.
+/// Parameters down to where the assembly modes, or the positions, cannot be distinguished and an error is returned.
 pub(super) fn series() -> Vec<ParameterSeries> {
     vec![
         row(
-            (
-                "near-pivot",
-                "Crank pin that passes the pivot of its guide: distance",
-            ),
+            "near-pivot",
+            "Crank pin that passes the pivot of its guide: distance",
             ("distance d", "m"),
             "the angle of the guide in closed form, and the trapezoidal rule in 32 digits",
-            (near_pivot, -5),
+            near_pivot,
+            -5,
         ),
         row(
-            (
-                "hooke-near-right-angle",
-                "Hooke joint in space, near a right angle: cosine of its angle",
-            ),
+            "hooke-near-right-angle",
+            "Hooke joint in space, near a right angle: cosine of its angle",
             ("cos β", "1"),
             "the turn of the output in closed form, and the trapezoidal rule in 32 digits",
-            (hooke, -6),
+            hooke,
+            -6,
         ),
     ]
 }
 
+/// A row down to 10 to the power `smallest`.
 fn row(
-    (key, description): (&str, &str),
+    key: &str,
+    description: &str,
     parameter: (&'static str, &'static str),
     reference: &'static str,
-    (run, smallest): (fn(f64) -> RunResult, i32),
+    run: fn(f64) -> RunResult,
+    smallest: i32,
 ) -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
@@ -122,7 +123,7 @@ fn near_pivot(distance: f64) -> RunResult {
     );
     let model = compile_model(&scene(&text)?, &[]).map_err(|e| e.to_string())?;
     let machine = Machine::new(model, &[], vec![CoordinateMode::Free], &[]);
-    // The pivot as it is given.
+    // The distance of the rounded pivot.
     let gap = (dd(x) * dd(x) + dd(y) * dd(y)).sqrt() - dd(1.0);
     let c = gap / (gap + dd(2.0));
     let [one, two] = INERTIAS.map(dd);

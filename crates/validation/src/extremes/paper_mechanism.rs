@@ -1,5 +1,5 @@
-//! The paper's own mechanism without its flywheel: with a crank as short as it may be, and with the guide's pivot as near to
-//! the path of P as it may be, where the guide flies round.
+//! The mechanism of the paper without its flywheel: with the shortest possible crank, and with the guide's pivot as close as possible to
+//! the path of P, where the guide rotates very fast.
 
 use super::closed_forms::{Point, UnitSpeedBody, at_rest, dd, four_bar_bodies};
 use super::forms::Form;
@@ -14,7 +14,7 @@ use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_scene::PlaneScene;
 use std::f64::consts::TAU;
 
-/// Roundings that an evaluation is allowed: of two dyads in a row.
+/// Allowed rounding errors of an evaluation: those of two successive dyads.
 const ALLOWED_ROUNDINGS: f64 = 32.0;
 /// The length of the coupler from B to C, and from C to P, m.
 const LENGTH_BC: f64 = 0.25;
@@ -60,8 +60,8 @@ impl SingleDwell {
         Self { four_bar, pivot }
     }
 
-    /// With the guide's pivot at a distance from the point of P's path at a crank angle, to the side. Nearer than 1e-6 m the
-    /// guide's two directions are one position, which ends the range.
+    /// The mechanism with the guide's pivot at a distance from the path of P, at a crank angle. Nearer than 1e-6 m the
+    /// two directions of the guide are not distinguished, which ends the range.
     fn pivot_off_path(angle: f64, distance: f64) -> Self {
         let wide = Self::new(0.1);
         let [place, velocity, _] = wide.point_p(dd(angle));
@@ -134,7 +134,7 @@ impl SingleDwell {
         [sums[0], sums[1], a, b]
     }
 
-    /// What `reduce` finds, against the closed form at its positions.
+    /// Compares the table of `reduce` with the closed form at its positions.
     fn compare(&self, form: Form) -> RunResult {
         let found = StatedTable::reduced(form, &self.text(), POINTS)?;
         let positions = found.column("phi")?;
@@ -192,7 +192,7 @@ fn short_crank(form: Form) -> ParameterSeries {
     }
 }
 
-/// Parts of the guide's distance by which quantities are magnified: m as its inverse square, and so on.
+/// Magnification by the guide's distance d: m grows as d⁻², and so on.
 fn near_requirement(distance: f64, quantity: usize) -> Requirement {
     let size = LENGTH_BC / distance;
     let factor = [2.0, 3.0, 3.0][quantity];
@@ -212,7 +212,7 @@ fn near_path(form: Form) -> ParameterSeries {
         reason: "places are known to their rounding, of 0.25 m: the line from Q to P to 0.25 eps/δ of its length, m as 2 of these, ½m′ and b as 3; 32 roundings of two dyads' 8",
         requirement: Box::new(near_requirement),
         run: Box::new(move |distance| {
-            // Beside the peak, where ½m′ is as large as it comes: P moves by 0.07 m per rad there.
+            // Next to the peak, where ½m′ is largest: P moves by 0.07 m per rad there.
             let row = TAU * 60.0 / (POINTS - 1) as f64;
             SingleDwell::pivot_off_path(row + 5.0 * distance, distance).compare(form)
         }),

@@ -1,4 +1,4 @@
-//! Places in space: a linkage of two hinges and two balls far from the origin, in double and in single precision.
+//! Positions in space: an RSSR linkage far from the origin, in double and in single precision.
 
 use super::series::{
     ALLOWED_ROUNDINGS, DYAD_CONDITION, ParameterSeries, Requirement, RunResult, cell, decades,
@@ -10,7 +10,7 @@ use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_scene::SpaceScene;
 use dwell_study::estimate;
 
-/// A crank angle in no special place, rad.
+/// A generic crank angle, rad.
 const CRANK_ANGLE: f64 = 1.125;
 /// The quantities, in the order of the results.
 const QUANTITIES: [&str; 4] = ["m", "½m′", "a of C.x", "b of C.x"];
@@ -25,7 +25,7 @@ pub(super) fn series() -> Vec<ParameterSeries> {
     ]
 }
 
-/// The linkage with its points on the ground so far from the origin. They are exact, at whatever distance, so that the mechanism is the same.
+/// The linkage at a distance from the origin. Its points are exact at every distance, so the mechanism is unchanged.
 fn rssr(distance: f64) -> Result<Model, String> {
     let at = |offset: [f64; 3]| {
         let place = [1.0, 2.0, -1.0].map(|part| part * distance);
@@ -66,7 +66,7 @@ fn values<T: Scalar>(model: &Model) -> Result<[T; 4], Box<dyn std::error::Error>
     Ok([m, half_dm, a[0], b[0]])
 }
 
-/// The linkage at each distance in a number type, against itself at the origin in 32 digits.
+/// The linkage at each distance in a number type, against the linkage at the origin in 32 digits.
 fn places<T: Scalar>(key: &str, what: &str) -> ParameterSeries {
     let run = |distance: f64| -> RunResult {
         let far = rssr(distance)?;

@@ -1,4 +1,4 @@
-//! Ratios: of gears, of a cam's steepness, of links that are far longer than their crank, of the bars of a double pendulum.
+//! Extreme ratios: of gears, of a cam's steepness, of links that are far longer than the crank, of the bars of a double pendulum.
 
 use super::closed_forms::{UnitSpeedBody, at_rest, dd, exponential, four_bar};
 use super::forms::Form;
@@ -76,7 +76,7 @@ fn tanh(x: DoubleDouble) -> DoubleDouble {
     if x.value() < 0.0 { -size } else { size }
 }
 
-/// A follower that a cam lifts by 20 mm within a small angle: s = h tanh((φ − φ₀)/β), 0.4 β beside a row.
+/// A follower that a cam lifts by 20 mm within a small angle: s = h tanh((φ − φ₀)/β), with φ₀ 0.4 β from a row.
 fn cam(form: Form) -> ParameterSeries {
     const RISE: f64 = 0.01;
     let run = move |angle: f64| -> RunResult {
@@ -118,7 +118,7 @@ fn cam(form: Form) -> ParameterSeries {
         quantities: &["m", "½m′"],
         reference: "m = I + M s′² and ½m′ = M s′ s″ of s = h tanh((φ − φ₀)/β)",
         reason: "next to the row at π/2, which is a double-precision number as φ₀ is, their difference is exact; 16 roundings of a product of three functions",
-        // In cells it is the part of a turn within which the follower rises that decides.
+        // For cells, the fraction of a revolution within which the follower rises is decisive.
         requirement: Box::new(move |angle, _| {
             let narrow = if form.is_fitted() { TAU / angle } else { 0.0 };
             rounding(DYAD_CONDITION.max(narrow))
@@ -127,7 +127,7 @@ fn cam(form: Form) -> ParameterSeries {
     }
 }
 
-/// The crank-rocker with coupler and rocker of another length: nearly parallel, and then they turn slowly.
+/// The crank-rocker with longer coupler and rocker, which are nearly parallel and rotate slowly.
 fn long_links(form: Form) -> ParameterSeries {
     let make = |length: f64| FourBar {
         lengths: [1.0, 2.5 + length, 1.0 + length],
@@ -206,7 +206,7 @@ fn double_pendulum() -> ParameterSeries {
             let first = turning(p, at_rest(Vec2::zero()), one);
             let pin = first.point_motion(vec2(dd(1.0), dd(0.0)));
             let second = turning(q, pin, two);
-            // The moment that turns the second bar about B; and what the ground's drive adds to both about A.
+            // The moment of the second bar about B; and the moment of both bars about A.
             let about = |point| [first, second].map(|body| body.moment_terms(point)[1]);
             let [_, on_second] = about(pin[0]);
             let [by_first, by_second] = about(Vec2::zero());

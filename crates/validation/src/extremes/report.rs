@@ -11,17 +11,17 @@ use dwell_study::output::chart;
 use dwell_study::ranges::extent;
 use dwell_study::{Outcome, StudyError};
 
-/// Most digits that a chart shows.
+/// Maximum number of digits in a chart.
 const MAX_DIGITS: f64 = 17.0;
-/// Where typed errors stand in a chart of digits.
+/// Height of typed errors in a chart of digits.
 const TYPED_ERROR_HEIGHT: f64 = 0.4;
-/// The ratios that a chart shows.
+/// Range of ratios in a chart.
 const RATIO_RANGE: [f64; 2] = [0.1, 1e5];
 
 /// The report of the grid and of further findings: `NAME.md`, `NAME.txt` and the folder `NAME/`.
 ///
 /// # Errors
-/// [`StudyError`] where a table cannot be written.
+/// [`StudyError`] if a table cannot be written.
 pub fn outcome(
     results: &[SeriesResult],
     further: Vec<Finding>,
@@ -94,7 +94,7 @@ fn figures(results: &[SeriesResult]) -> Vec<Figure> {
             });
         }
         if let Some(figure) = figures.last_mut() {
-            // Rows of one reference need it but once.
+            // Rows with one reference state it once.
             if !figure.caption.contains(series.reference) {
                 figure.caption += &format!("\n{}: {}.", series.description, series.reference);
             }
@@ -105,7 +105,7 @@ fn figures(results: &[SeriesResult]) -> Vec<Figure> {
     figures
 }
 
-/// The points of a quantity's cells, where there are any.
+/// The points of a quantity's cells, if any.
 fn points(
     result: &SeriesResult,
     quantity: usize,
@@ -131,7 +131,7 @@ fn digits_chart(result: &SeriesResult) -> Chart {
         let paint = Paint::Palette(k);
         let achieved = Series::line(*quantity, points(result, k, ResultCell::digits));
         series.push(achieved.stroke(Stroke::LineAndPoints).color(paint));
-        // A line each where they differ, else one for all.
+        // One line each if they differ, otherwise one for all.
         let digits = |c: &ResultCell| Some(c.requirement.min_digits.min(MAX_DIGITS));
         let required = points(result, k, digits);
         let mut known = required_lines.iter_mut();
@@ -201,7 +201,7 @@ fn csv_table(result: &SeriesResult) -> Table {
     }
 }
 
-/// What every machine reproduces: the requirements.
+/// The reproducible text: the requirements.
 fn snapshot(results: &[SeriesResult]) -> String {
     let mut text = "Extremes\n\n".to_owned();
     for result in results {

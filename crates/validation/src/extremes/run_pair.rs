@@ -21,7 +21,7 @@ pub(super) struct RunPair {
 }
 
 impl RunPair {
-    /// The last of a function of the states, and the estimate of its error.
+    /// The final value of a function of the states, and its estimated error.
     pub(super) fn final_value(&self, of: impl Fn(&[f64]) -> f64, rounding: f64) -> (f64, f64) {
         let all = |states: &[Vec<f64>]| states.iter().map(|y| of(y)).collect::<Vec<f64>>();
         let (first, second) = (all(&self.first), all(&self.second));
@@ -29,7 +29,7 @@ impl RunPair {
         (last, estimate::of_motion(&first, &second, rounding))
     }
 
-    /// Runs with some options, and with those that estimate the error.
+    /// Runs a motion with some options, and again with those that estimate the error.
     pub(super) fn of<E>(
         options: &Options,
         run: impl Fn(&Options) -> Result<Vec<Vec<f64>>, E>,
@@ -70,12 +70,13 @@ pub(super) fn free_motion(
     })
 }
 
-/// A motion without loads in parts of equal duration, s, each of which rotates by `advance`: the angle is wrapped
-/// after each, so that it keeps its digits. Compared are the ends of the parts.
+/// A motion without loads in parts of equal duration, s, each of which rotates by `advance`. The angle is wrapped
+/// after each part, so that it keeps its digits. The ends of the parts are compared.
 pub(super) fn wrapped_free_motion(
     model: &impl ReducedModel,
     start: ReducedState,
-    (parts, duration): (usize, f64),
+    parts: usize,
+    duration: f64,
     advance: DoubleDouble,
     options: &Options,
 ) -> Result<RunPair, DynamicsError> {
@@ -94,7 +95,7 @@ pub(super) fn wrapped_free_motion(
     })
 }
 
-/// The kinetic energy of a state, J; no number where there is none.
+/// The kinetic energy of a state, J; NaN if it does not exist.
 pub(super) fn kinetic_energy(model: &impl ReducedModel, y: &[f64]) -> f64 {
     let m = model.inertia(y[0], &mut model.workspace());
     m.map_or(f64::NAN, |(m, _)| 0.5 * m * y[1] * y[1])
@@ -109,14 +110,14 @@ pub(super) fn load(kind: LoadKind, magnitude: f64) -> Load {
     }
 }
 
-/// A machine of one freedom under loads.
+/// A machine of one degree of freedom under loads.
 pub(super) fn machine(text: &str, loads: &[Load]) -> Result<Machine, String> {
     let model = compile_model(&scene(text)?, &[]).map_err(|e| e.to_string())?;
     let free = vec![CoordinateMode::Free];
     Machine::new(model, loads, free, &[]).map_err(|e| e.to_string())
 }
 
-/// A motion under loads, from rest or not.
+/// A motion under loads.
 pub(super) fn loaded_motion(
     machine: &Machine,
     [q, q_dot]: [f64; 2],

@@ -1,4 +1,4 @@
-//! Scales: masses, lengths, and the distance of a mechanism from the origin.
+//! Extreme scales: masses, lengths, and the distance of a mechanism from the origin.
 
 use super::closed_forms::dd;
 use super::forms::{Form, FormModel};
@@ -10,7 +10,7 @@ use super::series::{
 use dwell_geometry::vec2;
 use dwell_kinetostatics::Coefficients;
 
-/// A crank angle in no special place, rad.
+/// A generic crank angle, rad.
 const CRANK_ANGLE: f64 = 1.125;
 
 /// Figure of these rows, and its title.
@@ -32,7 +32,8 @@ fn required(_: f64, _: usize) -> Requirement {
 /// A row that evaluates a four-bar for each value.
 fn base_series(
     form: Form,
-    (key, what): (&str, &str),
+    key: &str,
+    what: &str,
     values: Vec<f64>,
     of: fn(f64) -> FourBar,
 ) -> ParameterSeries {
@@ -65,7 +66,7 @@ fn mass_ratio(form: Form) -> ParameterSeries {
     ParameterSeries {
         parameter: ("mass of the coupler over its initial mass", ""),
         reason: "the parameters are sums over the bodies, each of which a well-shaped dyad magnifies by 8; 16 roundings",
-        ..base_series(form, ("mass-ratio", what), decades(-12, 12), make)
+        ..base_series(form, "mass-ratio", what, decades(-12, 12), make)
     }
 }
 
@@ -75,7 +76,8 @@ fn lengths(form: Form) -> ParameterSeries {
         reason: "nothing but the unit of length changes; a dyad's 8, 16 roundings",
         ..base_series(
             form,
-            ("length", "Four-bar: all lengths"),
+            "length",
+            "Four-bar: all lengths",
             decades(-9, 9),
             |by| CRANK_ROCKER.scaled(by),
         )
@@ -96,7 +98,8 @@ fn placement(form: Form) -> ParameterSeries {
         reference: "circle and circle in 32 digits, at the same double-precision coordinates of the ground's points",
         ..base_series(
             form,
-            ("placement", "Four-bar: its position"),
+            "placement",
+            "Four-bar: its position",
             decades(0, 9),
             make,
         )
@@ -114,13 +117,13 @@ fn powers_of_two(form: Form) -> ParameterSeries {
         parameter: ("crank's length", "m"),
         reference: "the same bits as at 1 m, with another exponent",
         reason: "a power of two is exact in every sum, product and root: not one last place may differ",
-        // Half a last place of a number of 53 bits, which stands for no difference.
+        // Half a unit in the last place of 53 bits, which represents no difference.
         requirement: Box::new(|_, _| {
             Requirement::from_error(0.5 * f64::EPSILON * (1.0 + 1e-6), 1.0)
         }),
         run: Box::new(move |by| {
             let (got, base) = (reduced_at_scale(by)?, reduced_at_scale(1.0)?);
-            // What may differ is the last place.
+            // Only the last place may differ.
             let compared = |got: f64, base: f64, power: i32| {
                 cell((got, f64::EPSILON * got.abs()), dd(base * by.powi(power)))
             };
@@ -133,7 +136,8 @@ fn powers_of_two(form: Form) -> ParameterSeries {
         }),
         ..base_series(
             form,
-            ("power-of-two", "Four-bar: all lengths times a power of two"),
+            "power-of-two",
+            "Four-bar: all lengths times a power of two",
             (-10..=10).map(|k| 8.0_f64.powi(k)).collect(),
             |by| CRANK_ROCKER.scaled(by),
         )

@@ -2,36 +2,36 @@
 
 use dwell_numerics::{DoubleDouble, Scalar};
 
-/// Roundings that an evaluation of a dyad's reduced model is allowed, each magnified by the condition: it
-/// takes some hundred operations, whose roundings add up as their root.
+/// Allowed rounding errors of an evaluation of a dyad's reduced model, each magnified by the condition number: it
+/// takes some hundred operations, whose rounding errors add up as the square root of their number.
 pub(super) const ALLOWED_ROUNDINGS: f64 = 16.0;
-/// Condition of a well-shaped dyad's accelerations: the sines of its angles there are about a half, and they
+/// Condition number of a well-shaped dyad's accelerations: the sines of its angles are about a half, and
 /// enter three times.
 pub(super) const DYAD_CONDITION: f64 = 8.0;
-/// A typed error is an answer only where the condition number is above this.
+/// A typed error is permitted only above this condition number.
 pub const MIN_ILL_CONDITIONED: f64 = 1e8;
-/// The rule of the estimates: so many times the true error at most, in so large a part of the cells.
+/// The rule of the estimates: at most this multiple of the true error, in the fraction of the cells below.
 pub const MAX_ESTIMATE_RATIO: f64 = 100.0;
-/// The part of the cells that the rule of the estimates holds for.
+/// The fraction of the cells that must satisfy the rule of the estimates.
 pub const REQUIRED_CELL_FRACTION: f64 = 0.95;
 
 /// A row of the grid: one parameter driven to its extremes.
 pub struct ParameterSeries {
     /// Short stable key, such as `limit-four-bar`.
     pub key: String,
-    /// Name and title of the page it stands on.
+    /// Name and title of its figure.
     pub figure: (&'static str, &'static str),
-    /// What is driven to what extreme.
+    /// The parameter and its extreme, in words.
     pub description: String,
     /// Name and unit of the parameter.
     pub parameter: (&'static str, &'static str),
-    /// Its values, all above zero.
+    /// Its values, all greater than zero.
     pub values: Vec<f64>,
     /// The quantities, in the order of the results.
     pub quantities: &'static [&'static str],
     /// The reference of the results.
     pub reference: &'static str,
-    /// Why the floor is what it is.
+    /// The reason for the required digits.
     pub reason: &'static str,
     /// The requirement, stated beforehand, by value and quantity.
     pub requirement: Box<dyn Fn(f64, usize) -> Requirement + Send + Sync>,
@@ -39,29 +39,29 @@ pub struct ParameterSeries {
     pub run: Box<dyn Fn(f64) -> RunResult + Send + Sync>,
 }
 
-/// All results at a value of the parameter, or the typed error that stands for all of them.
+/// All results at a value of the parameter, or one typed error for all of them.
 pub type RunResult = Result<Vec<CellResult>, Box<dyn std::error::Error>>;
 
-/// What is stated of a cell before it is computed.
+/// The requirement on a cell, stated before it is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Requirement {
-    /// Decimal digits that must be kept at least.
+    /// Minimum number of correct decimal digits.
     pub min_digits: f64,
-    /// By how much a relative change of the input is magnified in the result.
+    /// Factor by which a relative change of the input is magnified in the result.
     pub condition_number: f64,
-    /// A typed error is an answer only where the condition number is above this.
+    /// A typed error is permitted only above this condition number.
     pub refusable_from: f64,
 }
 
 impl Requirement {
-    /// The digits that rounding leaves: `roundings` of ½ ulp in each of the numbers that a result of this
-    /// condition depends on.
+    /// The digits that remain after `roundings` errors of ½ ulp in each of the numbers on which a result of this
+    /// condition number depends.
     pub fn from_rounding(roundings: f64, condition_number: f64) -> Self {
         let error = roundings * f64::EPSILON * condition_number;
         Self::from_error(error, condition_number)
     }
 
-    /// The digits that an error leaves, relative to the scale of the result.
+    /// The digits that remain after an error relative to the scale of the result.
     pub fn from_error(error: f64, condition_number: f64) -> Self {
         Self {
             min_digits: (-error.log10()).max(0.0),
@@ -71,7 +71,7 @@ impl Requirement {
     }
 }
 
-/// A result, or the typed error that stands for it.
+/// A result, or the typed error in its place.
 pub type CellResult = Result<EstimatedValue, String>;
 
 /// A result with its reference and the estimate of its error.
@@ -81,13 +81,13 @@ pub struct EstimatedValue {
     pub value: f64,
     /// The true value.
     pub reference: DoubleDouble,
-    /// What digits are counted from.
+    /// The scale from which digits are counted.
     pub scale: f64,
-    /// The estimate of the absolute error that is reported with the value.
+    /// The reported estimate of the absolute error.
     pub error_estimate: f64,
 }
 
-/// A result with its estimated error, whose digits are counted from its own size.
+/// A result with its estimated error; digits are counted from its own size.
 pub(crate) fn cell((value, error_estimate): (f64, f64), reference: DoubleDouble) -> CellResult {
     Ok(EstimatedValue {
         value,
@@ -97,7 +97,7 @@ pub(crate) fn cell((value, error_estimate): (f64, f64), reference: DoubleDouble)
     })
 }
 
-/// The same with digits counted from another size.
+/// A result with digits counted from another size.
 pub(crate) fn scaled_cell(
     value_and_error: (f64, f64),
     reference: DoubleDouble,
@@ -108,7 +108,7 @@ pub(crate) fn scaled_cell(
 }
 
 impl EstimatedValue {
-    /// The true absolute error; where there is none, half a unit in the last place.
+    /// The true absolute error, or half a unit in the last place if it is zero.
     pub fn true_error(&self) -> f64 {
         match (DoubleDouble::from_f64(self.value) - self.reference).hi {
             0.0 => 0.5 * ulp(self.value),
@@ -137,11 +137,11 @@ pub struct ResultCell {
 }
 
 impl ResultCell {
-    /// Decimal digits kept; none where a typed error stands.
+    /// Number of correct decimal digits; `None` for a typed error.
     pub fn digits(&self) -> Option<f64> {
         let result = self.result.as_ref().ok()?;
         let lost = result.true_error() / result.scale;
-        // What is no number keeps nothing.
+        // NaN has no correct digits.
         let kept = (-lost.log10()).clamp(0.0, 17.0);
         Some(if lost.is_nan() { 0.0 } else { kept })
     }
@@ -150,11 +150,11 @@ impl ResultCell {
     pub fn estimate_ratio(&self) -> Option<f64> {
         let result = self.result.as_ref().ok()?;
         let ratio = result.error_estimate / result.true_error();
-        // Neither an estimate nor an error that is no number says anything.
+        // A NaN estimate or error gives no ratio.
         Some(if ratio.is_nan() { 0.0 } else { ratio })
     }
 
-    /// Whether it keeps what was stated: its digits, or a typed error where the condition is bad.
+    /// Whether it meets the requirement: enough digits, or a permitted typed error.
     pub fn meets_requirement(&self) -> bool {
         match self.digits() {
             Some(digits) => digits >= self.requirement.min_digits,

@@ -1,4 +1,4 @@
-//! Edges: the separatrix of a pendulum, and a start at a dead point.
+//! Singular cases: the separatrix of a pendulum, and a start at a dead point.
 
 use super::closed_forms::{arc_cosine, dd, elliptic_k, exponential};
 use super::mechanisms::{SliderCrank, mass, rotor, scene};
@@ -54,15 +54,16 @@ fn near_separatrix(sign: f64) -> ParameterSeries {
         };
         Ok(vec![quadrature(orbit, period)])
     };
-    let (key, what) = match sign < 0.0 {
-        true => (
+    let (key, what) = if sign < 0.0 {
+        (
             "libration",
             "Pendulum in libration: speed short of the separatrix",
-        ),
-        false => (
+        )
+    } else {
+        (
             "rotation",
             "Pendulum in rotation: speed beyond the separatrix",
-        ),
+        )
     };
     ParameterSeries {
         figure: FIGURE,
@@ -116,8 +117,8 @@ fn separatrix() -> ParameterSeries {
     }
 }
 
-/// Driven at the slider, which hardly moves where crank and rod are in line. All mass is the crank's, so that
-/// this rotates uniformly.
+/// Driven at the slider, which hardly moves when crank and rod are in line. Only the crank has mass, so it
+/// rotates uniformly.
 const DEAD_POINT_MECHANISM: SliderCrank = SliderCrank {
     lengths: [1.1, 2.3],
     height: 0.0,
@@ -137,7 +138,7 @@ fn from_dead_point(distance: f64) -> RunResult {
     let travel = (crank + rod - dd(distance)).value();
     let q = dd(travel);
     let angle = arc_cosine((q * q + crank * crank - rod * rod) / (dd(2.0) * crank * q));
-    // How far the rod reaches along the guide.
+    // Length of the rod along the guide.
     let rod_projection = |sin: DoubleDouble| ((rod + crank * sin) * (rod - crank * sin)).sqrt();
     let slope = |angle: DoubleDouble| {
         let (sin, cos) = angle.sin_cos();
@@ -156,7 +157,7 @@ fn from_dead_point(distance: f64) -> RunResult {
     })?;
     let (sin, cos) = (angle + crank_velocity * dd(end)).sin_cos();
     let reference = crank * cos + rod_projection(sin);
-    // The crank's speed is as well known as the root of its inertia, over 2 s.
+    // The relative error of the crank's speed is that of the square root of its inertia, over 2 s.
     let exact = reduced_model(&test, &[])?;
     let (at, error) = estimate::coefficients_with_errors(exact.model(), travel)?;
     let rounding = 2.0 * end * error.m / at.m + 4.0 * f64::EPSILON;

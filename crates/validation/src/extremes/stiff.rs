@@ -1,4 +1,4 @@
-//! Stiffness, damping, and drives with next to no mass.
+//! Extreme stiffness, damping, and drives with almost no mass.
 
 use super::closed_forms::{dd, elliptic_e, exponential};
 use super::forms::{Form, FormModel};
@@ -140,8 +140,8 @@ fn small_rotor() -> ParameterSeries {
     }
 }
 
-/// A Scotch yoke's crank carries next to nothing: m = J + sin² φ kg m², and the speed at the dead points is
-/// as large as J is small.
+/// A Scotch yoke whose crank has almost no inertia: m = J + sin² φ kg m², and the speed at the dead points grows as J
+/// decreases.
 fn light_crank(form: Form) -> ParameterSeries {
     const FROM: f64 = 1.125;
     let run = move |inertia: f64| -> RunResult {

@@ -1,4 +1,4 @@
-//! What the manual requires: `capabilities.toml`, compared with the keys, commands and options that there are.
+//! The requirements of the manual: `capabilities.toml`, compared with the existing keys, commands and options.
 
 use dwell_scene::scene_keys;
 use serde::Deserialize;
@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 /// The commands of the program with their options.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Interface {
-    /// The options that every command has, such as `--out`.
+    /// The options of all commands, such as `--out`.
     pub common_options: Vec<String>,
     /// By command: its name and its long options, such as `--points`.
     pub commands: Vec<(String, Vec<String>)>,
@@ -17,8 +17,8 @@ pub struct Interface {
 /// Requirement and theory of a table.
 type TableRequirement = (String, String);
 
-/// Requirement and theory of a command or an option, beginnings of the keys of the findings that judge it, and words in the
-/// descriptions of faults.
+/// Requirement and theory of a command or an option, prefixes of the keys of the findings that judge it, and words in the
+/// descriptions of its faults.
 pub(super) type CommandRequirement = (String, String, Vec<String>, Vec<String>);
 
 #[derive(Debug, Deserialize)]
@@ -31,13 +31,13 @@ pub(super) struct Capabilities {
 }
 
 pub(super) static CAPABILITIES: LazyLock<Capabilities> = LazyLock::new(|| {
-    // The file is part of the program: every test would meet a mistake in it.
+    // The file is part of the program; tests would detect a mistake in it.
     #[allow(clippy::expect_used, reason = "no user can influence it")]
     toml::from_str(include_str!("capabilities.toml")).expect("capabilities.toml is of this form")
 });
 
-/// What `capabilities.toml` lacks or has too much, in sentences: a table, a command or an option that is not described, and
-/// descriptions of what does not exist.
+/// Sentences on missing and superfluous entries of `capabilities.toml`: tables, commands or options without description, and
+/// descriptions of things that do not exist.
 pub fn undescribed(interface: &Interface) -> Vec<String> {
     let described = &*CAPABILITIES;
     let mut found = Vec::new();

@@ -2,19 +2,19 @@
 
 use std::path::Path;
 
-/// The texts of the studies of faults: `mutations.txt` of the computing code, the others of the source text and of the border.
+/// The texts of the fault studies: single operations, and the source text.
 const FILES: [&str; 2] = ["mutations.txt", "source-mutations.txt"];
 
 /// A fault, and the numbers of the checks that detect it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct CommittedMutation {
-    /// The heading that it stands under.
+    /// Its heading.
     pub(super) group: String,
     pub(super) description: String,
     pub(super) detected_by: Vec<usize>,
 }
 
-/// The faults of all studies whose text is in a folder, and which texts are.
+/// The faults of all studies whose text is in a folder, and the names of these texts.
 pub(super) fn committed_mutations(folder: &Path) -> (Vec<CommittedMutation>, Vec<&'static str>) {
     let (mut faults, mut found) = (Vec::new(), Vec::new());
     for file in FILES {
@@ -26,8 +26,8 @@ pub(super) fn committed_mutations(folder: &Path) -> (Vec<CommittedMutation>, Vec
     (faults, found)
 }
 
-/// The faults of a text: lines that begin with two blanks, hold a description, and end with numbers of checks; a line without
-/// blanks before it is a heading.
+/// The faults of a text: lines that begin with two blanks, contain a description, and end with numbers of checks. Lines without
+/// leading blanks are headings.
 fn read(text: &str) -> Vec<CommittedMutation> {
     let mut group = String::new();
     let mut faults = Vec::new();
@@ -41,7 +41,7 @@ fn read(text: &str) -> Vec<CommittedMutation> {
         let [description, .., last] = parts[..] else {
             continue;
         };
-        // Numbers, those in brackets a little above their tolerance; behind the name of a mechanism, where the line is full.
+        // Numbers, in brackets if slightly above the tolerance; in a full line they follow the name of a mechanism.
         let words = last.rsplit(' ').map(|w| w.trim_matches(['[', ']', ',']));
         let numbers = words.map_while(|word| word.parse::<usize>().ok());
         let mut detected_by: Vec<usize> = numbers.collect();

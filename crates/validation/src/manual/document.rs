@@ -12,7 +12,7 @@ use dwell_report::{Block, Document, markdown_text};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Names of cases in a cell.
+/// Maximum number of cases in a cell.
 const LISTED_CASES: usize = 3;
 
 /// A case in the list of cases.
@@ -30,21 +30,21 @@ impl CaseEntry<'_> {
     }
 }
 
-/// What the document is made of.
+/// The contents of the document.
 pub(super) struct Contents<'a> {
     pub(super) folder: &'a Path,
     pub(super) lines: &'a [Line],
     pub(super) cases: &'a [CaseEntry<'a>],
     pub(super) extremes: &'a [Finding],
-    /// The texts of committed fault studies that were at hand, and the number of faults in them.
+    /// The available texts of committed fault studies, and the number of faults in them.
     pub(super) fault_texts: (&'a [&'static str], usize),
-    /// When faults were planted in keys, if that is known.
+    /// The commit and date of the faults planted in keys, if known.
     pub(super) keys_made: Option<&'a str>,
-    /// What the independent reader says.
+    /// The result of the independent reader, in words.
     pub(super) independent_reader: &'a str,
 }
 
-/// How many lines pass, fail and are exempt.
+/// The numbers of lines that pass, fail and are exempt.
 pub(super) fn counts(lines: &[Line]) -> [usize; 3] {
     let count = |is: fn(&LineState) -> bool| lines.iter().filter(|line| is(&line.state)).count();
     [
@@ -79,8 +79,11 @@ pub(super) fn document(contents: &Contents<'_>) -> Document {
 
 fn summary(contents: &Contents<'_>) -> Block {
     let [passed, failed, exempt] = counts(contents.lines);
-    let findings = contents.cases.iter().flat_map(|case| case.findings);
-    let findings = findings.chain(contents.extremes);
+    let findings = contents
+        .cases
+        .iter()
+        .flat_map(|case| case.findings)
+        .chain(contents.extremes);
     let wrong = findings.clone().filter(|f| !f.pass).count();
     let result = match failed + wrong {
         0 => "**This installation passes.**",
@@ -101,23 +104,26 @@ fn how_to_read() -> Block {
     .replace('*', ""))
 }
 
-/// What is missing.
+/// The failed lines.
 fn failures(lines: &[Line]) -> Vec<Block> {
-    let failed = lines.iter().filter_map(|line| {
-        let why = line.failure()?;
-        Some(format!("- `{}` `{}`: {why}", line.section, line.item))
-    });
-    let failed: Vec<String> = failed.collect();
-    match failed.is_empty() {
-        true => Vec::new(),
-        false => vec![
+    let failed: Vec<String> = lines
+        .iter()
+        .filter_map(|line| {
+            let why = line.failure()?;
+            Some(format!("- `{}` `{}`: {why}", line.section, line.item))
+        })
+        .collect();
+    if failed.is_empty() {
+        Vec::new()
+    } else {
+        vec![
             Block::Heading("Failures".to_owned()),
             Block::Text(failed.join("\n")),
-        ],
+        ]
     }
 }
 
-/// What the checks compare results with.
+/// The independent targets of the checks.
 fn targets() -> Block {
     let about = |check: Check| match check {
         Check::ConstraintClosure => {
@@ -144,7 +150,7 @@ fn targets() -> Block {
         Check::ClosedForms => {
             "closed forms, in 32 digits where parameters are extreme; a rotor's own equation"
         }
-        // Checks that are added say what they compare by their name.
+        // New checks are described by their name.
         _ => "what is written to files, read back by readers of its own",
     };
     let rows = Check::ALL.map(|check| vec![check.to_string(), about(check).to_owned()]);
@@ -232,7 +238,7 @@ fn line_table(lines: &[Line]) -> Block {
     table_of(&columns, lines.iter())
 }
 
-/// What is said of the finding of a line that is nearest to its tolerance.
+/// A text on the finding of a line that is nearest to its tolerance.
 fn near(line: &Line, text: fn(&Finding) -> String) -> String {
     line.nearest.as_ref().map_or_else(String::new, text)
 }
@@ -257,9 +263,10 @@ fn limits(contents: &Contents<'_>) -> Block {
     let mut text = format!(
         "- Faults in keys {keys_made}.\n- A fault in a key is planted between the scene's text and the results; a fault that readers and checks share, because both use the same reader of scenes, is for the independent reader to find.\n- The line of a command lists the findings on what it computes from: states, reduced models, motions. What it alone computes from them (a cycle, an equilibrium, a matrix, a row of a sweep) is checked by tests, by runs of the program from other starts, and by the independent reader.\n- Checks 0 to 11 share the reader of scenes with the program. The numbers of written files, checks 12 to 18 and 20, are judged by the independent reader in Python, `validation/audit`, which shares nothing with it: {}. What needs a second run or the printed text (of 14, 15, 17, 18 and 19) is judged within this program.\n- Committed studies of mutations that were at hand: {}, {count} of them.",
         contents.independent_reader,
-        match texts.is_empty() {
-            true => "none".to_owned(),
-            false => texts.join(", "),
+        if texts.is_empty() {
+            "none".to_owned()
+        } else {
+            texts.join(", ")
         }
     );
     let exempt = contents.lines.iter().filter_map(|line| match line.state {
@@ -276,7 +283,7 @@ fn limits(contents: &Contents<'_>) -> Block {
     Block::Text(text)
 }
 
-/// To be signed on paper.
+/// The signature block.
 fn signature() -> Block {
     let rows = [
         "Installation",
@@ -292,7 +299,7 @@ fn signature() -> Block {
     )
 }
 
-/// The text that every machine reproduces: capabilities, checks, and results.
+/// The reproducible text: capabilities, checks, and results.
 pub(super) fn text(lines: &[Line], cases: &[CaseEntry<'_>]) -> String {
     let [passed, failed, exempt] = counts(lines);
     let mut out = format!(

@@ -1,4 +1,4 @@
-//! What became of the faults that the trials planted in the keys of scenes: `reports/key-faults.txt`, as it is written and read.
+//! The results of the faults that the trials plant in keys: writing and reading of `reports/key-faults.txt`.
 
 use super::lines::numbers;
 use dwell_findings::Check;
@@ -12,28 +12,28 @@ const TITLE: &str = "Faults planted in every key of a scene, and the checks that
 const REFUSED: &str = "every other value is refused";
 const UNCHANGED: &str = "no result changes";
 
-/// A key, and what became of a fault in its value.
+/// A key, and the result of a fault in its value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeyFault {
     /// The [id](dwell_scene::SceneKey::id) of the key.
     pub key: String,
-    /// What became of it.
+    /// Its result.
     pub fault: PlantedFault,
 }
 
-/// What became of faults in the value of a key.
+/// The result of faults in the value of a key.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum PlantedFault {
     /// No result changes, or no scene uses the key.
     #[default]
     Unchanged,
-    /// Every other value that was tried is refused with an error.
+    /// Every other value that was tried is rejected with an error.
     Refused,
-    /// The fault that the most checks detect.
+    /// The fault that most checks detect.
     Detected {
         /// The name of the scene.
         scene: String,
-        /// What was altered, in a few words.
+        /// The change, in a few words.
         what: String,
         /// The checks that detect it.
         by: BTreeSet<Check>,
@@ -50,17 +50,17 @@ impl PlantedFault {
     }
 }
 
-/// The faults in all keys, and when they were planted.
+/// The faults in all keys, with the commit and its date.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeyFaults {
     /// The commit and its date.
     pub made: String,
-    /// By key, those that hold a value.
+    /// The faults, by key with a value.
     pub faults: Vec<KeyFault>,
 }
 
 impl KeyFaults {
-    /// The committed faults in a folder of reports, if they are there.
+    /// The committed faults in a folder of reports, if they exist.
     pub fn read(folder: &Path) -> Option<Self> {
         let text = std::fs::read_to_string(folder.join(FILE)).ok()?;
         let mut lines = text.lines();
@@ -69,15 +69,16 @@ impl KeyFaults {
         Some(Self { made, faults })
     }
 
-    /// Writes them into a folder of reports. Where the same faults are there already, commit and date stay.
+    /// Writes them into a folder of reports. If the file has the same faults, its commit and date are kept.
     ///
     /// # Errors
-    /// [`std::io::Error`] where the file cannot be written.
+    /// [`std::io::Error`] if the file cannot be written.
     pub fn write(&self, folder: &Path) -> std::io::Result<()> {
         let is_known = Self::read(folder).is_some_and(|known| known.faults == self.faults);
-        match is_known {
-            true => Ok(()),
-            false => std::fs::write(folder.join(FILE), self.text()),
+        if is_known {
+            Ok(())
+        } else {
+            std::fs::write(folder.join(FILE), self.text())
         }
     }
 
@@ -97,10 +98,14 @@ impl KeyFaults {
     }
 }
 
-/// A line of the text: key, what was altered, and numbers of checks, with two blanks between them.
+/// A line of the text: key, change, and numbers of checks, separated by two blanks.
 fn read_line(line: &str) -> Option<KeyFault> {
-    let parts = line.strip_prefix("  ")?.split("  ").map(str::trim);
-    let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
+    let parts: Vec<&str> = line
+        .strip_prefix("  ")?
+        .split("  ")
+        .map(str::trim)
+        .filter(|part| !part.is_empty())
+        .collect();
     let [key, what, by] = parts[..] else {
         return None;
     };

@@ -1,4 +1,4 @@
-//! The lines of the manual: a capability each, with what is known of it.
+//! The lines of the manual, one for each capability.
 
 use super::REQUIRED;
 use super::capabilities::{CAPABILITIES, CommandRequirement, Interface};
@@ -9,17 +9,17 @@ use dwell_findings::{Check, Finding};
 use dwell_scene::SceneKey;
 use std::collections::BTreeSet;
 
-/// Faults that are listed with a command.
+/// Maximum number of faults listed with a command.
 const MAX_LISTED: usize = 4;
 
-/// What became of a capability.
+/// The verdict on a capability.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) enum LineState {
     #[default]
     Pass,
-    /// What is missing or fails.
+    /// It fails, with the reason.
     Fail(String),
-    /// Why nothing is required.
+    /// Nothing is required, with the reason.
     Exempt(&'static str),
 }
 
@@ -31,7 +31,7 @@ pub(super) struct Line {
     pub(super) meaning: String,
     /// Names of cases.
     pub(super) cases: Vec<String>,
-    /// The finding nearest to its tolerance among those of the checks.
+    /// The finding of its checks that is nearest to its tolerance.
     pub(super) nearest: Option<Finding>,
     pub(super) checks: BTreeSet<Check>,
     pub(super) mutations: Vec<String>,
@@ -39,7 +39,7 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// What is missing or fails.
+    /// The reason if it fails.
     pub(super) fn failure(&self) -> Option<&str> {
         match &self.state {
             LineState::Fail(why) => Some(why),
@@ -54,14 +54,14 @@ pub(super) struct CaseFindings<'a> {
     pub(super) findings: &'a [Finding],
 }
 
-/// A key that holds a value, with what is known of it.
+/// A key with a value, its scenes and its fault.
 pub(super) struct StudiedKey {
     pub(super) key: SceneKey,
     /// Indices of the scenes that use it.
     pub(super) scenes: Vec<usize>,
-    /// Whether the committed faults are at hand: without them none is required, as of the other studies.
+    /// Whether the committed faults are available; otherwise none is required, as for the other studies.
     pub(super) are_faults_at_hand: bool,
-    /// What became of a fault in it, if one was planted.
+    /// The result of a fault in it, if one was planted.
     pub(super) fault: Option<PlantedFault>,
 }
 
@@ -132,7 +132,7 @@ pub(super) fn command_lines(
                 ..Line::default()
             };
             lines.push(match required {
-                Some(required) => checked_line(line, required, (cases, others), faults),
+                Some(required) => checked_line(line, required, cases, others, faults),
                 None => line,
             });
         };
@@ -155,11 +155,12 @@ pub(super) fn command_lines(
     lines
 }
 
-/// A line with the findings and faults that its description names.
+/// A line with the findings and faults that its description selects.
 fn checked_line(
     line: Line,
     (requirement, _, keys, words): &'static CommandRequirement,
-    (cases, others): (&[CaseFindings<'_>], &[Finding]),
+    cases: &[CaseFindings<'_>],
+    others: &[Finding],
     faults: &[CommittedMutation],
 ) -> Line {
     let judges = |f: &&Finding| keys.iter().any(|key| f.key.starts_with(key.as_str()));
@@ -185,8 +186,7 @@ fn checked_line(
         (None, _, 0) if !faults.is_empty() => LineState::Fail("no fault is caught".to_owned()),
         _ => LineState::Pass,
     };
-    let listed = caught.iter().take(MAX_LISTED);
-    let listed = listed.map(|fault| {
+    let listed = caught.iter().take(MAX_LISTED).map(|fault| {
         let by: Vec<String> = fault.detected_by.iter().map(usize::to_string).collect();
         format!("{}: {}", fault.description, by.join(" "))
     });
@@ -203,7 +203,7 @@ fn checked_line(
     }
 }
 
-/// Agreeing digits of a finding; double precision has no more than its last place.
+/// The number of agreeing digits of a finding, limited by double precision.
 pub(super) fn digits(finding: &Finding) -> f64 {
     -finding.relative_difference.max(f64::EPSILON).log10()
 }

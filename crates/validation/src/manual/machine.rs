@@ -1,4 +1,4 @@
-//! Where and of what the manual was made: program, compiler, commit, machine.
+//! The provenance of the manual: program, compiler, commit, machine.
 
 use std::path::Path;
 use std::process::Command;
@@ -12,8 +12,7 @@ pub(super) fn facts(folder: &Path) -> [Vec<String>; 4] {
         std::env::consts::OS,
         std::env::consts::ARCH
     );
-    let commit = commit(folder);
-    let commit = commit.unwrap_or("unknown: the cases are not in a repository".to_owned());
+    let commit = commit(folder).unwrap_or("unknown: the cases are not in a repository".to_owned());
     [
         ("Program", format!("Dwell {}", env!("CARGO_PKG_VERSION"))),
         ("Compiler", env!("DWELL_COMPILER").to_owned()),
@@ -36,13 +35,14 @@ fn commit(folder: &Path) -> Option<String> {
     };
     let commit = git(&["rev-parse", "HEAD"])?;
     let changed = git(&["status", "--porcelain", "--untracked-files=no"])?;
-    Some(match changed.is_empty() {
-        true => commit,
-        false => format!("{commit}, with changed files"),
+    Some(if changed.is_empty() {
+        commit
+    } else {
+        format!("{commit}, with changed files")
     })
 }
 
-/// The processor's name, where the system says it.
+/// The processor's name, if the system states it.
 fn processor() -> Option<String> {
     let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = text.lines().find(|line| line.starts_with("model name"))?;

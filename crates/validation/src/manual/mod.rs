@@ -1,5 +1,5 @@
-//! The verification manual: what every key of the scene description, every command and every option is required to do, which cases
-//! show it, what the results were compared with, and which faults planted in it the checks detect.
+//! The verification manual: for every key of the scene description, every command and every option the requirement, the cases,
+//! the independent targets, and the planted faults that the checks detect.
 //!
 //! ```text
 //! keys.toml, commands, options ── capabilities ─┐
@@ -8,8 +8,8 @@
 //! reports/mutations.txt ── committed_mutations ─┘
 //! ```
 //!
-//! The faults are planted by developers' runs, whose committed texts are shown: `just trials`, which plants one in each key of
-//! [`PlantedScene`], and `just mutations`.
+//! Developers' runs plant the faults, and the manual shows their committed texts: `just trials`, which plants one in each key of
+//! a [`PlantedScene`], and `just mutations`.
 
 mod capabilities;
 mod committed_mutations;
@@ -36,30 +36,30 @@ use lines::{CaseFindings, Line, StudiedKey, command_lines, key_line};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// The folder of small scenes that show what no case does, in that of the cases.
+/// The folder of small scenes for capabilities without a case, within the folder of the cases.
 const CAPABILITY_FOLDER: &str = "capabilities";
 /// The folder of the committed texts of fault studies, beside that of the cases.
 const REPORT_FOLDER: &str = "reports";
-/// Checks that have to detect a fault.
+/// Number of checks that have to detect a fault.
 pub const REQUIRED: usize = 2;
 
-/// Every key with the scenes that use it and what became of a fault in it.
+/// Every key with the scenes that use it and the result of a fault in it.
 pub struct Manual {
     folder: PathBuf,
-    /// As they are written.
+    /// The scenes as written.
     written: Vec<PlaneScene>,
     scenes: Vec<PlantedScene>,
-    /// By scene: its findings, where it is not a case.
+    /// By scene: its findings, if it is not a case.
     findings: Vec<Vec<Finding>>,
     keys: Vec<StudiedKey>,
-    /// When faults were planted in them, if that is known.
+    /// Commit and date of the faults planted in them, if known.
     keys_made: Option<String>,
-    /// Why a scene of the folder cannot be read.
+    /// Errors of scenes in the folder that cannot be read.
     unread: Vec<String>,
 }
 
 impl Manual {
-    /// The keys that the cases' scenes use, or the small scenes in their folder, with the committed faults in them.
+    /// The keys used by the scenes of the cases and by the small scenes in their folder, with the committed faults in them.
     pub fn new(cases: &[&PlaneScene], folder: &Path) -> Self {
         let mut written: Vec<PlaneScene> = cases.iter().map(|scene| (*scene).clone()).collect();
         let mut unread = Vec::new();
@@ -73,9 +73,10 @@ impl Manual {
         let scenes: Vec<PlantedScene> = written.iter().filter_map(planted).collect();
         let own = scenes.par_iter().map(|planted| {
             let is_case = cases.iter().any(|case| case.name == planted.scene.name);
-            match is_case {
-                true => Vec::new(),
-                false => planted.findings(),
+            if is_case {
+                Vec::new()
+            } else {
+                planted.findings()
             }
         });
         let faults = KeyFaults::read(&reports(folder));
@@ -95,7 +96,7 @@ impl Manual {
         &self.scenes
     }
 
-    /// What is missing of keys, in sentences: a key without a case, or a fault in one that fewer than two checks detect.
+    /// Sentences on keys without a case, and on keys with a fault that fewer than two checks detect.
     pub fn gaps(&self) -> Vec<String> {
         let cases = self.case_findings(&[]);
         let lines: Vec<Line> = self.keys.iter().map(|key| key_line(key, &cases)).collect();
@@ -126,8 +127,8 @@ impl Manual {
         .collect()
     }
 
-    /// `manual.md`, `manual.html` and `manual.txt`, from the validated cases, the findings at extreme parameters and what the independent
-    /// reader says, in words. Each capability that fails is a failed finding.
+    /// `manual.md`, `manual.html` and `manual.txt`, from the validated cases, the findings at extreme parameters and the result of the
+    /// independent reader, in words. Each failing capability is a failed finding.
     pub fn outcome(
         &self,
         results: &[CaseResult<'_>],
@@ -140,10 +141,9 @@ impl Manual {
         let mut lines: Vec<Line> = self.keys.iter().map(|key| key_line(key, &cases)).collect();
         lines.extend(command_lines(interface, &cases, extremes, &faults));
         let of_name = |name: &str| self.written.iter().find(|scene| scene.name == name);
-        let entries = cases
+        let entries: Vec<CaseEntry<'_>> = cases
             .iter()
-            .filter_map(|case| Some((of_name(case.name)?, case)));
-        let entries: Vec<CaseEntry<'_>> = entries
+            .filter_map(|case| Some((of_name(case.name)?, case)))
             .map(|(scene, case)| CaseEntry {
                 name: case.name,
                 title: &scene.title,
@@ -177,7 +177,7 @@ impl Manual {
         outcome
     }
 
-    /// Where the reference values of a scene come from.
+    /// The origin of the reference values of a scene.
     fn source(&self, scene: &PlaneScene) -> String {
         let reference = Reference::read(&self.folder.join(&scene.name), scene);
         match reference {
@@ -192,7 +192,7 @@ fn reports(folder: &Path) -> PathBuf {
     folder.join("..").join(REPORT_FOLDER)
 }
 
-/// All keys that hold a value, with the scenes that use them and the faults that were planted in them.
+/// All keys with a value, the scenes that use them, and the faults planted in them.
 fn studied_keys(scenes: &[PlantedScene], faults: Option<&KeyFaults>) -> Vec<StudiedKey> {
     let uses: Vec<_> = scenes.iter().map(|s| key_uses(s.text())).collect();
     let valued = scene_keys().into_iter().filter(|key| !key.holds_keys);
@@ -233,8 +233,9 @@ fn failed_finding(why: String) -> Finding {
 
 /// The small scenes in the folder of the cases, by name.
 pub fn capability_scenes(folder: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(folder.join(CAPABILITY_FOLDER));
-    let entries = entries.into_iter().flatten();
+    let entries = std::fs::read_dir(folder.join(CAPABILITY_FOLDER))
+        .into_iter()
+        .flatten();
     let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
     let mut scenes: Vec<PathBuf> = paths
         .filter(|path| path.extension().is_some_and(|e| e == "toml"))

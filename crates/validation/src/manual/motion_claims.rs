@@ -1,4 +1,4 @@
-//! What is claimed of a free motion, and the checks of it: the multibody equations, and of a single rotor its own equation and its
+//! A claimed free motion and its checks: the multibody equations, and for a single rotor its own equation and its
 //! energy.
 
 use super::rotor::{Rotor, RotorState};
@@ -6,30 +6,30 @@ use crate::checked::multibody::{FreeMotionRun, free_motion_run};
 use dwell_findings::{Check, Finding};
 use dwell_scene::PlaneScene;
 
-/// Relative difference from the rotor's own integration, whose steps are fixed and pass kinks: measured at most 1.2e-6, of a
+/// Tolerance relative to the rotor's own integration, whose fixed steps pass kinks: the largest measured difference is 1.2e-6, for a
 /// controller that leaves its limit within a step.
 const ROTOR_TOLERANCE: f64 = 1e-5;
-/// Energy from the claimed steps by Gauss's rule with cubic positions between them.
+/// Tolerance of the energy from the claimed steps by Gauss's rule with cubic positions between them.
 const ENERGY_TOLERANCE: f64 = 1e-5;
 /// Nodes of Gauss's rule of two points.
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
-/// Parts of a claimed step over which power is summed.
+/// Number of parts of a claimed step over which power is summed.
 const PARTS: usize = 32;
 
-/// A result that changes by less, relative to the largest of its kind, is the same: three digits above what the checks distinguish
+/// A result that changes by less, relative to the largest of its kind, counts as unchanged: three digits above what the checks distinguish
 /// from rounding.
 const UNCHANGED: f64 = 1e-9;
 
-/// A free motion as it is claimed.
+/// A claimed free motion.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct MotionClaims {
     run: FreeMotionRun,
-    /// Of a single rotor: its own equation.
+    /// For a single rotor: its own equation.
     rotor: Option<Rotor>,
 }
 
 impl MotionClaims {
-    /// The motion of a scene; none where it has none, or none can be computed.
+    /// The motion of a scene; `None` if it has none, or none can be computed.
     pub(super) fn new(scene: &PlaneScene) -> Option<Self> {
         let run = free_motion_run(scene).ok().flatten()?;
         let rotor = Rotor::read(scene.source.inner());
@@ -44,8 +44,13 @@ impl MotionClaims {
     pub(super) fn differ_from(&self, own: &Self) -> bool {
         let values = |claims: &Self| {
             let last = claims.run.coordinates.last().cloned().unwrap_or_default();
-            let times = claims.run.events.iter().map(|(_, at)| at.t);
-            let times: Vec<f64> = times.chain([claims.end()]).collect();
+            let times: Vec<f64> = claims
+                .run
+                .events
+                .iter()
+                .map(|(_, at)| at.t)
+                .chain([claims.end()])
+                .collect();
             let reactions = claims.run.steps.last().map(|step| step.reactions.clone());
             [last.concat(), times, reactions.unwrap_or_default()]
         };
@@ -53,7 +58,7 @@ impl MotionClaims {
         (0..mine.len()).any(|k| differ(&mine[k], &others[k]))
     }
 
-    /// The findings of this motion as that of the scene whose own motion is `own`.
+    /// The findings of this motion, claimed for the scene whose own motion is `own`.
     pub(super) fn check(&self, scene: &PlaneScene, own: &Self) -> Vec<Finding> {
         let counts = |claims: &Self| {
             let first = claims.run.steps.first();
@@ -65,7 +70,7 @@ impl MotionClaims {
         let mut findings = vec![self.start(scene)];
         let along_rotor = own.rotor.as_ref().map(|rotor| self.along_rotor(rotor));
         findings.extend(along_rotor.into_iter().flatten());
-        // The multibody equations know no stops and no friction that holds.
+        // The multibody equations have neither stops nor sticking friction.
         let mut loads = scene.loads.iter();
         let is_known = scene.stops.is_empty() && loads.all(|load| !load.name.contains('.'));
         if own.rotor.is_none() || is_known {
@@ -118,7 +123,7 @@ impl MotionClaims {
         findings
     }
 
-    /// The events of a rotor: when they happen, and what the state is then.
+    /// The events of a rotor: their times, and the states there.
     fn rotor_events(&self, rotor: &Rotor, times: &[Option<f64>]) -> Vec<Finding> {
         let mut findings = Vec::new();
         for (k, expected) in times.iter().enumerate() {
@@ -126,7 +131,7 @@ impl MotionClaims {
             let apart = match (claimed, expected) {
                 (Some((_, at)), Some(t)) => (at.t - t).abs() / t,
                 (None, None) => continue,
-                // One is missed, or one too many.
+                // A missing or superfluous event.
                 _ => f64::INFINITY,
             };
             findings.push(finding("rotor-event", Check::ClosedForms, apart));
@@ -136,35 +141,42 @@ impl MotionClaims {
                 let drive = at.y.get(2 * count).copied().unwrap_or(0.0);
                 let state: RotorState = [at.y[0], at.y[count], drive];
                 let ends = rotor.ends_with(k) == ((at.t - ended).abs() < 1e-9 * ended);
-                match ends {
-                    true => rotor.residual(k, at.t, state),
-                    false => f64::INFINITY,
+                if ends {
+                    rotor.residual(k, at.t, state)
+                } else {
+                    f64::INFINITY
                 }
             });
-            let check = match rotor.is_reaction(k) {
-                true => Check::NewtonEuler,
-                false => Check::ConstraintClosure,
+            let check = if rotor.is_reaction(k) {
+                Check::NewtonEuler
+            } else {
+                Check::ConstraintClosure
             };
             findings.push(finding("rotor-event-state", check, residual));
         }
         findings
     }
 
-    /// What dry friction would have to hold beyond its limit where the rotor rests, as a part of that limit.
+    /// The required friction beyond the static limit where the rotor rests, relative to that limit.
     fn overloaded_rest(&self, rotor: &Rotor) -> f64 {
         let states = self.run.steps.iter().zip(&self.run.coordinates);
         let resting = states.filter(|(_, c)| c[0][1] == 0.0);
         let margin = resting.map(|(s, c)| rotor.forces.rest_margin(s.t, [c[0][0], 0.0, 0.0]));
-        // Without friction nothing is held.
+        // Without friction nothing sticks.
         let margin = margin.filter(|margin| margin.is_finite());
         margin.fold(0.0, |worst, margin| worst.max(-margin))
     }
 
-    /// Kinetic energy along the claimed steps with the power of the scene's own torques, relative to the largest energy. The power
-    /// is taken inside the steps: at their ends torques may jump.
+    /// Error of the kinetic energy along the claimed steps, from the power of the scene's own torques, relative to the largest energy. The power
+    /// is evaluated inside the steps, because torques may jump at their ends.
     fn energy_error(&self, rotor: &Rotor) -> f64 {
-        let states = self.run.steps.iter().zip(&self.run.coordinates);
-        let states: Vec<(f64, f64, f64)> = states.map(|(s, c)| (s.t, c[0][0], c[0][1])).collect();
+        let states: Vec<(f64, f64, f64)> = self
+            .run
+            .steps
+            .iter()
+            .zip(&self.run.coordinates)
+            .map(|(s, c)| (s.t, c[0][0], c[0][1]))
+            .collect();
         let kinetic = |v: f64| 0.5 * rotor.forces.inertia * v * v;
         let mut energy = states.first().map_or(0.0, |first| kinetic(first.2));
         let (mut state, mut largest, mut worst) = (0.0, 0.0_f64, 0.0_f64);
@@ -172,7 +184,7 @@ impl MotionClaims {
             let [(t0, q0, v0), (t1, q1, v1)] = [pair[0], pair[1]];
             let struck = rotor.speed_before_impact(q1, v1, v0);
             let end = struck.unwrap_or(v1);
-            // Either side of an impact may be the claimed one.
+            // The claimed state may be that before or after an impact.
             let v0 = match rotor.speed_after_impact(q0, v0) {
                 Some(after) => {
                     energy += kinetic(after) - kinetic(v0);
@@ -196,7 +208,7 @@ impl MotionClaims {
             worst = worst.max((energy - kinetic(end)).abs());
             largest = largest.max(kinetic(end));
             if struck.is_some() {
-                // What is left behind the impact: the speed before it is that which the restitution says.
+                // The energy lost at the impact follows from the restitution.
                 energy += kinetic(v1) - kinetic(end);
             }
         }
@@ -209,7 +221,7 @@ fn finding(key: &str, check: Check, apart: f64) -> Finding {
     Finding::new(key, check, [apart; 2], ROTOR_TOLERANCE)
 }
 
-/// Position and speed between two states, at a part `s` of the time `h` between them.
+/// Position and speed between two states, at the fraction `s` of the time `h` between them.
 fn hermite([q0, v0, q1, v1]: [f64; 4], s: f64, h: f64) -> [f64; 2] {
     let (d, c) = (q1 - q0, 1.0 - s);
     let q = q0 + s * s * (3.0 - 2.0 * s) * d + h * s * c * (c * v0 - s * v1);

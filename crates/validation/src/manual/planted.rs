@@ -1,5 +1,5 @@
-//! Faults planted in the value of a key: what is claimed is computed from a scene in which the value is another, and the checks are
-//! given the scene as it is written.
+//! Faults planted in the value of a key: the claimed results are computed from a scene with another value, and the checks get
+//! the original scene.
 //!
 //! ```text
 //! text ──────────────── scene ──── checks ──┐
@@ -19,17 +19,17 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// States along each motion: enough for every term to be seen, and few enough for hundreds of faults.
+/// Number of states along each motion: enough to show every term, and few enough for hundreds of faults.
 const STATES: usize = 7;
-/// States that are checked by energies, which cost more.
+/// Number of states checked by energies, which are more expensive.
 const ENERGY_STATES: usize = 2;
 
-/// A scene that faults are planted in.
+/// A scene in which faults are planted.
 pub struct PlantedScene {
     pub(super) scene: PlaneScene,
     text: String,
     reference: Reference,
-    /// What it claims of states, and of its free motion if it has one.
+    /// Its claimed states, and its claimed free motion if it has one.
     states: OnceLock<Option<StateClaims>>,
     motion: OnceLock<Option<MotionClaims>>,
     /// Findings that fail without a fault, because the states are few.
@@ -44,10 +44,10 @@ struct StateClaims {
     mass_matrices: Vec<Vec<f64>>,
 }
 
-/// What became of a planted fault.
+/// The result of a planted fault.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PlantedResult {
-    /// No scene comes of it, or none of the same joints and bodies: the program refuses it.
+    /// The program rejects the altered scene, or its joints and bodies differ.
     Refused,
     /// No result changes.
     Unchanged,
@@ -56,9 +56,9 @@ pub enum PlantedResult {
 }
 
 impl PlantedScene {
-    /// A scene, and the folder of its reference; none where its text is no TOML.
+    /// A scene, with the folder of its reference; `None` if its text is not TOML.
     ///
-    /// Altered texts have their keys in alphabetical order. So has this one: bodies and joints are numbered alike in both.
+    /// Altered texts have their keys in alphabetical order, and so does this one, so that bodies and joints have equal indices in both.
     pub(super) fn new(written: &PlaneScene, folder: &Path) -> Option<Self> {
         let text = written.source.inner().trim_start_matches('\u{feff}');
         let root: toml::Table = toml::from_str(text).ok()?;
@@ -74,7 +74,7 @@ impl PlantedScene {
         })
     }
 
-    /// The scene, as its [text](Self::text) is read.
+    /// The scene read from its [text](Self::text).
     pub fn scene(&self) -> &PlaneScene {
         &self.scene
     }
@@ -84,7 +84,7 @@ impl PlantedScene {
         &self.text
     }
 
-    /// What it costs to plant a fault, roughly: dense rows, cubed, and a motion.
+    /// The approximate cost of a fault: the cube of the number of dense rows, and a motion.
     pub fn cost(&self) -> usize {
         let bodies = self.scene.mechanism.bodies.len();
         bodies.pow(3) + 1000 * usize::from(self.scene.motion.is_some())
@@ -99,7 +99,7 @@ impl PlantedScene {
         found.chain(known).collect()
     }
 
-    /// What the checks detect where the results come from another scene.
+    /// The checks that detect results of another scene.
     pub fn check_altered(&self, altered: &PlaneScene) -> PlantedResult {
         let (mut changed, mut failed, mut seen) = (false, BTreeSet::new(), false);
         if let (Some(own), Some(claims)) = (self.own_states(), self.claims(altered)) {
@@ -113,7 +113,7 @@ impl PlantedScene {
                 failed.extend(self.detecting(&self.check_states(&claims)));
             }
         }
-        // Motions cost more: they are looked at where states alone do not show the fault twice.
+        // Motions are more expensive: they are checked only if fewer than two checks of states detect the fault.
         if failed.len() < 2
             && let (Some(own), Some(claims)) = (self.own_motion(), MotionClaims::new(altered))
         {
@@ -167,8 +167,9 @@ impl PlantedScene {
     fn claims(&self, scene: &PlaneScene) -> Option<StateClaims> {
         let claims = || -> Result<StateClaims, StudyError> {
             let mut model = ModelStates::new(scene)?;
-            let requests = motions(scene, &model, &self.reference, STATES).flatten();
-            let requests: Vec<StateRequest> = requests.collect();
+            let requests: Vec<StateRequest> = motions(scene, &model, &self.reference, STATES)
+                .flatten()
+                .collect();
             let (mut states, mut mass_matrices) = (Vec::new(), Vec::new());
             for request in &requests {
                 states.push(model.state(request)?);
@@ -191,7 +192,7 @@ impl PlantedScene {
 }
 
 impl StateClaims {
-    /// The same claims of the states that another scene asks for, under the loads that act there.
+    /// The claims for the states that another scene requests, under the loads there.
     fn with_requests_of(mut self, own: &Self) -> Self {
         for (claim, own) in self.states.iter_mut().zip(&own.states) {
             claim.t = own.t;
@@ -203,7 +204,7 @@ impl StateClaims {
         self
     }
 
-    /// Whether there is as much of everything.
+    /// Whether the numbers of all parts are equal.
     fn is_alike(&self, own: &Self) -> bool {
         let counts = |s: &ClaimedState| [s.poses.len(), s.reactions.len(), s.tau.len(), s.q.len()];
         let both = self.states.iter().zip(&own.states);
@@ -232,7 +233,7 @@ mod tests {
     #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
     use super::*;
 
-    /// Names in no order: the bodies are numbered otherwise in an altered text.
+    /// Names that are not in alphabetical order, so that bodies have other indices in an altered text.
     const ARM: &str = "[bodies.ground]\npoints = { O = [0, 0] }\n[bodies.arm]\npoints = { O = [0, 0] }\nmass = 1\ncenter = [0.3, 0.1]\ninertia = 0.2\n\
                        [joints]\nO = { revolute = [\"ground.O\", \"arm.O\"] }\n[actuators.phi]\nangle = [\"ground\", \"arm\"]\n\
                        [loads]\nweight = { gravity = [0, -9.81] }\n";

@@ -1,6 +1,6 @@
-//! The motion of a single rotor from the numbers of its scene, by a reader and an integrator of its own.
+//! The motion of a single rotor from the numbers of its scene, by an independent reader and integrator.
 //!
-//! A body `rotor` on a pin, or on a guide, driven, braked, stopped: (I + Σ N² J) θ̈ = Σ M(t, θ, ω), or the same with its mass and forces. Nothing here is shared with the readers, drives,
+//! A body `rotor` on a pin, or on a guide, with drives, brakes and stops: (I + Σ N² J) θ̈ = Σ M(t, θ, ω), or with mass and forces on a guide. It shares nothing with the readers, drives,
 //! stops, events and integrators that are checked.
 
 mod forces;
@@ -14,7 +14,7 @@ use toml::{Table, Value};
 const STEPS: usize = 20_000;
 /// Step to a reversal, s.
 const PERIOD_STEP: f64 = 2e-4;
-/// Halvings of a step to an event: down to rounding.
+/// Number of bisections of a step to an event, down to rounding.
 const HALVINGS: usize = 50;
 
 /// An event: a function of time and state that changes its sign.
@@ -37,14 +37,14 @@ enum RotorEventKind {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rotor {
     pub(super) forces: RotorForces,
-    /// Mass times the distance of its centre from the pin, kg m.
+    /// Mass times the distance of its centre of mass from the pin, kg m.
     unbalance: f64,
     start: [f64; 2],
-    /// When the motion is to end unless an event ends it, s.
+    /// The end of the motion, s, unless an event ends it.
     pub(super) duration: f64,
     /// In the order of the scene.
     events: Vec<RotorEvent>,
-    /// Lower and upper limit of a stop; infinite where there is none.
+    /// Lower and upper limit of a stop; infinite without a stop.
     limits: [f64; 2],
     /// Restitution of a rigid stop.
     rigid: Option<f64>,
@@ -53,14 +53,14 @@ pub(super) struct Rotor {
 /// A computed motion.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct RotorMotion {
-    /// When it ends, s, and where.
+    /// Its end: time, s, and state.
     pub(super) end: (f64, RotorState),
     /// By event: its first occurrence, s.
     pub(super) events: Vec<Option<f64>>,
 }
 
 impl Rotor {
-    /// Reads the scene of a rotor; none where it is not one.
+    /// Reads the scene of a rotor; `None` if it is not one.
     pub(super) fn read(text: &str) -> Option<Self> {
         let root: Table = toml::from_str(text).ok()?;
         let body = root.get("bodies")?.get("rotor")?;
@@ -71,9 +71,10 @@ impl Rotor {
         let arm = center.and_then(as_number).unwrap_or(0.0);
         let joints = root.get("joints").and_then(Value::as_table)?;
         let slides = joints.values().any(|j| j.get("prismatic").is_some());
-        let of_rotor = match slides {
-            true => mass,
-            false => number(body, "inertia")? + mass * arm * arm,
+        let of_rotor = if slides {
+            mass
+        } else {
+            number(body, "inertia")? + mass * arm * arm
         };
         // A number, or a table with one number.
         let only = |key: &str| {
@@ -83,8 +84,11 @@ impl Rotor {
         };
         let assembly = root.get("assembly");
         let assembled = assembly.and_then(|assembly| number(assembly, "phi"));
-        let events = motion.get("events").and_then(Value::as_table);
-        let events = events.into_iter().flat_map(|all| all.values());
+        let events = motion
+            .get("events")
+            .and_then(Value::as_table)
+            .into_iter()
+            .flat_map(|all| all.values());
         let stops = root.get("stops").and_then(Value::as_table);
         let stop = stops.and_then(|all| all.values().next());
         let limits = stop.map(|stop| {
@@ -138,7 +142,7 @@ impl Rotor {
         }
     }
 
-    /// What an event's function is where the event is claimed, by event, relative to what is usual of it.
+    /// The value of an event's function at a claimed event, relative to its typical size.
     pub(super) fn residual(&self, event: usize, t: f64, y: RotorState) -> f64 {
         let event = &self.events[event];
         let scale = match event.kind {
@@ -150,13 +154,13 @@ impl Rotor {
         self.event_value(event, t, y).abs() / scale
     }
 
-    /// Where a rigid stop returns the rotor to this state, its speed before.
+    /// The speed before an impact at a rigid stop that leads to this state.
     pub(super) fn speed_before_impact(&self, q: f64, speed: f64, previous: f64) -> Option<f64> {
         let restitution = self.rigid?;
         (self.is_at_limit(q) && speed * previous < 0.0).then(|| -speed / restitution)
     }
 
-    /// Where a rigid stop is struck in this state, the speed behind the impact.
+    /// The speed after an impact, if the rotor strikes a rigid stop in this state.
     pub(super) fn speed_after_impact(&self, q: f64, speed: f64) -> Option<f64> {
         let restitution = self.rigid?;
         let middle = 0.5 * (self.limits[0] + self.limits[1]);
@@ -185,7 +189,7 @@ impl Rotor {
         matches!(kind, Some(RotorEventKind::Reaction(_)))
     }
 
-    /// Force of the ground on the rotor along x, N: mass times the acceleration of its centre.
+    /// Force of the ground on the rotor along x, N: mass times the acceleration of its centre of mass.
     fn pin_force(&self, t: f64, y: RotorState) -> f64 {
         let [_, alpha, _] = self.forces.rates(t, y);
         let (sin, cos) = y[0].sin_cos();
@@ -226,7 +230,7 @@ impl Rotor {
                 (t, y) = (t + h, next);
                 continue;
             };
-            // To the limit, where a rigid stop returns the rotor, and a little beyond: the force of one that yields jumps there.
+            // To the limit of the stop, and slightly beyond: the force of a compliant stop jumps there.
             let at = zero_of(&|h: f64| self.forces.step(t, y, h)[0] - limit, h);
             let there = self.forces.step(t, y, at);
             let speed = self
@@ -241,15 +245,16 @@ impl Rotor {
     }
 }
 
-/// Where a function that changes its sign over a step is zero.
+/// The zero of a function that changes its sign over a step.
 fn zero_of(value: &dyn Fn(f64) -> f64, step: f64) -> f64 {
     let (mut low, mut high) = (0.0, step);
     let sign = value(low);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        match value(middle) * sign > 0.0 {
-            true => low = middle,
-            false => high = middle,
+        if value(middle) * sign > 0.0 {
+            low = middle
+        } else {
+            high = middle
         }
     }
     0.5 * (low + high)
@@ -258,7 +263,7 @@ fn zero_of(value: &dyn Fn(f64) -> f64, step: f64) -> f64 {
 impl RotorEvent {
     fn read(event: &Value) -> Option<Self> {
         let value = event.get("value").and_then(as_number);
-        // The other coordinate of these scenes is the angle seen from the rotor.
+        // The other coordinate of these scenes is the angle measured from the rotor.
         let sign = |key: &str| match event.get(key)?.as_str()? {
             "phi" => Some(1.0),
             _ => Some(-1.0),

@@ -1,4 +1,4 @@
-//! The verdict in one picture: what passed, the numbers it rests on, and every case by every check.
+//! The verdict in one picture: passed checks, key numbers, and every case by every check.
 
 use super::{CheckCell, ValidationRun, check_cells, summary};
 use crate::report_parts::{margin, margin_text};
@@ -32,11 +32,13 @@ pub(super) fn overview(judged: &ValidationRun<'_>) -> Figure {
         compact: true,
         ..Grid::default()
     };
-    let rows = summary::tiles(judged).into_iter();
-    let rows = rows.filter(|tiles| !tiles.is_empty()).map(|tiles| {
-        let columns = tiles.len();
-        Panel::from(Tiles { columns, tiles })
-    });
+    let rows = summary::tiles(judged)
+        .into_iter()
+        .filter(|tiles| !tiles.is_empty())
+        .map(|tiles| {
+            let columns = tiles.len();
+            Panel::from(Tiles { columns, tiles })
+        });
     Figure {
         name: "index".to_owned(),
         title: judged.headline(),

@@ -1,4 +1,4 @@
-//! All that was validated together: the verdict in a picture and twenty lines, and case by check as tables.
+//! The overview of a validation: the verdict in a picture and twenty lines, and tables of cases by checks.
 
 mod figure;
 mod page;
@@ -15,44 +15,44 @@ use dwell_scene::PlaneScene;
 use dwell_study::Outcome;
 use dwell_study::output::Picture;
 
-/// What the kinds of reference values mean.
+/// The meaning of the kinds of reference values.
 const SOURCE_KINDS: &str = "Independent: made by the program in `validation/reference`, which shares nothing with Dwell and remakes every one of them (`just reference`). Literature: as printed, with its citation on the case's page. Own oracle: no value from elsewhere; Dwell's independent checks alone. The values of the squeezer at 0.03 s that the Test Set for IVP Solvers publishes are 1.5e-9 rad off (accelerations and multipliers 1.3e-6 of the largest): the independent energy integral and Dwell's integration agree against them.";
 
-/// A case and its result: its report, or why there is none.
+/// A case and its result: its report, or the reason why there is none.
 pub type CaseResult<'a> = (&'a str, Result<(&'a PlaneScene, &'a Validation), String>);
 
-/// A case in the plane or in space, and what was found.
+/// A case in the plane or in space, with its result.
 #[derive(Debug, Clone)]
 pub struct ValidatedCase<'a> {
-    /// Its name, or where it should be.
+    /// Its name, or its path.
     pub name: &'a str,
     /// Its title.
     pub title: &'a str,
     /// Whether it is in space.
     pub in_space: bool,
-    /// The result, or why there is none.
+    /// The result, or the reason why there is none.
     pub result: Result<&'a Validation, String>,
 }
 
-/// All that one run of `dwell validate` has judged.
+/// The results of one run of `dwell validate`.
 #[derive(Debug, Clone)]
 pub struct ValidationRun<'a> {
     /// The cases of the plane, then those in space.
     pub cases: Vec<ValidatedCase<'a>>,
     /// The studies beside them, by name, with their findings: extremes, exported runs.
     pub studies: Vec<(&'static str, &'a [Finding])>,
-    /// Why the independent reader did not run, where it should have.
+    /// The reason if the independent reader did not run.
     pub no_reader: Option<String>,
-    /// How many lines of the manual hold, and of how many.
+    /// The number of passing lines of the manual, and of all lines.
     pub manual: Option<[usize; 2]>,
 }
 
 /// The result of one check in a case.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum CheckCell<'a> {
-    /// The finding with the least margin; one that fails before all others.
+    /// The finding with the smallest margin; failing ones first.
     Nearest(&'a Finding),
-    /// Why there is none.
+    /// The check does not apply, with the reason.
     NotApplicable(&'static str),
 }
 
@@ -73,8 +73,8 @@ pub(crate) fn check_cells(done: &Validation) -> [CheckCell<'_>; Check::ALL.len()
     })
 }
 
-/// The report on all cases beside their own: `index.md`, the verdict in twenty lines; its picture, `index.png`, to be drawn; and case by
-/// check, `cases.md` and `index.html`.
+/// The report on all cases: `index.md`, the verdict in twenty lines; its picture, `index.png`; and the tables of cases by
+/// checks, `cases.md` and `index.html`.
 pub fn index(judged: &ValidationRun<'_>) -> Outcome {
     let mut outcome = Outcome::default();
     outcome
@@ -160,7 +160,7 @@ fn margin_row(case: &ValidatedCase<'_>) -> Vec<String> {
     })
 }
 
-/// Who made the reference values of a case.
+/// The origin of the reference values of a case.
 fn source_row(case: &ValidatedCase<'_>) -> Vec<String> {
     row(case, |validation| {
         SourceKind::ALL.map(|kind| validation.source_kinds.of(kind))
@@ -181,13 +181,14 @@ fn failures(results: &[ValidatedCase<'_>]) -> Vec<Block> {
             Err(reason) => text += &format!("- `{name}`: {reason}\n"),
         }
     }
-    match text.is_empty() {
-        true => Vec::new(),
-        false => vec![Block::Heading("Failures".to_owned()), Block::Text(text)],
+    if text.is_empty() {
+        Vec::new()
+    } else {
+        vec![Block::Heading("Failures".to_owned()), Block::Text(text)]
     }
 }
 
-/// How close the findings are to their tolerances, and which tolerances are loose.
+/// The margins of the findings, and the loose tolerances.
 fn tolerance_row(case: &ValidatedCase<'_>) -> Vec<String> {
     let done = match &case.result {
         Ok(validated) => validated,
@@ -198,11 +199,15 @@ fn tolerance_row(case: &ValidatedCase<'_>) -> Vec<String> {
     };
     let findings = &done.outcome.findings;
     let passed = findings.iter().filter(|f| f.pass).count();
-    let loose = findings.iter().filter(|f| f.is_loose());
-    let loose: Vec<&str> = loose.map(|f| f.key.as_str()).collect();
-    let loose = match loose.is_empty() {
-        true => "none".to_owned(),
-        false => loose.join(", "),
+    let loose: Vec<&str> = findings
+        .iter()
+        .filter(|f| f.is_loose())
+        .map(|f| f.key.as_str())
+        .collect();
+    let loose = if loose.is_empty() {
+        "none".to_owned()
+    } else {
+        loose.join(", ")
     };
     vec![
         case.link(),

@@ -1,4 +1,4 @@
-//! The overview as one HTML file: from every case and check to its findings and pictures, and to the other reports.
+//! The overview as one HTML file, with links from every case and check to its findings and pictures, and to the other reports.
 
 use super::{CheckCell, ValidatedCase, ValidationRun, check_cells};
 use crate::report_parts::{margin, margin_text};
@@ -7,7 +7,7 @@ use dwell_report::escaped;
 
 const STYLE: &str = include_str!("page.css");
 
-/// The other reports, each with what it holds.
+/// The other reports with their contents.
 const REPORTS: &str = "<nav><ul>\n\
     <li><a href=\"manual.html\">Verification manual</a>: what is required, and the evidence for each capability</li>\n\
     <li><a href=\"extremes.html\">Extreme parameters</a>: ratios, scales, singular and stiff cases</li>\n\
@@ -17,7 +17,7 @@ const REPORTS: &str = "<nav><ul>\n\
     <li><a href=\"exported-runs.html\">Exported runs</a>: what tables of other programs are worth</li>\n\
     </ul></nav>\n";
 
-/// The overview. Its text is escaped, it has no script, and loads nothing.
+/// The overview. Its text is escaped; it has no script and loads nothing.
 pub(super) fn html(judged: &ValidationRun<'_>) -> String {
     let results = &judged.cases;
     let mut text = format!(
@@ -57,28 +57,31 @@ fn row(case: &ValidatedCase<'_>) -> String {
         }
     };
     let page = format!("{}.html", case.name);
-    let cells = Check::ALL.into_iter().zip(check_cells(done));
-    let cells = cells.map(|(check, cell)| {
-        let f = match cell {
-            CheckCell::Nearest(finding) => finding,
-            CheckCell::NotApplicable(why) => {
-                return format!("<td class=\"none\" title=\"{}\">·</td>", escaped(why));
-            }
-        };
-        let (difference, tolerance) = (f.relative_difference, f.tolerance);
-        let title = format!("{}: {difference:.1e}, tolerance {tolerance:.1e}", f.key);
-        let (class, text) = match f.pass {
-            true => (format!("d{}", shade(margin(f))), margin_text(margin(f))),
-            false => ("fail".to_owned(), format!("FAIL {}", f.key)),
-        };
-        format!(
-            "<td class=\"{class}\"><a href=\"{}#check={}\" title=\"{}\">{}</a></td>",
-            escaped(&page),
-            check.number(),
-            escaped(&title),
-            escaped(&text)
-        )
-    });
+    let cells = Check::ALL
+        .into_iter()
+        .zip(check_cells(done))
+        .map(|(check, cell)| {
+            let f = match cell {
+                CheckCell::Nearest(finding) => finding,
+                CheckCell::NotApplicable(why) => {
+                    return format!("<td class=\"none\" title=\"{}\">·</td>", escaped(why));
+                }
+            };
+            let (difference, tolerance) = (f.relative_difference, f.tolerance);
+            let title = format!("{}: {difference:.1e}, tolerance {tolerance:.1e}", f.key);
+            let (class, text) = if f.pass {
+                (format!("d{}", shade(margin(f))), margin_text(margin(f)))
+            } else {
+                ("fail".to_owned(), format!("FAIL {}", f.key))
+            };
+            format!(
+                "<td class=\"{class}\"><a href=\"{}#check={}\" title=\"{}\">{}</a></td>",
+                escaped(&page),
+                check.number(),
+                escaped(&title),
+                escaped(&text)
+            )
+        });
     format!(
         "<tr><th scope=\"row\"><a href=\"{}\">{}</a></th>{}</tr>\n",
         escaped(&page),
@@ -92,7 +95,7 @@ fn shade(margin: f64) -> usize {
     margin.log10().clamp(0.0, 5.0) as usize
 }
 
-/// The pictures of a case, and what fails in it.
+/// The pictures of a case, and its failures.
 fn case(case: &ValidatedCase<'_>) -> String {
     let Ok(done) = &case.result else {
         return format!(
@@ -102,21 +105,28 @@ fn case(case: &ValidatedCase<'_>) -> String {
     };
     let findings = &done.outcome.findings;
     let passed = findings.iter().filter(|f| f.pass).count();
-    let failed = findings.iter().filter(|f| !f.pass).map(|f| {
-        format!(
-            "<li class=\"fail\">{}: {}</li>\n",
-            escaped(&f.key),
-            escaped(&f.comparison)
-        )
-    });
-    let failed: String = failed.collect();
-    let pictures = done.outcome.pictures.iter().map(|picture| {
-        let path = &picture.path;
-        let file = path.rsplit('/').next().unwrap_or(path);
-        let words = file.strip_suffix(".png").unwrap_or(file);
-        format!("<a href=\"{}\">{}</a>", escaped(path), escaped(words))
-    });
-    let pictures: Vec<String> = pictures.collect();
+    let failed: String = findings
+        .iter()
+        .filter(|f| !f.pass)
+        .map(|f| {
+            format!(
+                "<li class=\"fail\">{}: {}</li>\n",
+                escaped(&f.key),
+                escaped(&f.comparison)
+            )
+        })
+        .collect();
+    let pictures: Vec<String> = done
+        .outcome
+        .pictures
+        .iter()
+        .map(|picture| {
+            let path = &picture.path;
+            let file = path.rsplit('/').next().unwrap_or(path);
+            let words = file.strip_suffix(".png").unwrap_or(file);
+            format!("<a href=\"{}\">{}</a>", escaped(path), escaped(words))
+        })
+        .collect();
     format!(
         "<details{}><summary>{} <small>{passed} of {} findings pass</small></summary>\n<ul>{failed}</ul>\n<p><a href=\"{}.html\">page of the case</a> · {}</p></details>\n",
         if failed.is_empty() { "" } else { " open" },

@@ -1,4 +1,4 @@
-//! The verdict: did it pass, what is nearest to its tolerance, and what the paper's mechanism does.
+//! The verdict: whether all passed, the finding nearest to its tolerance, and the results of the paper's mechanism.
 
 use super::{ValidatedCase, ValidationRun};
 use crate::report_parts::{margin, margin_text, nearest, table};
@@ -11,7 +11,7 @@ const PUBLISHED_PERIOD: &str = "5.42";
 /// The first check of what commands write.
 const FIRST_WRITTEN: Check = Check::WrittenPositions;
 
-/// What was judged of one kind, and how much of it passed.
+/// The number of judged and passed items of one kind.
 pub(super) struct Tally {
     name: &'static str,
     passed: usize,
@@ -56,14 +56,16 @@ impl<'a> ValidationRun<'a> {
             .flat_map(|(name, findings)| findings.iter().map(move |f| (name, f)))
     }
 
-    /// What was judged, by kind; kinds of which there is nothing are left out.
+    /// The judged items by kind, without empty kinds.
     pub(super) fn tallies(&self) -> Vec<Tally> {
         let cases = |in_space: bool| {
             let cases = self.cases.iter().filter(move |c| c.in_space == in_space);
             cases.map(ValidatedCase::passes)
         };
-        let written = self.findings().map(|(_, f)| f);
-        let written = written.filter(|f| f.check >= FIRST_WRITTEN);
+        let written = self
+            .findings()
+            .map(|(_, f)| f)
+            .filter(|f| f.check >= FIRST_WRITTEN);
         let mut tallies = vec![
             Tally::new("cases in the plane", cases(false), "up to 21 checks"),
             Tally::new("in space", cases(true), "by the same checks"),
@@ -91,8 +93,8 @@ impl<'a> ValidationRun<'a> {
         tallies
     }
 
-    /// The finding of a case that is nearest to its tolerance, with the name of the case; one that fails, be it of a study, comes first.
-    /// Studies require digits and estimates that they may just reach, so that they are always nearest.
+    /// The finding of a case that is nearest to its tolerance, with the name of the case; failing ones, also of studies, come first.
+    /// Passing findings of studies are excluded, because studies are designed to reach their requirements closely.
     pub(super) fn nearest(&self) -> Option<(&'a str, &'a Finding)> {
         let is_case = |name: &str| self.cases.iter().any(|case| case.name == name);
         let counted = self.findings().filter(|(name, f)| !f.pass || is_case(name));
@@ -127,7 +129,7 @@ impl<'a> ValidationRun<'a> {
         }
     }
 
-    /// What the paper's mechanism does, by number: its period, the drift of its energy, the unit runs beside the kinetic energy.
+    /// The key numbers of the paper's mechanism: its period, the drift of its energy, the unit runs compared with the kinetic energy.
     pub(super) fn paper(&self) -> Vec<Tile> {
         let case = self
             .cases
@@ -159,8 +161,7 @@ impl<'a> ValidationRun<'a> {
                 note,
             )
         });
-        let unit_runs = finding("half-dm-differences").zip(finding("m-energy"));
-        let unit_runs = unit_runs.map(|(slope, m)| {
+        let unit_runs = finding("half-dm-differences").zip(finding("m-energy")).map(|(slope, m)| {
             let note = format!(
                 "relative difference of ½m′ from differences of the kinetic energy; of m: {:.1e}",
                 m.relative_difference
@@ -175,7 +176,7 @@ impl<'a> ValidationRun<'a> {
     }
 }
 
-/// The verdict in twenty lines: the first says whether all passed, the third what is nearest to its tolerance.
+/// The verdict in twenty lines: the first states whether all passed, the third which finding is nearest to its tolerance.
 pub(super) fn document(judged: &ValidationRun<'_>) -> Document {
     let nearest = judged.nearest().map_or_else(String::new, |(name, f)| {
         let words = if f.pass { "Nearest to its tolerance" } else { "Worst" };
@@ -197,8 +198,10 @@ pub(super) fn document(judged: &ValidationRun<'_>) -> Document {
             tally.note.to_owned(),
         ]
     });
-    let paper = judged.paper().into_iter();
-    let paper = paper.map(|tile| format!("{} **{}** ({})", tile.name, tile.value, tile.note));
+    let paper = judged
+        .paper()
+        .into_iter()
+        .map(|tile| format!("{} **{}** ({})", tile.name, tile.value, tile.note));
     let paper: Vec<String> = paper.collect();
     let mut blocks = vec![
         Block::Text(nearest),
@@ -229,8 +232,7 @@ pub(super) fn document(judged: &ValidationRun<'_>) -> Document {
 
 /// The kinds as tiles, and the numbers.
 pub(super) fn tiles(judged: &ValidationRun<'_>) -> [Vec<Tile>; 2] {
-    let tallies = judged.tallies().into_iter();
-    let tallies = tallies.map(|tally| {
+    let tallies = judged.tallies().into_iter().map(|tally| {
         let passed = tally.passes();
         Tile::new(tally.name, tally.counts(), tally.note).with_result(passed)
     });
@@ -240,12 +242,13 @@ pub(super) fn tiles(judged: &ValidationRun<'_>) -> [Vec<Tile>; 2] {
         } else {
             "FAIL".to_owned()
         };
-        let by = match f.pass {
-            true => String::new(),
-            false => format!(
+        let by = if f.pass {
+            String::new()
+        } else {
+            format!(
                 ": difference {:.1e}, tolerance {:.1e}",
                 f.relative_difference, f.tolerance
-            ),
+            )
         };
         let note = format!("{name}, check {}, {}{by}", f.check, f.key);
         let words = if f.pass { "least margin" } else { "worst" };

@@ -1,4 +1,4 @@
-//! Verdicts and tables of findings that are made up.
+//! Verdicts and tables of invented findings.
 #![allow(clippy::expect_used, reason = "tests")]
 
 use super::*;
@@ -166,7 +166,7 @@ fn the_verdict_has_twenty_lines_and_names_what_is_nearest_to_its_tolerance() {
         "{verdict}"
     );
     assert!(lines.len() <= 20, "{verdict}");
-    // What is not complete is no pass.
+    // An incomplete run does not pass.
     let verdict = text(
         &index(&ValidationRun {
             no_reader: None,

@@ -7,16 +7,16 @@ use super::requested::RequestedCosts;
 use dwell_dynamics::Method;
 use dwell_study::number_format::digits;
 
-/// How the equation of motion is evaluated.
+/// The evaluation of the equation of motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Evaluation {
     /// The mechanism itself, in double precision.
     Exact,
-    /// The same in single precision.
+    /// The mechanism itself, in single precision.
     SinglePrecision,
     /// A table of the reduced model.
     Table {
-        /// The required accuracy, as a part of the largest value.
+        /// The required accuracy, relative to the largest value.
         accuracy: f64,
         /// Cells of m and ½m′.
         cells: usize,
@@ -38,7 +38,7 @@ impl Evaluation {
         }
     }
 
-    /// Its own relative error, as a rule: below it no tolerance improves a motion.
+    /// Its typical relative error: smaller tolerances do not improve a motion.
     pub(super) fn relative_error(&self) -> f64 {
         match self {
             Self::Exact | Self::Other(_) => 0.0,
@@ -48,7 +48,7 @@ impl Evaluation {
     }
 }
 
-/// How the motion is integrated.
+/// The integration of the motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Integrator {
     /// Step by step, with this relative and absolute tolerance.
@@ -78,17 +78,20 @@ impl Integrator {
 /// A method of computing the motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Combination {
-    /// How the equation is evaluated.
+    /// Its evaluation.
     pub evaluation: Evaluation,
-    /// How it is integrated.
+    /// Its integrator.
     pub integrator: Integrator,
 }
 
 impl Combination {
     /// Its name in figures and tables.
     pub fn name(&self) -> String {
-        let tolerance = self.integrator.tolerance().map(|t| format!(" {t:.0e}"));
-        let tolerance = tolerance.unwrap_or_default();
+        let tolerance = self
+            .integrator
+            .tolerance()
+            .map(|t| format!(" {t:.0e}"))
+            .unwrap_or_default();
         let evaluation = match self.evaluation {
             Evaluation::Exact => String::new(),
             other => format!(", {}", other.name().trim_start_matches("exact ")),
@@ -144,23 +147,23 @@ impl ErrorQuantity {
     pub const ALL: [Self; 3] = [Self::Coordinate, Self::Energy, Self::Reaction];
 }
 
-/// What a combination costs.
+/// The cost of a combination.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Cost {
     /// Steps taken.
     pub steps: usize,
     /// Steps rejected.
     pub rejected: usize,
-    /// Evaluations of the equation of motion; of a quadrature, of the inertia (and potential).
+    /// Evaluations of the equation of motion, or for a quadrature of the inertia (and potential).
     pub evaluations: usize,
     /// Jacobians.
     pub jacobians: usize,
     /// Evaluations, with each Jacobian as the number of its dual-number evaluations.
     pub weighted_evaluations: usize,
-    /// Time, in units of one exact evaluation in double precision of the same equation, in the same run:
-    /// the least of the repetitions.
+    /// Time, in units of one exact evaluation of the equation in double precision in the same run:
+    /// the minimum of the repetitions.
     pub time: f64,
-    /// Time of building a table, in the same unit; zero where none is built.
+    /// Time of building a table, in the same unit; zero without table.
     pub build_time: f64,
 }
 
@@ -207,7 +210,7 @@ pub struct CombinationResult {
 pub struct ReferenceInfo {
     /// How it was computed.
     pub method: String,
-    /// Its own error: a smaller error is only known to be below it.
+    /// Its own error; smaller errors are only known to be below it.
     pub error: Errors,
 }
 
@@ -216,25 +219,25 @@ pub struct ReferenceInfo {
 pub struct WorkPrecision {
     /// All results.
     pub points: Vec<CombinationResult>,
-    /// The classical Runge–Kutta method at a fixed step of 1 ms, where it reaches the end.
+    /// The classical Runge–Kutta method with a fixed step of 1 ms, if it reaches the end.
     pub fixed_step: Option<FixedStep>,
     /// The exported code with steps of a millisecond.
     pub exported_code: Vec<ExportedCode>,
-    /// The command at each accuracy that has a name.
+    /// The command at each named accuracy.
     pub commands: Vec<CommandRun>,
-    /// What an evaluation costs by what is requested of it.
+    /// The cost of an evaluation by the requested results.
     pub requested: RequestedCosts,
-    /// What was not run or not finished, and why.
+    /// The combinations that were omitted or not finished, with the reason.
     pub omitted: Vec<String>,
     /// The reference of the errors.
     pub reference: ReferenceInfo,
-    /// Notes on the motion: its duration, and what of the scene was changed for it.
+    /// Notes on the motion: its duration, and changes of the scene.
     pub motion_notes: Vec<String>,
     /// Duration of the motion, s.
     pub duration: f64,
-    /// `rad` or `m`, or both where coordinates of both kinds are free.
+    /// `rad` or `m`, or both if coordinates of both kinds are free.
     pub unit: &'static str,
-    /// Runs of which each time is the least.
+    /// Number of repetitions; each time is their minimum.
     pub repetitions: usize,
     /// One exact evaluation, s.
     pub evaluation_time: f64,
@@ -243,10 +246,10 @@ pub struct WorkPrecision {
 }
 
 impl WorkPrecision {
-    /// An error of a point, or the error of the reference where that is larger.
+    /// An error of a point, or the error of the reference if that is larger.
     pub fn error_bound(&self, point: &CombinationResult, quantity: ErrorQuantity) -> f64 {
         let (error, floor) = (point.errors.of(quantity), self.reference.error.of(quantity));
-        // Not a number must stay so.
+        // NaN must remain NaN.
         if error < floor { floor } else { error }
     }
 
@@ -257,16 +260,17 @@ impl WorkPrecision {
 
     /// An error of a point as text: below the error of the reference as an upper bound.
     pub(super) fn describe_error(&self, of: &CombinationResult, quantity: ErrorQuantity) -> String {
-        match self.is_below_reference(of, quantity) {
-            true => format!("< {}", digits(self.reference.error.of(quantity), 2)),
-            false => digits_or_dash(of.errors.of(quantity), 2),
+        if self.is_below_reference(of, quantity) {
+            format!("< {}", digits(self.reference.error.of(quantity), 2))
+        } else {
+            digits_or_dash(of.errors.of(quantity), 2)
         }
     }
 
-    /// The Pareto front of the integrators, as indices of `points`, from the cheapest to the most precise: no other
-    /// one is at once as cheap and as precise. Quadrature is left out, since no integrator is competitive with it: see
-    /// [`WorkPrecision::quadrature`]. Counted evaluations compare integrators alone, so the front over them is that of the
-    /// exact evaluations: one of a table is not comparable.
+    /// The Pareto front of the integrators, as indices of `points`, from the cheapest to the most accurate: no other
+    /// combination is both as cheap and as accurate. Quadrature is excluded, because no integrator is competitive with it (see
+    /// [`WorkPrecision::quadrature`]). Numbers of evaluations compare integrators, so their front contains exact
+    /// evaluations only: an evaluation of a table is not comparable.
     pub fn pareto_front(&self, quantity: ErrorQuantity, measure: CostMeasure) -> Vec<usize> {
         let stepped = |&k: &usize| {
             let point = &self.points[k];
@@ -294,8 +298,8 @@ impl WorkPrecision {
         order
     }
 
-    /// Whether a point and all finer tolerances of its integrator with its evaluation reach an accuracy: what one of them reaches alone
-    /// it reaches by luck.
+    /// Whether a point and all finer tolerances of its integrator with its evaluation reach an accuracy: a single one may reach it
+    /// by chance.
     fn reaches(&self, point: &CombinationResult, quantity: ErrorQuantity, accuracy: f64) -> bool {
         let of = |point: &CombinationResult| match point.combination.integrator {
             Integrator::Steps(method, tolerance) => (Some(method), tolerance),
@@ -329,7 +333,7 @@ impl WorkPrecision {
         cheapest.map(|(k, _)| k)
     }
 
-    /// The motion by quadrature of the exact model, where it has one.
+    /// The motion by quadrature of the exact model, if possible.
     pub fn quadrature(&self) -> Option<&CombinationResult> {
         let exact = |p: &&CombinationResult| {
             p.combination.integrator == Integrator::Quadrature
@@ -346,16 +350,16 @@ pub struct Effort {
     pub tolerance_exponents: Vec<i32>,
     /// Accuracies of tables.
     pub table_accuracies: Vec<f64>,
-    /// Most steps of one combination.
+    /// Maximum number of steps of a combination.
     pub max_steps: usize,
-    /// Runs of which the least time counts; at least one.
+    /// Number of repetitions, at least one; the minimum time counts.
     pub repetitions: usize,
     /// Whether exported code is compiled and measured, and the command with its files.
     pub exported_code: bool,
 }
 
 impl Effort {
-    /// That of a study of its own.
+    /// The effort of `dwell work-precision`.
     pub fn full() -> Self {
         Self {
             tolerance_exponents: (-13..=-3).rev().collect(),
@@ -366,7 +370,7 @@ impl Effort {
         }
     }
 
-    /// That of a part of the reports.
+    /// The effort of the study in the reports of `dwell validate`.
     pub fn brief() -> Self {
         Self {
             tolerance_exponents: vec![-3, -5, -7, -9, -11, -13],
@@ -378,7 +382,7 @@ impl Effort {
     }
 }
 
-/// A number as text; a dash where it is not a number.
+/// A number as text; a dash for NaN.
 pub(super) fn digits_or_dash(value: f64, count: usize) -> String {
     if value.is_nan() {
         "–".to_owned()

@@ -1,4 +1,4 @@
-//! What the command `dwell simulate --accuracy …` keeps of its accuracy, and what it costs.
+//! The true accuracy of `dwell simulate --accuracy …`, and its cost.
 
 use super::combination::{ErrorQuantity, Errors};
 use super::evaluator::Evaluator;
@@ -22,7 +22,7 @@ pub(super) const PRESETS: [(&str, f64); 4] = [
     ("reference", 1e-10),
 ];
 
-/// Times that differ by less than this part of the motion are one.
+/// Times that differ by less than this fraction of the motion are equal.
 const SAME_TIME: f64 = 1e-12;
 
 /// The command at one accuracy.
@@ -30,22 +30,22 @@ const SAME_TIME: f64 = 1e-12;
 pub struct CommandRun {
     /// The name of the accuracy, and the accuracy.
     pub preset: (&'static str, f64),
-    /// By which method it computes the motion.
+    /// The method of its motion.
     pub method: String,
-    /// The estimated error that it reports; none where it fails.
+    /// Its reported estimated error; `None` if it fails.
     pub estimated_error: Option<f64>,
-    /// The true errors of its rows over the motion that is studied.
+    /// The true errors of its rows over the studied motion.
     pub errors: Errors,
-    /// Whether it says that the accuracy is reached.
+    /// Whether it reports that the accuracy is reached.
     pub is_reached: bool,
-    /// The motion with its rows and extrema, without anything written, s.
+    /// Time of the motion with its rows and extrema, without files, s.
     pub computing: f64,
-    /// The same with tables and page, and with the main pictures too, all in their files, s.
+    /// Time including the files of tables and page, and with the main pictures, too, s.
     pub whole: Option<[f64; 2]>,
 }
 
 impl CommandRun {
-    /// Whether all true errors, or those of the reference where they are larger, are within the accuracy.
+    /// Whether all true errors, or those of the reference if they are larger, are within the accuracy.
     pub fn keeps_accuracy(&self, reference: &Errors) -> bool {
         let within = |quantity| {
             let error = self.errors.of(quantity);
@@ -56,7 +56,7 @@ impl CommandRun {
     }
 }
 
-/// The command at each accuracy, on the motion that is studied.
+/// The command at each accuracy, on the studied motion.
 pub(super) fn command_runs<S: StudiedScene>(
     reference: &mut ReferenceSolution<'_, S>,
     exact: &dyn Evaluator,
@@ -75,10 +75,11 @@ pub(super) fn command_runs<S: StudiedScene>(
         } = CommandedMotion::new(&scene, preset.1)?;
         let computing = started.elapsed().as_secs_f64();
         let states = rows_at(subject, &reference.states, &table);
-        // Loads need not have a value where there is no row.
-        let errors = match states.iter().flatten().all(|value| value.is_finite()) {
-            true => reference.errors(&states, &mut exact.reactions()),
-            false => Ok(Errors::UNKNOWN),
+        // Loads may have no value where there is no row.
+        let errors = if states.iter().flatten().all(|value| value.is_finite()) {
+            reference.errors(&states, &mut exact.reactions())
+        } else {
+            Ok(Errors::UNKNOWN)
         };
         let whole = with_files.then(|| whole_command(&scene, preset.1));
         done(&format!("simulate --accuracy {:.0e}", preset.1));
@@ -95,8 +96,8 @@ pub(super) fn command_runs<S: StudiedScene>(
     PRESETS.into_iter().map(one).collect()
 }
 
-/// The states of the rows nearest to the compared times: coordinates and speeds of the table; what else a state holds (currents, works) is
-/// that of the reference.
+/// The states of the rows nearest to the compared times: coordinates and speeds from the table; other states (currents, works) from
+/// the reference.
 fn rows_at<S: StudiedScene>(
     subject: &Subject<S>,
     reference: &[Vec<f64>],
@@ -107,8 +108,12 @@ fn rows_at<S: StudiedScene>(
     let name = |i: usize| subject.scene.actuator(i).map_or("", |(name, _)| name);
     let names: Vec<String> = free.iter().map(|&i| name(i).to_owned()).collect();
     let speeds = names.iter().map(|name| format!("{name}.velocity"));
-    let columns = names.iter().cloned().chain(speeds);
-    let columns: Vec<Option<usize>> = columns.map(|name| column(&name)).collect();
+    let columns: Vec<Option<usize>> = names
+        .iter()
+        .cloned()
+        .chain(speeds)
+        .map(|name| column(&name))
+        .collect();
     let time = column("t");
     let at = |row: &[f64]| time.map_or(f64::NAN, |t| row[t]);
     let times = subject.times.iter().zip(reference);
@@ -118,7 +123,7 @@ fn rows_at<S: StudiedScene>(
         let mut state = expected.clone();
         for (value, column) in state.iter_mut().zip(&columns) {
             let known = nearest.zip(*column).map(|(row, k)| row[k]);
-            // A row that is missing is no agreement.
+            // A missing row counts as disagreement.
             *value = known.unwrap_or(f64::NAN);
         }
         state
@@ -126,7 +131,7 @@ fn rows_at<S: StudiedScene>(
     states.collect()
 }
 
-/// The seconds from the scene in memory to its files in a folder, which is removed afterwards: without pictures, and with
+/// The time, s, from the scene in memory to its files in a folder, which is then removed: without pictures, and with
 /// the main ones.
 fn whole_command<S: StudiedScene>(scene: &S, accuracy: f64) -> Result<[f64; 2], StudyError> {
     static NUMBER: AtomicU64 = AtomicU64::new(0);

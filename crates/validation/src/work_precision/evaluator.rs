@@ -12,7 +12,7 @@ use dwell_kinetostatics::{Coefficients, ExactModel, Inertia, ReducedModel, Reduc
 use dwell_numerics::Scalar;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Finds the reactions at a state, N or N·m.
+/// Computes the reactions at a state, N or N·m.
 pub type ReactionFn<'e> = Box<dyn FnMut(&OdeState, &mut [f64]) -> Result<(), DynamicsError> + 'e>;
 
 /// An evaluator. Another kind of table or of number is studied by implementing this.
@@ -23,23 +23,23 @@ pub trait Evaluator {
     /// The equation of motion with its workspace.
     ///
     /// # Errors
-    /// [`DynamicsError`] where the start cannot be evaluated.
+    /// [`DynamicsError`] if the start cannot be evaluated.
     fn system(&self) -> Result<Box<dyn OdeSystem + '_>, DynamicsError>;
 
     /// The reactions, in its own arithmetic, with their workspace.
     fn reactions(&self) -> ReactionFn<'_>;
 
-    /// The evaluations that one Jacobian counts as: a dual number is two.
+    /// The number of evaluations that one Jacobian counts as: a dual number counts as two.
     fn jacobian_weight(&self) -> usize;
 
     /// The time of building it, s.
     fn build_time(&self) -> f64;
 
-    /// The motion by quadrature with its number of evaluations; none where it does not follow from its energy.
+    /// The motion by quadrature with its number of evaluations; `None` if the energy does not determine it.
     fn orbit(&self, start: ReducedState) -> Option<(Orbit, usize)>;
 }
 
-/// A reduced model of one freedom without loads.
+/// A reduced model of one degree of freedom without loads.
 #[derive(Debug)]
 pub struct ModelEvaluator<R: ReducedModel> {
     /// The model, with the reactions that are compared.
@@ -128,11 +128,11 @@ impl<R: ReducedModel> ReducedModel for CountingModel<'_, R> {
     }
 }
 
-/// The reduced model in single precision. Its derivative is that of double precision: it is used by Newton's
-/// method only.
+/// The reduced model in single precision. Its derivative has double precision, because only Newton's
+/// method uses it.
 pub(super) struct SinglePrecisionModel<M> {
     exact: ExactModel<M>,
-    /// Without what the inertia does not need.
+    /// The model without the groups that the inertia does not need.
     inertia_model: M,
 }
 
@@ -146,7 +146,7 @@ impl<M: ReducibleModel + Clone> SinglePrecisionModel<M> {
 }
 
 impl<M: ReducibleModel> ReducedModel for SinglePrecisionModel<M> {
-    /// Of the inertia and of the coefficients in single precision, then in double precision.
+    /// Workspaces of the inertia and of the coefficients in single precision, then in double precision.
     type Workspace = (
         [M::Workspace<f32>; 2],
         <ExactModel<M> as ReducedModel>::Workspace,
@@ -207,11 +207,11 @@ impl<M: ReducibleModel> ReducedModel for SinglePrecisionModel<M> {
     }
 }
 
-/// A machine: any number of freedoms, loads, drives; itself, in single precision or on a table.
+/// A machine with any number of degrees of freedom, loads and drives: evaluated exactly, in single precision or on a table.
 pub(super) struct MachineEvaluator<'s, S: StudiedScene> {
     pub(super) subject: &'s Subject<S>,
     pub(super) evaluation: Evaluation,
-    /// Its table. This holds no reactions: they are those of the machine at the table's states.
+    /// Its table. It contains no reactions; those of the machine at the table's states are used.
     pub(super) table: Option<TabulatedMachine>,
     /// The time of building it, s.
     pub(super) build_time: f64,
@@ -282,7 +282,7 @@ fn reactions_in<T: Scalar, M: MovingModel + EvaluatedIn<T>>(
     })
 }
 
-/// A machine from a start, evaluated in single precision; its Jacobian is that of double precision.
+/// A machine from an initial state, evaluated in single precision; its Jacobian has double precision.
 struct SinglePrecisionOde<'m, M: MovingModel> {
     machine: &'m Machine<M>,
     workspace: MachineWorkspace<f32, M>,

@@ -1,5 +1,5 @@
-//! The exported C with a fixed step, as a controller runs it: errors of the motion, and the time of a call, in the mean and at
-//! worst. It is compiled by a C compiler of this machine.
+//! The exported C with a fixed step, as in a controller: errors of the motion, and mean and largest time of a call. It is
+//! compiled by a C compiler of this machine.
 
 use super::combination::Errors;
 use super::evaluator::Evaluator;
@@ -13,14 +13,14 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The exports that are measured: their names, accuracies and numbers; the last two are the model's own operations.
+/// The measured exports: name, accuracy and precision; the last two are the model's own operations.
 const EXPORTS: [(&str, f64, Precision, bool); 4] = [
     ("cells 1e-9, double", 1e-9, Precision::Double, false),
     ("cells 1e-6, float", 1e-6, Precision::Float, false),
     ("operations, double", 1e-9, Precision::Double, true),
     ("operations, float", 1e-6, Precision::Float, true),
 ];
-/// A C compiler that is tried.
+/// The C compilers that are tried.
 const COMPILERS: [&str; 3] = ["cc", "gcc", "clang"];
 /// The program around the code.
 const DRIVER: &str = include_str!("exported_code.c");
@@ -28,17 +28,17 @@ const DRIVER: &str = include_str!("exported_code.c");
 /// The exported code of one accuracy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportedCode {
-    /// What it is.
+    /// Its name.
     pub name: &'static str,
     /// The largest error of its coefficients, relative to the largest value of each.
     pub coefficients: f64,
-    /// The errors of a motion of steps of a millisecond, with exact reactions.
+    /// The errors of a motion with steps of 1 ms, with exact reactions.
     pub errors: Errors,
-    /// The times of a call of all coefficients and of a step, in the mean and at worst, in units of one exact evaluation.
+    /// The mean and the largest time of a call of all coefficients and of a step, in units of one exact evaluation.
     pub times: [[f64; 2]; 2],
 }
 
-/// All exports of a motion; where there are none, why.
+/// All exports of a motion, or the reason why there are none.
 pub(super) fn exported_code<S: StudiedScene>(
     reference: &mut ReferenceSolution<'_, S>,
     exact: &dyn Evaluator,
@@ -115,12 +115,12 @@ struct Scratch(PathBuf);
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        // What is left behind is in the system's folder of temporary files.
+        // If this fails, the files remain in the system's temporary folder.
         _ = std::fs::remove_dir_all(&self.0);
     }
 }
 
-/// The states at the subject's times, and the times of a call, s: of all coefficients and of a step, in the mean and at worst.
+/// The states at the subject's times, and the mean and largest times of a call, s: of all coefficients and of a step.
 type Ran = (Vec<Vec<f64>>, [[f64; 2]; 2]);
 
 fn run<S: StudiedScene>(
@@ -156,11 +156,14 @@ fn run<S: StudiedScene>(
 }
 
 fn output(command: &mut Command, folder: &Path) -> Result<String, String> {
-    let output = command.current_dir(folder).output();
-    let output = output.map_err(|e| e.to_string())?;
-    match output.status.success() {
-        true => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
-        false => Err(String::from_utf8_lossy(&output.stderr).into_owned()),
+    let output = command
+        .current_dir(folder)
+        .output()
+        .map_err(|e| e.to_string())?;
+    if output.status.success() {
+        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    } else {
+        Err(String::from_utf8_lossy(&output.stderr).into_owned())
     }
 }
 
@@ -168,13 +171,15 @@ fn output(command: &mut Command, folder: &Path) -> Result<String, String> {
 fn driver<S: StudiedScene>(export: &Export, subject: &Subject<S>) -> String {
     let names = Identifiers::new(&export.machine);
     let times: Vec<String> = subject.times.iter().map(|t| format!("{t:e}")).collect();
-    let coefficients = match export.machine.reactions.is_empty() {
-        true => "@p@_motion_terms_at(state.q, &motion)",
-        false => "@p@_coefficients(state.q, &motion, &reactions)",
+    let coefficients = if export.machine.reactions.is_empty() {
+        "@p@_motion_terms_at(state.q, &motion)"
+    } else {
+        "@p@_coefficients(state.q, &motion, &reactions)"
     };
-    let reactions = match export.machine.reactions.is_empty() {
-        true => "",
-        false => "static @p@_reaction_terms reactions;",
+    let reactions = if export.machine.reactions.is_empty() {
+        ""
+    } else {
+        "static @p@_reaction_terms reactions;"
     };
     let state = subject.reduced_state();
     DRIVER

@@ -13,9 +13,9 @@ use dwell_study::ranges::extent;
 
 /// Margin at the outermost errors, as a factor.
 const AXIS_MARGIN: f64 = 4.0;
-/// A larger error is not drawn: the motion is another one.
+/// Larger errors are not drawn: the motion is a different one.
 const MAX_ERROR: f64 = 10.0;
-/// How far apart in powers of ten the points of a front are whose names are written, and of one among many marks.
+/// Smallest distance, in powers of ten, of the labelled points of a front.
 const MIN_LABEL_GAP: f64 = 1.6;
 const MIN_LABEL_GAP_CROWDED: f64 = 3.0;
 
@@ -23,11 +23,10 @@ const MIN_LABEL_GAP_CROWDED: f64 = 3.0;
 pub(super) fn figure(scene: &SceneFile, found: &WorkPrecision, name: &str) -> Figure {
     let tables =
         |p: &CombinationResult| matches!(p.combination.evaluation, Evaluation::Table { .. });
-    let hollow = match found.points.iter().any(tables) {
-        true => {
-            "; hollow: tables, without their build time; dashed: build time of the finest table"
-        }
-        false => "",
+    let hollow = if found.points.iter().any(tables) {
+        "; hollow: tables, without their build time; dashed: build time of the finest table"
+    } else {
+        ""
     };
     let reference_error = found.reference.error;
     let text = format!(
@@ -49,8 +48,8 @@ pub(super) fn figure(scene: &SceneFile, found: &WorkPrecision, name: &str) -> Fi
         (ErrorQuantity::Coordinate, CostMeasure::Time),
         (ErrorQuantity::Energy, CostMeasure::Evaluations),
         (ErrorQuantity::Reaction, CostMeasure::Evaluations),
-    ];
-    let panels = panels.map(|(quantity, measure)| panel(found, quantity, measure));
+    ]
+    .map(|(quantity, measure)| panel(found, quantity, measure));
     let panels = panels.into_iter().chain([requested(found)]);
     let (title, provenance) = (
         "Work–precision diagram",
@@ -66,8 +65,11 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
     let at = |point: &CombinationResult| -> [f64; 2] {
         [found.error_bound(point, quantity), point.cost.of(measure)]
     };
-    let front = found.pareto_front(quantity, measure).into_iter();
-    let front: Vec<&CombinationResult> = front.map(|k| &found.points[k]).collect();
+    let front: Vec<&CombinationResult> = found
+        .pareto_front(quantity, measure)
+        .into_iter()
+        .map(|k| &found.points[k])
+        .collect();
     let line = front.iter().map(|point| at(point)).collect();
     let mut series = vec![Series::line("", line).color(Paint::Grey)];
     series.extend(method_series(found, measure, &at));
@@ -95,9 +97,10 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
             "build time of the finest table",
         ));
     }
-    let (label_gap, cost) = match measure == CostMeasure::Evaluations {
-        true => (MIN_LABEL_GAP, "evaluations"),
-        false => (MIN_LABEL_GAP_CROWDED, "time / one exact evaluation"),
+    let (label_gap, cost) = if measure == CostMeasure::Evaluations {
+        (MIN_LABEL_GAP, "evaluations")
+    } else {
+        (MIN_LABEL_GAP_CROWDED, "time / one exact evaluation")
     };
     marks.extend(named_points(&front, label_gap, &at));
     let coordinate = "largest error of the free coordinates";
@@ -119,7 +122,7 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
     })
 }
 
-/// What is requested, and its cost.
+/// The cost of the requested results.
 fn requested(found: &WorkPrecision) -> Panel {
     let of = &found.requested;
     let line = Series::line("", of.by_reactions.clone()).stroke(Stroke::LineAndPoints);
@@ -135,16 +138,20 @@ fn requested(found: &WorkPrecision) -> Panel {
     Panel::from(chart(title, x, y, curves.collect()))
 }
 
-/// The command by its accuracies and the exported code by its steps of a millisecond, over the error of the coordinate.
+/// The command at its accuracies and the exported code with steps of 1 ms, over the error of the coordinate.
 fn commands(found: &WorkPrecision) -> [Series; 2] {
     let (unit, floor) = (found.evaluation_time, found.reference.error.coordinate);
-    let commands = found.commands.iter();
-    let commands = commands.map(|of| [of.errors.coordinate.max(floor), of.computing / unit]);
+    let commands = found
+        .commands
+        .iter()
+        .map(|of| [of.errors.coordinate.max(floor), of.computing / unit]);
     let steps = found
         .fixed_step
         .map_or(f64::NAN, |fixed| fixed.steps as f64);
-    let codes = found.exported_code.iter();
-    let codes = codes.map(|code| [code.errors.coordinate.max(floor), steps * code.times[1][0]]);
+    let codes = found
+        .exported_code
+        .iter()
+        .map(|code| [code.errors.coordinate.max(floor), steps * code.times[1][0]]);
     [
         Series::line("simulate --accuracy", commands.collect())
             .stroke(Stroke::LineAndPoints)
@@ -174,7 +181,7 @@ fn method_series(
         let paint = Paint::Palette(i);
         let exact = Series::line(method.name(), of(&|e| e == Evaluation::Exact));
         series.push(exact.stroke(Stroke::LineAndPoints).color(paint));
-        // Counted, the others equal the mechanism itself.
+        // The numbers of evaluations of the others equal those of the mechanism itself.
         if measure != CostMeasure::Evaluations {
             let tables = Series::line("", of(&|e| matches!(e, Evaluation::Table { .. })));
             let single = Series::line("", of(&|e| e == Evaluation::SinglePrecision));
@@ -185,7 +192,7 @@ fn method_series(
     series
 }
 
-/// The axis of the errors, from below the floor to the largest that is one.
+/// The axis of the errors, from below the error of the reference to the largest error drawn.
 fn error_axis(found: &WorkPrecision, quantity: ErrorQuantity, label: &str) -> Axis {
     let all = found.points.iter().map(|p| found.error_bound(p, quantity));
     let [min, max] = extent(all.filter(|e| e.is_finite() && *e > 0.0));
@@ -194,9 +201,10 @@ fn error_axis(found: &WorkPrecision, quantity: ErrorQuantity, label: &str) -> Ax
         ErrorQuantity::Coordinate => found.unit,
         ErrorQuantity::Energy | ErrorQuantity::Reaction => "",
     };
-    match min < max {
-        true => Axis::log(label, unit).with_range(min / AXIS_MARGIN, max * AXIS_MARGIN),
-        false => Axis::log(label, unit),
+    if min < max {
+        Axis::log(label, unit).with_range(min / AXIS_MARGIN, max * AXIS_MARGIN)
+    } else {
+        Axis::log(label, unit)
     }
 }
 

@@ -1,5 +1,5 @@
-//! The motion by the classical Runge–Kutta method of fourth order with a fixed step, as it is often programmed: what it
-//! misses beside methods that choose their steps.
+//! The motion by the classical Runge–Kutta method of fourth order with a fixed step, as it is often programmed, for
+//! comparison with methods with step control.
 
 use super::combination::Errors;
 use super::evaluator::Evaluator;
@@ -11,7 +11,7 @@ use std::time::Instant;
 
 /// The step, s.
 pub(super) const STEP: f64 = 1e-3;
-/// A motion of more steps is left out.
+/// Maximum number of steps; longer motions are omitted.
 const MAX_STEPS: f64 = 1e6;
 
 /// A motion by fixed steps.
@@ -25,7 +25,7 @@ pub struct FixedStep {
     pub errors: Errors,
 }
 
-/// Integrates the motion by fixed steps; to the subject's times between them by a part of one.
+/// Integrates the motion by fixed steps; the subject's times between them are reached by partial steps.
 pub(super) fn fixed_step<S: StudiedScene>(
     reference: &mut ReferenceSolution<'_, S>,
     evaluator: &dyn Evaluator,

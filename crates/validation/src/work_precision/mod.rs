@@ -1,4 +1,4 @@
-//! `dwell work-precision`: what accuracy costs. Every combination of evaluation, integrator and tolerance is run on
+//! `dwell work-precision`: the cost of accuracy. Every combination of evaluation, integrator and tolerance computes
 //! the motion of a scene; its true error is compared with its cost.
 
 mod combination;
@@ -44,11 +44,11 @@ use run::{Run, ToleranceSeries};
 use std::time::Instant;
 use subject::Subject;
 
-/// What a table of a limited range covers beyond the motion, as a part of the motion's range.
+/// Margin of a table of a limited range beyond the motion, relative to the motion's range.
 const TABLE_MARGIN: f64 = 0.05;
-/// A run of so many evaluations is timed only once.
+/// Runs with more evaluations are timed only once.
 const MAX_REPEATED_EVALUATIONS: usize = 30_000;
-/// Passes in which an evaluation is timed.
+/// Number of passes in which an evaluation is timed.
 const TIMING_PASSES: usize = 20;
 
 /// The full study of a scene: `NAME-work-precision.md`, `.csv`, `.npz` and `.png`.
@@ -85,11 +85,11 @@ fn outcome<S: StudiedScene>(scene: &S, progress: Progress<'_>) -> Result<Outcome
     Ok(outcome)
 }
 
-/// What each combination costs on the motion of a scene, and its true error: that of `[motion]`, or a free
-/// motion from the assembly, for three periods or revolutions at most.
+/// Cost and true error of each combination on the motion of a scene: that of `[motion]`, or a free
+/// motion from the assembly, for at most three periods or revolutions.
 ///
 /// # Errors
-/// [`StudyError::Scene`] when the scene cannot be put together, nothing in it is free or moves, or no two methods
+/// [`StudyError::Scene`] if the scene cannot be assembled, nothing in it is free or moves, or no two methods
 /// reach the end of its motion.
 pub fn measure<S: StudiedScene>(
     scene: &S,
@@ -99,14 +99,14 @@ pub fn measure<S: StudiedScene>(
     measure_with(scene, effort, &|_| Vec::new(), progress)
 }
 
-/// Further evaluators, made of the reduced model of a motion of one freedom without loads.
+/// Further evaluators, built from the reduced model of a motion of one degree of freedom without loads.
 pub type ExtraEvaluators<'m, M> = &'m dyn Fn(&ExactModel<M>) -> Vec<Box<dyn Evaluator>>;
 
 /// [`measure`] with further evaluators.
 ///
 /// # Errors
 /// As [`measure`].
-// Long because it is the study from its subject to all its results.
+// Long, because it is the whole study from its subject to its results.
 pub fn measure_with<S: StudiedScene>(
     scene: &S,
     effort: &Effort,
@@ -150,9 +150,10 @@ pub fn measure_with<S: StudiedScene>(
     let fixed_step = fixed_step::fixed_step(&mut reference, exact, &subject, evaluation_time);
     let fixed_step =
         fixed_step.map_err(|e| omitted.push(format!("fixed step: {}", run::reason(&e))));
-    let exported_code = match effort.exported_code {
-        true => exported_code::exported_code(&mut reference, exact, &subject, evaluation_time),
-        false => Ok(Vec::new()),
+    let exported_code = if effort.exported_code {
+        exported_code::exported_code(&mut reference, exact, &subject, evaluation_time)
+    } else {
+        Ok(Vec::new())
     };
     let exported_code = exported_code.map_err(|e| omitted.push(format!("exported code: {e}")));
     Ok(WorkPrecision {
@@ -172,7 +173,7 @@ pub fn measure_with<S: StudiedScene>(
     })
 }
 
-/// Errors and costs of all runs. A run that left the range of an evaluator or of the mechanism has no error.
+/// Errors and costs of all runs. A run that leaves the range of an evaluator or of the mechanism has no error.
 fn results<S: StudiedScene>(
     reference: &mut ReferenceSolution<'_, S>,
     trials: Vec<Trial<'_>>,
@@ -227,7 +228,7 @@ fn collect_trials<'e, S: StudiedScene>(
     }
 }
 
-/// All evaluators of the motion, the exact one first. A new one is a line here.
+/// All evaluators of the motion, the exact one first. New evaluators are added here.
 fn evaluators<'s, S: StudiedScene>(
     subject: &'s Subject<S>,
     effort: &Effort,
@@ -285,10 +286,10 @@ fn evaluators<'s, S: StudiedScene>(
     all
 }
 
-/// A table, or why there is none of this accuracy.
+/// A table, or the reason why there is none with this accuracy.
 type TableResult<'s> = Result<Box<dyn Evaluator + 's>, TabulationError>;
 
-/// The reduced model, or else the machine, on a table; none where such a machine has no tables.
+/// The reduced model, or otherwise the machine, on a table; `None` if such machines have no tables.
 fn table_evaluator<S: StudiedScene>(
     subject: &Subject<S>,
     accuracy: f64,
@@ -350,7 +351,7 @@ fn cost(evaluator: &dyn Evaluator, run: &Run, evaluation_time: f64) -> Cost {
 /// A combination with its evaluator and the best of its runs.
 type Trial<'e> = (&'e dyn Evaluator, Combination, Run);
 
-/// Runs everything again, one after the other, with the unit between them, and keeps the least times. Returns the unit:
+/// Repeats all runs one after another, measures the unit between them, and keeps the minimum times. Returns the unit:
 /// the time of one evaluation and of one Jacobian, s.
 fn time_runs<S: StudiedScene>(
     subject: &Subject<S>,
@@ -373,7 +374,7 @@ fn time_runs<S: StudiedScene>(
             }
             let rerun = match combination.integrator {
                 Integrator::Steps(method, tolerance) => {
-                    run::solve(*evaluator, subject, (method, tolerance), usize::MAX).ok()
+                    run::solve(*evaluator, subject, method, tolerance, usize::MAX).ok()
                 }
                 Integrator::Quadrature => run::quadrature(*evaluator, subject),
             };
@@ -387,7 +388,7 @@ fn time_runs<S: StudiedScene>(
     Ok(unit_times)
 }
 
-/// Evaluates at every state of the reference: none depends on another, but each is at another position.
+/// Times evaluations at every state of the reference, which are independent and at different positions.
 fn update_unit_times<S: StudiedScene>(
     [evaluation, jacobian]: &mut [f64; 2],
     subject: &Subject<S>,
@@ -414,7 +415,7 @@ fn update_unit_times<S: StudiedScene>(
     Ok(())
 }
 
-/// Why there is no reference: no two methods reach the end.
+/// The error if there is no reference, because no two methods reach the end.
 fn no_reference_error<S: StudiedScene>(
     subject: &Subject<S>,
     error: &DynamicsError,

@@ -1,8 +1,8 @@
 //! The reference of the errors, and its own error.
 //!
-//! Of a conservative motion of one degree of freedom it is the quadrature, which uses no integrator; its error is the
-//! change under a rounding of the start. Of all others it is the method that changes least from one tolerance
-//! to the next, at its finest; its error is the difference from the second best method.
+//! For a conservative motion of one degree of freedom it is the quadrature, which uses no integrator; its error is the
+//! change caused by rounding of the initial state. For other motions it is the method that changes least from one tolerance
+//! to the next, at its finest tolerance; its error is the difference from the second best method.
 
 use super::combination::{Effort, Errors, ReferenceInfo};
 use super::evaluator::{Evaluator, ReactionFn};
@@ -12,16 +12,16 @@ use super::subject::Subject;
 use dwell_dynamics::{DynamicsError, MachineWorkspace, OdeState, Orbit};
 use dwell_kinetostatics::MachineModel as _;
 
-/// Below this no integrator keeps a tolerance in double precision.
+/// Smallest tolerance that an integrator can keep in double precision.
 const MIN_TOLERANCE: f64 = 1e-14;
-/// Steps that a reference may take, in those of any other run.
+/// Maximum number of steps of a reference, relative to that of other runs.
 const STEP_FACTOR: usize = 3;
-/// Roundings of a start, relative.
+/// Relative rounding error of the initial state.
 const START_ROUNDING: f64 = 2.0 * f64::EPSILON;
-/// Roundings of a result, relative: of sums of energies and forces, and of a phase that Newton's method finds.
+/// Relative rounding error of a result: of sums of energies and forces, and of a phase computed by Newton's method.
 const RESULT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// A part of the largest reaction, at the size of the mechanism, that is rounding.
+/// Fraction of the largest reaction, at the size of the mechanism, below which a reaction is a rounding error.
 const ZERO: f64 = 1e-12;
 
 /// The reference with its values.
@@ -31,27 +31,27 @@ pub(super) struct ReferenceSolution<'s, S: StudiedScene> {
     pub(super) info: ReferenceInfo,
     pub(super) states: Vec<Vec<f64>>,
     reactions: Vec<Vec<f64>>,
-    /// By reaction: the largest of its unit.
+    /// By reaction: the largest reaction of its unit.
     scales: Vec<f64>,
     /// The largest kinetic energy, J, and the energy at the start.
     max_kinetic_energy: f64,
     initial_energy: f64,
 }
 
-/// A motion with its method, and others that show its error.
+/// A motion with its method, and motions for its error.
 struct Candidate {
     method: String,
     states: Vec<Vec<f64>>,
     comparisons: Vec<Vec<Vec<f64>>>,
-    /// What these do not show, rad or m.
+    /// Error that these do not show, rad or m.
     extra_error: f64,
 }
 
 impl<'s, S: StudiedScene> ReferenceSolution<'s, S> {
-    /// Finds the reference; `all_series` are the runs of the mechanism itself by each method.
+    /// Computes the reference; `all_series` are the runs of the mechanism itself by each method.
     ///
     /// # Errors
-    /// [`DynamicsError`] where there are no two runs to be compared, or a state cannot be evaluated.
+    /// [`DynamicsError`] if there are no two runs to compare, or a state cannot be evaluated.
     pub(super) fn new(
         subject: &'s Subject<S>,
         exact: &dyn Evaluator,
@@ -114,7 +114,7 @@ impl<'s, S: StudiedScene> ReferenceSolution<'s, S> {
             values.fold(0.0_f64, |max, value| max.max(value.abs()))
         };
         self.scales = (0..count).map(of_unit).collect();
-        // Where all moments, or all forces, are zero but for rounding, there is nothing to compare.
+        // If all moments, or all forces, are zero within rounding, they are not compared.
         let size = self.subject.machine.model().size();
         let levers: Vec<f64> = (0..count)
             .map(|k| if unit(k) == "N" { 1.0 } else { 1.0 / size })
@@ -166,7 +166,7 @@ impl<'s, S: StudiedScene> ReferenceSolution<'s, S> {
     }
 }
 
-/// The larger one; not a number stays so.
+/// The larger number; NaN remains NaN.
 fn nan_max(max: f64, value: f64) -> f64 {
     if value > max || value.is_nan() {
         value
@@ -175,7 +175,7 @@ fn nan_max(max: f64, value: f64) -> f64 {
     }
 }
 
-/// How far two motions are apart in the free coordinates, rad or m.
+/// The largest difference of two motions in the free coordinates, rad or m.
 fn difference<S: StudiedScene>(subject: &Subject<S>, one: &[Vec<f64>], other: &[Vec<f64>]) -> f64 {
     let free = subject.machine.free().len();
     let mut max = 0.0;
@@ -193,7 +193,7 @@ fn from_quadrature<S: StudiedScene>(subject: &Subject<S>, orbit: &Orbit) -> Opti
     for sign in [-1.0, 1.0] {
         let mut perturbed = state;
         perturbed.q_dot *= 1.0 + sign * START_ROUNDING;
-        // At rest it is the coordinate that counts.
+        // At rest the coordinate is decisive.
         if state.q_dot == 0.0 {
             perturbed.q += sign * START_ROUNDING * (1.0 + state.q.abs());
         }
@@ -230,12 +230,11 @@ fn from_integrators<S: StudiedScene>(
         };
         let finer_tolerance = (0.1 * fine).max(MIN_TOLERANCE);
         let max_steps = STEP_FACTOR * effort.max_steps;
-        let at = (series.method, finer_tolerance);
-        // A series that the number of steps stopped before the last tolerance is not the best.
+        let solve_finer = || solve(exact, subject, series.method, finer_tolerance, max_steps).ok();
+        // A series that the step limit stopped before the last tolerance is not eligible.
         let complete = finest == Some(*fine) && series.predicted_steps() < max_steps as f64;
-        let finer = (complete && finer_tolerance < 0.5 * fine)
-            .then(|| solve(exact, subject, at, max_steps).ok());
-        // A change over two decades is a change over one, and more.
+        let finer = (complete && finer_tolerance < 0.5 * fine).then(solve_finer);
+        // A change over two decades bounds that over one.
         let (tolerance, before, states) = match finer.flatten() {
             Some(finer) => (finer_tolerance, &last.states, finer.states),
             None => (*fine, &before.states, last.states.clone()),

@@ -114,7 +114,7 @@ fn quantity_name(quantity: ErrorQuantity) -> &'static str {
     }
 }
 
-/// A point in the cells of a front's table.
+/// The table cells of a point of a front.
 fn cells(found: &WorkPrecision, result: &CombinationResult) -> Vec<String> {
     let mut cells = vec![
         result.combination.name(),
@@ -261,7 +261,7 @@ fn quadrature(found: &WorkPrecision) -> String {
     }
 }
 
-/// What a fixed step comes to.
+/// The result of fixed steps, in words.
 fn fixed_step(found: &WorkPrecision) -> Option<String> {
     let fixed = found.fixed_step?;
     let [coordinate, energy, reaction] =
@@ -320,7 +320,7 @@ pub(super) fn exported_code_blocks(found: &WorkPrecision) -> Vec<Block> {
     ]
 }
 
-/// What to type for each accuracy, as lines of the summary.
+/// The command for each accuracy, as lines of the summary.
 pub(super) fn command_summary(scene: &SceneFile, found: &WorkPrecision) -> String {
     let line = |of: &CommandRun| {
         let accuracy = format!("{:.0e}", of.preset.1);
@@ -328,9 +328,10 @@ pub(super) fn command_summary(scene: &SceneFile, found: &WorkPrecision) -> Strin
         if !of.is_reached {
             return format!("  for {accuracy}: not reached; measured {errors}\n");
         }
-        let kept = match of.keeps_accuracy(&found.reference.error) {
-            true => "measured",
-            false => "NOT KEPT:",
+        let kept = if of.keeps_accuracy(&found.reference.error) {
+            "measured"
+        } else {
+            "NOT KEPT:"
         };
         let whole = of.whole.map_or_else(String::new, |whole| {
             let [files, pictures] = whole.map(|s| digits(1e3 * s, 2));
@@ -353,7 +354,7 @@ fn errors_text(found: &WorkPrecision, of: &CommandRun) -> String {
     format!("{coordinate} {}, {energy}, {reaction}", found.unit)
 }
 
-/// What to type for each accuracy, as a part of the document.
+/// The command for each accuracy, as a part of the document.
 pub(super) fn command_blocks(found: &WorkPrecision) -> [Block; 3] {
     let columns: [TextColumn<&CommandRun>; 9] = [
         ("to type", |of| {

@@ -1,4 +1,4 @@
-//! What an evaluation costs against what is requested of it: no reaction, one, half of them, all; and without what is idle.
+//! The cost of an evaluation by the requested results: no reaction, one, half of them, all; and without idle groups.
 
 use super::studied_scene::StudiedScene;
 use super::subject::Subject;
@@ -7,20 +7,20 @@ use dwell_study::StudyError;
 use dwell_study::number_format::digits;
 use std::time::Instant;
 
-/// Passes over the states, of which the least time counts.
+/// Number of passes over the states; the minimum time counts.
 const PASSES: usize = 20;
 
-/// Times of evaluations, each in units of one without reactions.
+/// Times of evaluations, in units of one without reactions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RequestedCosts {
-    /// By number of requested reactions.
+    /// Number of requested reactions, and time.
     pub by_reactions: Vec<[f64; 2]>,
-    /// How many groups nothing needs, and the time without them.
+    /// Number of idle groups, and the time without them.
     pub without_idle: (usize, f64),
 }
 
 impl RequestedCosts {
-    /// What is idle, as a sentence; empty where nothing is.
+    /// The idle groups in a sentence; empty if there are none.
     pub(super) fn idle_text(&self) -> String {
         match self.without_idle {
             (0, _) => String::new(),
@@ -32,7 +32,7 @@ impl RequestedCosts {
     }
 }
 
-/// What evaluations of the states of a motion cost.
+/// The costs of evaluations at the states of a motion.
 pub(super) fn requested_costs<S: StudiedScene>(
     subject: &Subject<S>,
     states: &[Vec<f64>],
@@ -43,7 +43,7 @@ pub(super) fn requested_costs<S: StudiedScene>(
     counts.sort_unstable();
     counts.dedup();
     let time = |machine: &Machine<S::Model>, count: usize| {
-        evaluation_time_of((subject, states), machine, count > 0)
+        evaluation_time_of(subject, states, machine, count > 0)
     };
     let one = |count: usize| {
         let machine = subject.scene.machine(&all[..count])?;
@@ -60,9 +60,10 @@ pub(super) fn requested_costs<S: StudiedScene>(
     })
 }
 
-/// The least time of an evaluation, s, perhaps with reactions.
+/// The minimum time of an evaluation, s, with or without reactions.
 fn evaluation_time_of<S: StudiedScene>(
-    (subject, states): (&Subject<S>, &[Vec<f64>]),
+    subject: &Subject<S>,
+    states: &[Vec<f64>],
     machine: &Machine<S::Model>,
     has_reactions: bool,
 ) -> Result<f64, StudyError> {

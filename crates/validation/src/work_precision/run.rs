@@ -1,4 +1,4 @@
-//! One combination after another.
+//! Runs of combinations.
 
 use super::combination::Effort;
 use super::evaluator::Evaluator;
@@ -11,11 +11,11 @@ use dwell_dynamics::{
 use dwell_geometry::PositionError;
 use std::time::Instant;
 
-/// Other evaluators than the exact one may take so many times its steps: their values are not
+/// Evaluators other than the exact one may take this multiple of its steps: their values are not
 /// smooth below their accuracy, where an integrator would not end.
 const NON_SMOOTH_STEP_FACTOR: usize = 3;
 const EXTRA_STEPS: usize = 200;
-/// A tolerance so far below the accuracy of an evaluation gains nothing.
+/// Smallest useful ratio of a tolerance to the accuracy of an evaluation.
 const MIN_TOLERANCE_RATIO: f64 = 1e-2;
 
 /// The states at the subject's times, and their cost.
@@ -31,7 +31,7 @@ pub(super) struct Run {
 pub(super) struct ToleranceSeries {
     pub(super) method: Method,
     pub(super) runs: Vec<(f64, Run)>,
-    /// What was omitted, and why.
+    /// The omitted runs, with the reason.
     pub(super) omitted: Vec<String>,
 }
 
@@ -39,7 +39,8 @@ pub(super) struct ToleranceSeries {
 pub(super) fn solve<S: StudiedScene>(
     evaluator: &dyn Evaluator,
     subject: &Subject<S>,
-    (method, tolerance): (Method, f64),
+    method: Method,
+    tolerance: f64,
     max_steps: usize,
 ) -> Result<Run, DynamicsError> {
     let options = Options {
@@ -73,7 +74,7 @@ pub(super) fn solve<S: StudiedScene>(
     }
 }
 
-/// Why a run is left out. A coordinate that is no number is not printed as one.
+/// The reason for an omitted run. A NaN coordinate is not printed.
 pub(super) fn reason(error: &DynamicsError) -> String {
     match error {
         DynamicsError::Position(PositionError::NotFinite) => {
@@ -134,7 +135,7 @@ impl ToleranceSeries {
             }
             let (max_steps, non_smooth_text) = match exact.map(|exact| exact.run_at(tolerance)) {
                 None => (effort.max_steps, ""),
-                // The reason is that of the mechanism itself.
+                // The reason is the same as for the mechanism itself.
                 Some(None) => continue,
                 Some(Some(run)) => (
                     NON_SMOOTH_STEP_FACTOR * run.statistics.steps + EXTRA_STEPS,
@@ -147,7 +148,7 @@ impl ToleranceSeries {
                 series.omitted.push(too_many_steps());
                 break;
             }
-            match solve(evaluator, subject, (method, tolerance), max_steps) {
+            match solve(evaluator, subject, method, tolerance, max_steps) {
                 Ok(run) => series.runs.push((tolerance, run)),
                 Err(DynamicsError::MaxStepsReached { .. }) => {
                     series.omitted.push(too_many_steps());
@@ -159,7 +160,7 @@ impl ToleranceSeries {
         series
     }
 
-    /// The steps that the next tolerance will take, if they go on growing as they have grown.
+    /// The predicted number of steps at the next tolerance, by extrapolation.
     pub(super) fn predicted_steps(&self) -> f64 {
         let steps = |(_, run): &(f64, Run)| run.statistics.steps as f64;
         match self.runs.as_slice() {

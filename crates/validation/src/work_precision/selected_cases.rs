@@ -1,4 +1,4 @@
-//! The study as a part of the reports: three cases, and a text that every machine reproduces.
+//! The study in the reports of `dwell validate`: three cases, and a reproducible text.
 
 use super::combination::{
     CostMeasure, Effort, ErrorQuantity, Evaluation, Integrator, WorkPrecision,
@@ -13,15 +13,15 @@ use dwell_study::{Outcome, no_progress};
 use rayon::prelude::*;
 use std::fmt::Write as _;
 
-/// A short rotation, a motion with a dwell, and one under friction that a motor drives.
+/// A short rotation, a motion with a dwell, and a motor-driven one with friction.
 const SELECTED_CASES: [&str; 3] = ["crank-rocker", "single-dwell", "slider-crank-friction"];
-/// The finest tolerance of the text: below it rounding has a say in the steps that are taken.
+/// The finest tolerance of the text: below it, rounding affects the number of steps.
 const FINEST_PRINTED_TOLERANCE: f64 = 0.9e-9;
 /// Accuracies of the text.
 const ACCURACIES: [f64; 3] = [1e-3, 1e-6, 1e-9];
 
 /// The brief study of the selected cases among some scenes: `work-precision/NAME.png` and `.md`,
-/// and `work-precision.txt`, which holds counts and errors and no times.
+/// and `work-precision.txt`, with counts and errors but without times.
 ///
 /// # Errors
 /// As [`measure`].
@@ -37,7 +37,7 @@ pub fn selected_case_reports(scenes: &[&PlaneScene]) -> Result<Outcome, StudyErr
         let picture = Picture::figure(scene, path, true, figure);
         let document = report::document(scene, &found, name);
         files.add_document(&format!("work-precision/{name}"), &document);
-        // Under dry friction the last bit of a sine decides which steps are rejected: not reproducible.
+        // With dry friction the last bit of a sine can decide which steps are rejected, so the counts are not reproducible.
         let text = found.quadrature().map(|_| snapshot(scene, &found));
         Ok((files, picture, text.unwrap_or_default()))
     };
@@ -57,7 +57,7 @@ pub fn selected_case_reports(scenes: &[&PlaneScene]) -> Result<Outcome, StudyErr
     Ok(outcome)
 }
 
-/// Counts to two digits and errors to powers of ten, where they do not depend on rounding.
+/// Counts to two digits and errors to powers of ten, if they do not depend on rounding.
 fn snapshot(scene: &PlaneScene, found: &WorkPrecision) -> String {
     let mut text = format!(
         "\n{}, t = 0 to {} s, against quadrature: evaluations, and errors of coordinate ({}), energy and worst reaction\n",
@@ -98,7 +98,7 @@ fn snapshot(scene: &PlaneScene, found: &WorkPrecision) -> String {
 /// An error as the nearest power of ten.
 fn nearest_power(error: f64) -> String {
     if error > 0.0 && error.is_finite() {
-        // As a whole number, for there is no power of −0.
+        // As an integer, to avoid −0.
         format!("1e{}", error.log10().round() as i32)
     } else {
         "–".to_owned()

@@ -1,4 +1,4 @@
-//! What the study needs of a scene beyond its machine, in the plane or in space.
+//! The interface of the study to scenes in the plane and in space.
 
 use crate::cases::reference::Reference;
 use crate::checked::free_motion_setup::FreeMotionSetup;
@@ -22,28 +22,28 @@ use dwell_study::{
 use std::f64::consts::TAU;
 use std::num::NonZeroUsize;
 
-/// How near to a limit position a motion is studied, as a part of the range.
+/// Smallest distance of a studied motion from a limit position, relative to the range.
 const NEAR_LIMIT: f64 = 0.02;
 
-/// A motion before it is bounded.
+/// A motion before its duration is bounded.
 #[derive(Debug)]
 pub struct PreliminaryRun {
     /// The steps in its own coordinate.
     pub(super) steps: Vec<OdeState>,
-    /// Whether it stays in that.
+    /// Whether it stays in this coordinate.
     pub(super) has_one_chart: bool,
-    /// Why it ended early.
+    /// The reason if it ended early.
     pub(super) failure: Option<DynamicsError>,
 }
 
-/// A motion as the command computes it.
+/// A motion computed by the command.
 #[derive(Debug)]
 pub struct CommandedMotion {
-    /// By which method.
+    /// Its method.
     pub(super) method: String,
-    /// The error that it states.
+    /// Its stated error.
     pub(super) estimated_error: Option<f64>,
-    /// Whether it goes to its end within the accuracy.
+    /// Whether it reaches its end within the accuracy.
     pub(super) is_reached: bool,
     /// Its rows.
     pub(super) table: Table,
@@ -53,7 +53,7 @@ impl CommandedMotion {
     /// Computes a motion without files, as `dwell simulate --accuracy` does.
     ///
     /// # Errors
-    /// [`StudyError`] where the motion cannot be computed.
+    /// [`StudyError`] if the motion cannot be computed.
     pub(super) fn new<S: StudyScene>(scene: &S, accuracy: f64) -> Result<Self, StudyError> {
         let solver = MotionSolver::Accuracy {
             accuracy,
@@ -75,31 +75,31 @@ pub trait StudiedScene: StudyScene {
     /// The scene with a motion: its own, or a free motion from the assembly.
     ///
     /// # Errors
-    /// [`StudyError::Scene`] when the mechanism cannot be put together.
+    /// [`StudyError::Scene`] if the mechanism cannot be assembled.
     fn with_free_motion(&self) -> Result<Self, StudyError>;
 
-    /// The reactions that are compared: all that the loads determine.
+    /// The compared reactions: all that equilibrium determines.
     ///
     /// # Errors
-    /// [`StudyError::Scene`] where the mechanism has no pose.
+    /// [`StudyError::Scene`] if the mechanism has no pose.
     fn compared_reactions(&self, model: &Self::Model) -> Result<Vec<Self::Reaction>, StudyError>;
 
     /// The duration of its motion, s.
     ///
     /// # Errors
-    /// [`StudyError::Scene`] where it follows from a period that is not known.
+    /// [`StudyError::Scene`] if it follows from an unknown period.
     fn duration(&self) -> Result<f64, StudyError>;
 
-    /// Its machine without the groups that nothing needs, and how many these are: in space all are evaluated.
+    /// Its machine without idle groups, and their number; in space all groups are evaluated.
     ///
     /// # Errors
-    /// [`StudyError`] where the scene cannot be put together.
+    /// [`StudyError`] if the scene cannot be assembled.
     fn pruned_machine(&self) -> Result<(Machine<Self::Model>, usize), StudyError>;
 
     /// Integrates the motion once.
     ///
     /// # Errors
-    /// [`StudyError`] where not even the start can be evaluated.
+    /// [`StudyError`] if the initial state cannot be evaluated.
     fn preliminary_run(
         &self,
         machine: &Machine<Self::Model>,
@@ -108,18 +108,18 @@ pub trait StudiedScene: StudyScene {
         options: &Options,
     ) -> Result<PreliminaryRun, StudyError>;
 
-    /// Its machine on a table; none where such machines have no tables.
+    /// Its machine on a table; `None` if such machines have no tables.
     fn tabulated(
         machine: &Machine<Self::Model>,
         accuracy: f64,
         domain: TableDomain,
     ) -> Option<Result<TabulatedMachine, TabulationError>>;
 
-    /// The same scene with a motion of another duration, s, and all coordinates and speeds in its table.
+    /// A copy of the scene with a motion of another duration, s, and all coordinates and speeds in its table.
     fn lasting(&self, duration: f64) -> Self;
 }
 
-/// The limit positions of the only coordinate of a scene in space, a little in front of each: there a motion in it ends.
+/// Events slightly before the limit positions of the only coordinate of a scene in space, which end a motion.
 fn range_ends(scene: &SpaceScene, machine: &Machine<SpaceModel>) -> Vec<Event<CoordinateFunction>> {
     let plan = machine.model().plan();
     let ([actuator], [0], Some((from, to))) = (
@@ -137,8 +137,8 @@ fn range_ends(scene: &SpaceScene, machine: &Machine<SpaceModel>) -> Vec<Event<Co
     let margin = NEAR_LIMIT * (to - from);
     let ends = [from + margin, to - margin]
         .into_iter()
-        .zip(plan.range_ends());
-    let ends = ends.filter(|(_, found)| *found);
+        .zip(plan.range_ends())
+        .filter(|(_, found)| *found);
     let event = |(q, _): (f64, bool)| Event {
         kind: EventKind::Reaches(coordinate, q),
         terminal: Some(NonZeroUsize::MIN),
@@ -146,7 +146,7 @@ fn range_ends(scene: &SpaceScene, machine: &Machine<SpaceModel>) -> Vec<Event<Co
     ends.map(event).collect()
 }
 
-/// The requested columns, with those of all coordinates and speeds; none: all columns.
+/// The requested columns with those of all coordinates and speeds; `None` for all columns.
 fn with_states(scene: &impl NamedScene, requested: Option<&[String]>) -> Option<Vec<String>> {
     let mut columns = requested?.to_vec();
     let names = (0..).map_while(|i| scene.actuator(i));
@@ -238,9 +238,10 @@ impl StudiedScene for SpaceScene {
         // From the assembly, at one rad/s or m/s of the first actuator: about a revolution, or over the size.
         let is_angle = self.actuator(0).is_none_or(|(_, is_angle)| is_angle);
         let machine = self.machine(&[])?;
-        let travel = match is_angle {
-            true => TAU,
-            false => dwell_kinetostatics::MachineModel::size(machine.model()),
+        let travel = if is_angle {
+            TAU
+        } else {
+            dwell_kinetostatics::MachineModel::size(machine.model())
         };
         let count = self.assembly.q.len();
         let mut velocities = vec![0.0; count];
@@ -256,7 +257,7 @@ impl StudiedScene for SpaceScene {
     }
 
     fn compared_reactions(&self, model: &Self::Model) -> Result<Vec<Self::Reaction>, StudyError> {
-        // All in the axes of the ground, those that a joint cannot transmit among them: they are zero.
+        // All components in the axes of the ground, including those that a joint cannot transmit, which are zero.
         let joints = 0..self.mechanism.joints.len();
         let of_joint = |j: usize| {
             (0..6).map(move |k| Self::Reaction {
@@ -293,8 +294,8 @@ impl StudiedScene for SpaceScene {
         options: &Options,
     ) -> Result<PreliminaryRun, StudyError> {
         let ends = range_ends(self, machine);
-        let solution = solve(machine, machine.model(), start, end, options, &ends);
-        let solution = solution.map_err(|e| self.explain(machine.model(), &e))?;
+        let solution = solve(machine, machine.model(), start, end, options, &ends)
+            .map_err(|e| self.explain(machine.model(), &e))?;
         Ok(PreliminaryRun {
             steps: solution.steps,
             has_one_chart: !solution.terminated_by_event,

@@ -1,4 +1,4 @@
-//! The motion that is studied: that of the scene, or a free motion from the assembly, bounded so that a study takes
+//! The studied motion: that of the scene, or a free motion from the assembly, bounded so that a study takes
 //! seconds.
 
 use super::studied_scene::{PreliminaryRun, StudiedScene};
@@ -14,33 +14,33 @@ use dwell_study::ranges::extent;
 use std::f64::consts::TAU;
 use toml::Value;
 
-/// Periods of a periodic motion, and revolutions or oscillations of another, at most.
+/// Maximum number of periods, or of revolutions or oscillations of a motion that is not periodic.
 const MAX_PERIODS: f64 = 3.0;
-/// What is left of a motion that ends by itself: next to its end everything grows.
+/// Fraction kept of a motion that ends early: errors grow next to its end.
 const KEPT_FRACTION: f64 = 0.9;
-/// Method, tolerance and most steps of the run that bounds the motion.
+/// Method, tolerance and maximum number of steps of the run that bounds the motion.
 const PREVIEW_RUN: (Method, f64, usize) = (Method::Bdf, 1e-6, 20_000);
-/// Times at which states are compared, spread evenly: no whole number to a period, of which there are three.
+/// Number of equally spaced times at which states are compared; no multiple of the three periods.
 const COMPARED_TIMES: usize = 50;
 
-/// A motion to be studied.
+/// A studied motion.
 pub(super) struct Subject<S: StudiedScene> {
-    /// The scene, with a free motion where it had none.
+    /// The scene, with a free motion if it had none.
     pub(super) scene: S,
     /// The equations of motion.
     pub(super) machine: Machine<S::Model>,
-    /// The same with the reactions that are compared, its first ones.
+    /// The equations with the compared reactions as the first ones.
     pub(super) output_machine: Machine<S::Model>,
     /// The units of these reactions.
     pub(super) reaction_units: Vec<String>,
     /// The reduced model with these reactions, of one freedom without loads.
     pub(super) reduced: Option<ExactModel<S::Model>>,
     pub(super) initial_state: OdeState,
-    /// When states are compared, s; the last is the end.
+    /// The times at which states are compared, s; the last is the end.
     pub(super) times: Vec<f64>,
     /// The smallest and the largest value of the first free coordinate.
     pub(super) coordinate_range: [f64; 2],
-    /// The motion by its energy, where it follows from that.
+    /// The motion by quadrature, if the energy determines it.
     pub(super) orbit: Option<Orbit>,
     /// Notes on it.
     pub(super) notes: Vec<String>,
@@ -50,7 +50,7 @@ impl<S: StudiedScene> Subject<S> {
     /// The motion of a scene.
     ///
     /// # Errors
-    /// [`StudyError::Scene`] when the scene cannot be put together, nothing is free, or nothing moves.
+    /// [`StudyError::Scene`] if the scene cannot be assembled, nothing is free, or nothing moves.
     pub(super) fn new(scene: &S) -> Result<Self, StudyError> {
         let mut notes = Vec::new();
         if scene.actuator(0).is_none() {
@@ -81,10 +81,11 @@ impl<S: StudiedScene> Subject<S> {
             q: starts.coordinates[first],
             q_dot: starts.velocities[first],
         };
-        let orbit = is_one.then(|| Orbit::loaded(&machine, reduced_start));
-        let orbit = orbit.and_then(Result::ok);
-        let problem = (&scene, &machine, &initial_state);
-        let (end, coordinate_range) = bound_duration(problem, orbit.as_ref(), &mut notes)?;
+        let orbit = is_one
+            .then(|| Orbit::loaded(&machine, reduced_start))
+            .and_then(Result::ok);
+        let (end, coordinate_range) =
+            bound_duration(&scene, &machine, &initial_state, orbit.as_ref(), &mut notes)?;
         if !has_motion {
             let motion = written_motion(&scene, machine.free(), &starts, end);
             notes.push(format!("the scene has no motion: the study takes this one, and the lines to type need it as the scene's first line: {motion}"));
@@ -112,7 +113,7 @@ impl<S: StudiedScene> Subject<S> {
         self.times.last().copied().unwrap_or(0.0)
     }
 
-    /// The start in the only coordinate.
+    /// The initial state in the only coordinate.
     pub(super) fn reduced_state(&self) -> ReducedState {
         let y = &self.initial_state.y;
         let (t, q, q_dot) = (0.0, y[0], y[self.machine.free().len()]);
@@ -134,22 +135,23 @@ impl<S: StudiedScene> Subject<S> {
         self.scene.explain(self.machine.model(), error)
     }
 
-    /// Refuses a motion that stays at rest: all combinations would be exact.
+    /// Rejects a motion that stays at rest: all combinations would be exact.
     fn require_motion(&self) -> Result<(), StudyError> {
         let mut workspace = self.machine.workspace();
         let state = self
             .machine
-            .evaluate(0.0, &self.initial_state.y, &mut workspace);
-        let state = state.map_err(|e| self.explain(&e))?;
-        // A motor at rest moves first its current, and what depends on time may begin later.
+            .evaluate(0.0, &self.initial_state.y, &mut workspace)
+            .map_err(|e| self.explain(&e))?;
+        // At rest only the current of a motor changes at first, and loads of time may begin later.
         let mut rates = vec![0.0; self.machine.state_count()];
         state.derivative(&mut rates);
         let changes = rates[..self.machine.work_offset()]
             .iter()
             .any(|rate| *rate != 0.0);
-        match changes || self.machine.depends_on_time() {
-            true => Ok(()),
-            false => Err(self.explain(&DynamicsError::AtRest)),
+        if changes || self.machine.depends_on_time() {
+            Ok(())
+        } else {
+            Err(self.explain(&DynamicsError::AtRest))
         }
     }
 }
@@ -164,7 +166,7 @@ fn no_free_coordinate(scene: &SceneFile) -> StudyError {
     error.into()
 }
 
-/// A free motion of a duration (s) as the scene would write it, in one line.
+/// A free motion of a duration (s) as text of a scene, in one line.
 fn written_motion<S: StudiedScene>(
     scene: &S,
     free: &[usize],
@@ -185,14 +187,16 @@ fn written_motion<S: StudiedScene>(
         ("duration", Value::Float(duration)),
         ("initial-coordinate", table(&starts.coordinates)),
         ("initial-velocity", table(&starts.velocities)),
-    ];
-    let motion = motion.map(|(key, value)| (key.to_owned(), value));
+    ]
+    .map(|(key, value)| (key.to_owned(), value));
     format!("motion = {}", Value::Table(motion.into_iter().collect()))
 }
 
 /// The duration of the motion, and the range of its first free coordinate.
 fn bound_duration<S: StudiedScene>(
-    (scene, machine, start): (&S, &Machine<S::Model>, &OdeState),
+    scene: &S,
+    machine: &Machine<S::Model>,
+    start: &OdeState,
     orbit: Option<&Orbit>,
     notes: &mut Vec<String>,
 ) -> Result<(f64, [f64; 2]), StudyError> {
@@ -232,13 +236,13 @@ fn bound_duration<S: StudiedScene>(
     Ok((end, extent(coordinates)))
 }
 
-/// How much of a motion is integrated, and why.
+/// The integrated part of a motion with the reason, in words.
 fn shortened_text(what: &str, end: f64, requested: f64, reason: &str) -> String {
     let [end, requested] = [end, requested].map(|t| digits(t, 6));
     format!("computed for {what}{end} of {requested} s{reason}")
 }
 
-/// The end of a motion that does not last as long as it should in its own coordinate.
+/// The end of a motion that ends early in its own coordinate.
 fn shorten_before_end(
     motion: &PreliminaryRun,
     reached: f64,
@@ -247,7 +251,7 @@ fn shorten_before_end(
 ) -> f64 {
     let one_chart = motion.has_one_chart;
     let (fraction, reason) = match &motion.failure {
-        // An event that ends the motion is no position where anything grows.
+        // Errors do not grow next to an event that ends the motion.
         None if one_chart => (1.0, "until an event ends it".to_owned()),
         Some(DynamicsError::MaxStepsReached { max_steps, .. }) => (
             1.0,
@@ -264,7 +268,7 @@ fn shorten_before_end(
     end
 }
 
-/// The time at which some free coordinate has made three revolutions or oscillations, and which.
+/// The time at which a free coordinate has made three revolutions or oscillations, and its index.
 fn first_revolutions<M: MovingModel>(
     machine: &Machine<M>,
     steps: &[OdeState],

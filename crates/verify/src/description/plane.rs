@@ -296,11 +296,7 @@ impl Lift<'_> {
                 let coupling = &self.mechanism.couplings[r];
                 coupling.dependent.is_angle() || coupling.independent.is_angle()
             }
-            JointKind::Revolute
-            | JointKind::Prismatic { .. }
-            | JointKind::Slot { .. }
-            | JointKind::Weld { .. }
-            | JointKind::Distance { .. } => false,
+            _ => false,
         })
     }
 
@@ -336,11 +332,7 @@ fn check_axes(mechanism: &Mechanism) -> Result<()> {
             JointKind::Slot { axis }
             | JointKind::Rack { axis, .. }
             | JointKind::Rolling { axis, .. } => [axis; 2],
-            JointKind::Revolute
-            | JointKind::Weld { .. }
-            | JointKind::Gear { .. }
-            | JointKind::Distance { .. }
-            | JointKind::Coupling(_) => continue,
+            _ => continue,
         };
         for length in axes.map(Vec2::norm) {
             if length.is_nan() || (length - 1.0).abs() > 1e-12 {

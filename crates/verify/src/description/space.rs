@@ -160,6 +160,8 @@ fn rows_of(joint: &Joint) -> Vec<(Row, bool)> {
         JointKind::Universal => [meets(), vec![product(first.axis, second.axis)]].concat(),
         JointKind::Spherical => meets(),
         JointKind::Planar => [vec![along(first.axis)], parallel()].concat(),
+        JointKind::PointOnLine => on_line(),
+        JointKind::PointInPlane => vec![along(first.axis)],
         JointKind::Distance { length } => vec![(Row::single(Term::Distance(at), length), false)],
         JointKind::Gear { .. } => mesh(joint)
             .map(|mesh| (Row::Mesh(mesh), false))

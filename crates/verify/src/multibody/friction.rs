@@ -49,17 +49,9 @@ impl MultibodySystem {
             return false;
         };
         let joint = self.mechanism.joints.get(teeth.joint.0);
-        let fits = joint.is_some_and(|joint| match joint.kind {
-            JointKind::Gear { .. } | JointKind::Rack { .. } => {
-                (joint.bodies, joint.points) == (mesh.bodies, mesh.points)
-            }
-            JointKind::Revolute
-            | JointKind::Prismatic { .. }
-            | JointKind::Slot { .. }
-            | JointKind::Weld { .. }
-            | JointKind::Rolling { .. }
-            | JointKind::Distance { .. }
-            | JointKind::Coupling(_) => false,
+        let fits = joint.is_some_and(|joint| {
+            let has_teeth = matches!(joint.kind, JointKind::Gear { .. } | JointKind::Rack { .. });
+            has_teeth && (joint.bodies, joint.points) == (mesh.bodies, mesh.points)
         });
         fits && teeth.angle.is_finite()
     }

@@ -59,6 +59,8 @@ pub fn closure_error(joint: &Joint, placements: &[Placement]) -> f64 {
         JointKind::Universal => &[apart, u.dot(w)],
         JointKind::Spherical => &[apart],
         JointKind::Planar => &[d.dot(u), tilt],
+        JointKind::PointOnLine => &[off_line],
+        JointKind::PointInPlane => &[d.dot(u)],
         JointKind::Distance { length } => &[apart - length],
         JointKind::Gear { .. } => &[],
     };

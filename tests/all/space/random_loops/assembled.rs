@@ -77,17 +77,8 @@ impl Random {
         }
     }
 
-    /// Kinds of joints with so many freedoms in sum.
-    fn kinds(&mut self, freedoms: usize) -> Vec<JointKind> {
-        let all = [
-            JointKind::Revolute,
-            JointKind::Prismatic,
-            JointKind::Cylindrical,
-            JointKind::Universal,
-            JointKind::Spherical,
-            JointKind::Planar,
-            JointKind::Helical { pitch: 0.2 },
-        ];
+    /// Kinds of joints among these with so many freedoms in sum.
+    fn kinds(&mut self, freedoms: usize, all: &[JointKind]) -> Vec<JointKind> {
         let mut found: Vec<JointKind> = Vec::new();
         let mut left = freedoms;
         while left > 0 {
@@ -101,6 +92,20 @@ impl Random {
     }
 }
 
+/// The kinds of joints of which loops are made; those after the seventh only where a point is driven on a line.
+const KINDS: [JointKind; 9] = [
+    JointKind::Revolute,
+    JointKind::Prismatic,
+    JointKind::Cylindrical,
+    JointKind::Universal,
+    JointKind::Spherical,
+    JointKind::Planar,
+    JointKind::Helical { pitch: 0.2 },
+    JointKind::PointOnLine,
+    JointKind::PointInPlane,
+];
+const WITHOUT_POINTS: usize = 7;
+
 /// What drives a mechanism.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum DrivenBy {
@@ -112,6 +117,8 @@ pub(super) enum DrivenBy {
     Gear,
     /// A screw in a loop of screws alone.
     ScrewOfScrews,
+    /// A joint of a loop with points on lines and in planes, such as the travel of a point on a line.
+    JointOfPoints,
 }
 
 /// A mechanism assembled at a pose.
@@ -144,7 +151,13 @@ impl Assembled {
             JointKind::Prismatic,
             JointKind::Cylindrical,
             JointKind::Helical { pitch: -0.3 },
-        ][random.below(4)];
+            JointKind::PointOnLine,
+        ];
+        let all = match driven_by {
+            DrivenBy::JointOfPoints => &KINDS[..],
+            _ => &KINDS[..WITHOUT_POINTS],
+        };
+        let driven = driven[random.below(driven.len() - usize::from(all.len() == WITHOUT_POINTS))];
         let mut kinds = vec![driven];
         match driven_by {
             DrivenBy::ScrewOfScrews => {
@@ -153,14 +166,14 @@ impl Assembled {
                 };
                 kinds = (0..7).map(screw).collect();
             }
-            DrivenBy::Joint | DrivenBy::Length | DrivenBy::Gear => {
-                kinds.extend(random.kinds(7 - driven.freedoms()));
+            DrivenBy::Joint | DrivenBy::Length | DrivenBy::Gear | DrivenBy::JointOfPoints => {
+                kinds.extend(random.kinds(7 - driven.freedoms(), all));
             }
         }
         made.chain(random, &kinds, [0, 0]);
         let [angle, along] = made.first;
         let is_travel = match kinds[0] {
-            JointKind::Prismatic => true,
+            JointKind::Prismatic | JointKind::PointOnLine => true,
             JointKind::Helical { .. } => random.below(2) == 0,
             _ => false,
         };
@@ -169,12 +182,12 @@ impl Assembled {
             false => (angle, vec![Actuator::angle("q", 0)]),
         };
         match driven_by {
-            DrivenBy::Joint | DrivenBy::ScrewOfScrews => {}
+            DrivenBy::Joint | DrivenBy::ScrewOfScrews | DrivenBy::JointOfPoints => {}
             DrivenBy::Length => made.drive_length(random),
             DrivenBy::Gear => made.drive_gear(random),
         }
         for _ in 1..loops {
-            let kinds = random.kinds(6);
+            let kinds = random.kinds(6, all);
             let from = 1 + random.below(made.mechanism.bodies.len() - 1);
             let to = (from + 1 + random.below(made.mechanism.bodies.len() - 1))
                 % made.mechanism.bodies.len();
@@ -215,19 +228,21 @@ impl Assembled {
             JointKind::Helical { pitch } => along = pitch * angle,
             _ => {}
         }
-        let slides = matches!(
-            kind,
-            JointKind::Prismatic | JointKind::Cylindrical | JointKind::Helical { .. }
-        );
+        let slides = kind.has_travel();
         let across = axis.cross(normal);
         let moved = match kind {
-            JointKind::Planar => normal.scaled(along) + across.scaled(0.3 * random.number()),
+            JointKind::Planar | JointKind::PointInPlane => {
+                normal.scaled(along) + across.scaled(0.3 * random.number())
+            }
             _ if slides => axis.scaled(along),
             _ => Vec3::ZERO,
         };
         let turned = normal.scaled(angle.cos()) + across.scaled(angle.sin());
         let (second_axis, second_normal) = match kind {
-            JointKind::Universal => (turned, axis),
+            // Of a point on a line or in a plane the second side has no directions.
+            JointKind::Universal | JointKind::PointOnLine | JointKind::PointInPlane => {
+                (turned, axis)
+            }
             _ => (axis, turned),
         };
         if self.mechanism.joints.is_empty() {

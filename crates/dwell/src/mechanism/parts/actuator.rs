@@ -1,4 +1,4 @@
-//! Actuators, and coordinates with names.
+//! Actuators and named coordinates.
 
 use super::Keys;
 
@@ -58,7 +58,7 @@ impl Actuator {
     }
 }
 
-/// A coordinate with a name: loads, laws and events can depend on it.
+/// A named coordinate, on which loads, laws and events can depend.
 ///
 /// ```
 /// let rise = dwell::Coordinate::travel("guide");

@@ -33,8 +33,9 @@ impl Drive {
         torque_constant: f64,
         resistance: f64,
     ) -> Self {
-        let keys = Keys::new("motor", coordinate).with("voltage", voltage);
-        let keys = keys.with("torque-constant", torque_constant);
+        let keys = Keys::new("motor", coordinate)
+            .with("voltage", voltage)
+            .with("torque-constant", torque_constant);
         Self(keys.with("resistance", resistance))
     }
 
@@ -60,7 +61,7 @@ impl Drive {
         Self(keys.with("proportional", proportional))
     }
 
-    /// The same with one more key of its kind.
+    /// Sets another key of its kind.
     ///
     /// ```
     /// let motor = dwell::Drive::motor_line("phi", 0.5, 240.0).with("inertia", 1e-5);

@@ -41,8 +41,8 @@ impl Friction {
         Self(Keys::new("viscous", coefficient))
     }
 
-    /// The same with one more key: `viscous`, `guide-length`, `static-coefficient`, or `regularization-speed`, without
-    /// which dry friction holds at rest.
+    /// Sets another key: `viscous`, `guide-length`, `static-coefficient`, or `regularization-speed`, without
+    /// which dry friction sticks at rest.
     ///
     /// ```
     /// let guide = dwell::Friction::slide(0.1).with("regularization-speed", 0.005);

@@ -6,8 +6,8 @@ use crate::value::Value;
 /// A joint of two bodies, or a coupling of two coordinates. A point is written `body.point`; an axis and an angle are
 /// in the frame of the first-named body. The reaction is the force or moment of the first-named body on the second.
 ///
-/// Each kind has a function for what it needs, and [`with`](Joint::with) for what it may have besides. The kinds and
-/// their keys are those of `docs/scene-format.md`.
+/// Each kind has a function with its required keys; [`with`](Joint::with) sets optional ones. `docs/scene-format.md` describes the kinds and
+/// their keys.
 ///
 /// ```
 /// use dwell::Joint;
@@ -18,8 +18,8 @@ use crate::value::Value;
 pub struct Joint(pub(crate) Keys);
 
 impl Joint {
-    /// A pin. Its reaction has the components `x` and `y`, N, in the ground's axes. In space it turns about an axis, which is the same in
-    /// the frames of both bodies, and the reaction has `x`, `y`, `z`, `moment-x`, `moment-y` and `moment-z` there.
+    /// A pin. Its reaction has the components `x` and `y`, N, in the ground's axes. In space it rotates about an axis, which is the same in
+    /// the frames of both bodies, and its reaction has `x`, `y`, `z`, `moment-x`, `moment-y` and `moment-z`.
     ///
     /// ```
     /// let pin = dwell::Joint::revolute("ground.A", "crank.A");
@@ -39,7 +39,7 @@ impl Joint {
         Self(Keys::new("prismatic", [first, second]).with("axis", axis))
     }
 
-    /// A ball in a socket, in space. Its reaction is `x`, `y` and `z`, N.
+    /// A ball joint, in space. Its reaction is `x`, `y` and `z`, N.
     ///
     /// ```
     /// let ball = dwell::Joint::spherical("crank.B", "coupler.B");
@@ -66,7 +66,7 @@ impl Joint {
         Self(Keys::new("weld", [first, second]))
     }
 
-    /// Two points at a constant distance `length`, m, as if a massless link joined them. Its reaction is `axial`, N.
+    /// Two points at a constant distance `length`, m, as if joined by a massless link. Its reaction is `axial`, N.
     ///
     /// ```
     /// let link = dwell::Joint::distance("crank.B", "piston.P", 0.2);
@@ -76,7 +76,7 @@ impl Joint {
     }
 
     /// Two gears with their centres and pitch radii, m. Its reaction is `tooth`, N. Further keys: `internal`, and
-    /// `pressure-angle` (rad), with which the teeth push each other apart.
+    /// `pressure-angle` (rad), which adds the separating force of the teeth.
     ///
     /// ```
     /// let mesh = dwell::Joint::gear("crank.A", "wheel.C", [0.03, 0.02]);
@@ -106,7 +106,7 @@ impl Joint {
         Self(keys.with("radius", radius))
     }
 
-    /// A coupling: the first coordinate is a function of the second, as the travel of a follower is of the angle of its
+    /// A coupling: the first coordinate is a function of the second, such as the travel of a follower of the angle of its
     /// cam. Its reaction is `force`, N, or `moment`, N·m.
     ///
     /// ```
@@ -119,7 +119,7 @@ impl Joint {
         Self(all.fold(keys, |keys, (key, value)| keys.with(&key, value)))
     }
 
-    /// The same with one more key of its kind.
+    /// Sets another key of its kind.
     ///
     /// ```
     /// let mesh = dwell::Joint::gear("sun.S", "ring.R", [0.02, 0.06]).with("internal", true);

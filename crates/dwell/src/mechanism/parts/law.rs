@@ -93,7 +93,7 @@ impl Law {
         Self(Keys::new(kind, keys))
     }
 
-    /// The same with one more key: of a rise `delay`, of a sinusoid `phase`, of a coupling's law `start`.
+    /// Sets another key: `delay` of a rise, `phase` of a sinusoid, `start` of the law of a coupling.
     ///
     /// ```
     /// let law = dwell::Law::cycloidal(1.0, 0.5).with("delay", 0.1);

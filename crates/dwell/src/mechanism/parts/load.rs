@@ -1,10 +1,10 @@
-//! Loads, and how strong they are.
+//! Loads and their magnitudes.
 
 use super::Keys;
 use crate::value::Value;
 use dwell_kinetostatics::MagnitudeFunction;
 
-/// How strong a load is: a number, an expression, a table, or a function of one's own program. Numbers and texts
+/// The magnitude of a load: a number, an expression, a table, or a function of your program. Numbers and texts
 /// convert into it.
 ///
 /// ```
@@ -20,7 +20,7 @@ pub struct Magnitude {
     function: Option<LoadFunction>,
 }
 
-/// A function of one's own program.
+/// A function of the program.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LoadFunction {
     /// The names of its signals.
@@ -44,9 +44,9 @@ impl Magnitude {
         }
     }
 
-    /// A function of signals: `t` (s), coordinates (rad or m) and velocities such as `phi.velocity`, in the order in
-    /// which they are named. It must be smooth where the mechanism moves, but for [breakpoints](Self::breakpoints): nothing else
-    /// can tell where the program switches. A scene's text cannot hold it: there the magnitude stands as an expression without a
+    /// A function of signals: `t` (s), coordinates (rad or m) and velocities such as `phi.velocity`, in the given
+    /// order. It must be smooth except at its [breakpoints](Self::breakpoints). The text of a scene
+    /// cannot contain it; there the magnitude is an expression without a
     /// value.
     ///
     /// ```
@@ -72,9 +72,9 @@ impl Magnitude {
         self.function.as_ref()
     }
 
-    /// The same with values of one of the function's signals at which it jumps or has a kink, as `t` at which it is switched on. A motion
-    /// stops at each of them and is integrated on one side at a time, as where an expression switches. Without them a jump makes its steps so
-    /// short that it ends, and a short pulse may be missed. It changes nothing of other magnitudes.
+    /// Adds values of a signal at which the function jumps or has a kink, such as the time at which it is switched on. The integration of a motion
+    /// stops at each of them and restarts, as at the switches of an expression. Without breakpoints a jump makes the steps so
+    /// short that the motion ends, and a short pulse may be missed. No effect on other kinds of magnitudes.
     ///
     /// ```
     /// let cutting = dwell::Magnitude::function(&["ram.velocity"], |s| if s[0] < -0.02 { 1500.0 } else { 0.0 })
@@ -90,7 +90,7 @@ impl Magnitude {
     }
 }
 
-/// What stands in a scene's text for a function: without it, every evaluation fails and names the load.
+/// The text in a scene that replaces a function; without the function, every evaluation fails and names the load.
 pub(crate) const NO_VALUE: &str = "0/(t - t)";
 
 impl From<f64> for Magnitude {
@@ -117,7 +117,7 @@ impl From<&str> for Magnitude {
     }
 }
 
-/// A load. Points are written `body.point`; a couple of two bodies acts from the first on the second.
+/// A load. Points are written `body.point`; a torque between two bodies is that of the first on the second.
 ///
 /// ```
 /// let gas = dwell::Load::force("piston.C", [-1.0, 0.0], "400*(1 + cos(phi))");
@@ -253,7 +253,7 @@ impl Load {
         Self::new(keys, "damping", damping)
     }
 
-    /// The same with one more key of its kind.
+    /// Sets another key of its kind.
     ///
     /// ```
     /// let thrust = dwell::Load::force("boat.P", [1.0, 0.0], 10.0).with("frame", "body");

@@ -1,4 +1,4 @@
-//! The parts of a mechanism, each as the keys that a scene file has for it.
+//! The parts of a mechanism, each as the keys of a scene file.
 
 mod actuator;
 mod drive;
@@ -19,7 +19,7 @@ pub use motion::{Event, Motion};
 
 use crate::value::Value;
 
-/// Keys with their values, in the order in which they were given.
+/// Keys with their values, in the given order.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Keys(pub(crate) Vec<(String, Value)>);
 
@@ -28,7 +28,7 @@ impl Keys {
         Self::default().with(key, value)
     }
 
-    /// The same with one more key; a key given twice keeps its last value.
+    /// Sets another key; a key given twice keeps its last value.
     pub(crate) fn with(mut self, key: &str, value: impl Into<Value>) -> Self {
         self.0.retain(|(known, _)| known != key);
         self.0.push((key.to_owned(), value.into()));

@@ -3,8 +3,8 @@
 use super::{Keys, Law};
 use crate::value::Value;
 
-/// A free motion: its duration, where it starts, which actuators follow a law, and its events. Actuators without a law
-/// are moved by the loads and drives.
+/// A free motion: its duration, its initial state, the actuators that follow a law, and its events. Actuators without a law
+/// are free: loads and drives move them.
 ///
 /// ```
 /// use dwell::{Event, Motion};
@@ -47,7 +47,7 @@ impl Motion {
         }
     }
 
-    /// The same from this coordinate of a free actuator, rad or m; otherwise that of the assembly.
+    /// Sets the initial coordinate of a free actuator, rad or m; the default is that of the assembly.
     ///
     /// ```
     /// let motion = dwell::Motion::seconds(1.0).initial_coordinate("phi", 0.5);
@@ -58,7 +58,7 @@ impl Motion {
         self
     }
 
-    /// The same from this velocity of a free actuator, rad/s or m/s; otherwise 0.
+    /// Sets the initial velocity of a free actuator, rad/s or m/s; the default is 0.
     ///
     /// ```
     /// let motion = dwell::Motion::seconds(1.0).initial_velocity("phi", 3.0);
@@ -69,7 +69,7 @@ impl Motion {
         self
     }
 
-    /// The same with an actuator that follows a law of time.
+    /// Prescribes an actuator by a law of time.
     ///
     /// ```
     /// use dwell::{Law, Motion};
@@ -81,7 +81,7 @@ impl Motion {
         self
     }
 
-    /// The same with an event.
+    /// Adds an event.
     ///
     /// ```
     /// use dwell::{Event, Motion};
@@ -108,7 +108,7 @@ impl Motion {
     }
 }
 
-/// An event of a free motion: its time is found.
+/// An event of a free motion, whose time is located.
 ///
 /// ```
 /// let lift_off = dwell::Event::reaction("contact.normal", 0.0).stop();
@@ -153,7 +153,7 @@ impl Event {
         Self(Keys::new("revolution", coordinate))
     }
 
-    /// The same, and the motion ends with it.
+    /// Makes the event end the motion.
     ///
     /// ```
     /// let turn = dwell::Event::revolution("phi").stop();

@@ -1,4 +1,4 @@
-//! The end of a motion of several coordinates that cannot go on.
+//! The end of a motion of several coordinates that cannot continue.
 //!
 //! In front of a singular position the speeds of some bodies are quotients of two small numbers. A step that leads to it, or beyond to
 //! where the bodies would have to pass to another assembly mode, breaks the balance of energies and works: by 0.3 to 10 times the

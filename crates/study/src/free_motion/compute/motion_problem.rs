@@ -64,7 +64,7 @@ pub trait MotionProblem {
                 });
                 let (t, at) = (digits(last.t, 6), values.collect::<Vec<_>>().join(", "));
                 scene.message = format!(
-                    "the motion cannot go on after t = {t} s, at {at}: {}",
+                    "the motion cannot continue after t = {t} s, at {at}: {}",
                     scene.message
                 );
                 StudyError::Scene(scene)

@@ -15,7 +15,7 @@ use crate::trajectory::compute::TrajectorySample;
 use dwell_dynamics::{DynamicsError, Event, Machine, OdeState, Options, Solution};
 use dwell_geometry::JointId;
 use dwell_geometry::space::{
-    Actuator, ActuatorKind, Coordinate, CoordinateFunction, JointKind, Placement, Plan, Pose,
+    Actuator, ActuatorKind, Condition, Coordinate, CoordinateFunction, Placement, Plan, Pose,
 };
 use dwell_kinetostatics::space::{LoadKind, Model};
 use dwell_kinetostatics::{MachineModel as _, Signal};
@@ -233,23 +233,21 @@ impl SpaceMotionProblem<'_> {
         let mut all = Vec::new();
         for (j, joint) in mechanism.joints.iter().enumerate() {
             let id = JointId(j);
-            let kinds: &[ActuatorKind] = match joint.kind {
-                JointKind::Revolute | JointKind::Helical { .. } => &[ActuatorKind::Angle(id)],
-                JointKind::Prismatic => &[ActuatorKind::Travel(id)],
-                JointKind::Cylindrical => &[ActuatorKind::Angle(id), ActuatorKind::Travel(id)],
-                JointKind::Weld
-                | JointKind::Universal
-                | JointKind::Spherical
-                | JointKind::Planar
-                | JointKind::Distance { .. }
-                | JointKind::Gear { .. } => &[],
-            };
+            // Of a screw the travel is the angle.
+            let is_screw = joint.kind.holds(Condition::Thread);
+            let angle = joint.kind.has_angle().then_some(ActuatorKind::Angle(id));
+            let travel = joint.kind.has_travel() && !is_screw;
+            let kinds = [angle, travel.then_some(ActuatorKind::Travel(id))];
             let weight = |kind: ActuatorKind| match kind {
                 ActuatorKind::Angle(_) if joint.bodies.iter().any(|b| b.0 == ground) => 1.0,
                 ActuatorKind::Angle(_) => RELATIVE_ANGLE_WEIGHT,
                 ActuatorKind::Travel(_) | ActuatorKind::Length(_) => 1.0 / plan.size(),
             };
-            for &kind in kinds.iter().filter(|kind| !self.drives(**kind)) {
+            for kind in kinds
+                .into_iter()
+                .flatten()
+                .filter(|kind| !self.drives(*kind))
+            {
                 let function = plan.coordinate_function(mechanism, kind.coordinate(joint));
                 if let Ok(function) = function {
                     let [value, rate, _] = plan.coordinate(pose, function);

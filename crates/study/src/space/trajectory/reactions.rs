@@ -4,7 +4,7 @@ use crate::explain::StudyError;
 use crate::space::explain::with_loads;
 use crate::space::prepared::{compile, sort_reactions};
 use dwell_geometry::JointId;
-use dwell_geometry::space::{JointKind, Vec3, vec3};
+use dwell_geometry::space::{Vec3, vec3};
 use dwell_kinetostatics::space::{Axes, Component, Model, Reaction};
 use dwell_scene::SpaceScene;
 
@@ -57,12 +57,11 @@ impl SpaceRows {
         let has_magnitude = joints.iter().enumerate().map(|(j, joint)| {
             let of_joint = &whole[6 * j..6 * j + 6];
             let is_determined = |some: &[Reaction]| !some.iter().any(|r| open.contains(r));
-            let has_moment = !matches!(
-                joint.kind,
-                JointKind::Spherical | JointKind::Distance { .. } | JointKind::Gear { .. }
-            );
             let (force, moment) = of_joint.split_at(3);
-            [is_determined(force), has_moment && is_determined(moment)]
+            [
+                is_determined(force),
+                joint.kind.has_moment() && is_determined(moment),
+            ]
         });
         Ok(Self {
             model: model_of(scene, &requested)?,

@@ -93,7 +93,7 @@ impl RowScene for SpaceScene {
             }
             // Couplings stand in scenes of the plane alone.
             StopCause::Discontinuity { .. } => {
-                scene_error::<String>(self, "the trajectory cannot go on", "", [])
+                scene_error::<String>(self, "the trajectory cannot continue", "", [])
             }
         }
     }

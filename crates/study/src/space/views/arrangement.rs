@@ -2,7 +2,7 @@
 
 use super::points::placed;
 use dwell_geometry::BodyId;
-use dwell_geometry::space::{Joint, JointKind, Placement, Vec3};
+use dwell_geometry::space::{Condition, Joint, JointKind, Placement, Vec3};
 use dwell_scene::SpaceScene;
 
 /// Half the length of a hinge, in sizes of the picture; less where joints are closer, but no less than the second.
@@ -167,9 +167,10 @@ impl<'a> SpaceDrawing<'a> {
         shifts
     }
 
-    /// Which body of a sliding joint has the guide: the first, unless only the second is the ground.
+    /// Which body of a sliding joint has the guide: the first, unless both have the axis and the second is the ground.
     pub(super) fn guide_side(&self, joint: &Joint) -> usize {
-        usize::from(self.is_ground(joint.bodies[1]))
+        let both_have_axis = joint.kind.holds(Condition::Axes);
+        usize::from(both_have_axis && self.is_ground(joint.bodies[1]))
     }
 
     /// The joints at the point of a joint, with the number of the common moving body in the one and the other.

@@ -224,6 +224,15 @@ impl SpaceParts<'_> {
                 self.add(self.mark(MarkLook::Plate, (j, 1), [0, 0]));
                 (MarkLook::Disc, 1, [0, 1])
             }
+            JointKind::PointInPlane => {
+                self.add(self.mark(MarkLook::Plate, (j, 1), [0, 0]));
+                (MarkLook::Ball, 1, [0, 1])
+            }
+            JointKind::PointOnLine => {
+                self.guide(j);
+                ground.clear();
+                (MarkLook::Ball, 1, [0, 1])
+            }
             // A massless rod with its balls.
             JointKind::Distance { .. } => {
                 let name = joint.name.clone();

@@ -44,6 +44,8 @@ fn rare_joints(scene: &SpaceScene) -> String {
                 2,
                 "A dot with a short line is where teeth meet, with their normal.",
             ),
+            JointKind::PointOnLine => (5, "A ball on a rod is a point on a line."),
+            JointKind::PointInPlane => (6, "A ball on a plate is a point in a plane."),
             JointKind::Distance { .. } => (3, "Grey lines are links without mass."),
             JointKind::Weld => (4, "A dot between two bodies is a weld."),
             _ => return None,

@@ -178,7 +178,8 @@ fn random(variation: &str) -> Parsed {
     if name.trim() == "normal" {
         let (mean, deviation) = (from, to);
         if deviation <= 0.0 {
-            let reason = format!("a standard deviation of {deviation} is not above zero");
+            let reason =
+                format!("the standard deviation is {deviation}, but must be greater than zero");
             return Err(fault(reason, FORMS));
         }
         return Ok(VariationKind::Normal { mean, deviation });
@@ -197,8 +198,11 @@ fn tolerance(nominal: f64, variation: &str) -> Parsed {
         None => number(variation)?,
     };
     if width <= 0.0 {
-        let help = "a tolerance is above zero; a percentage needs a value that is not zero";
-        return Err(fault(format!("a tolerance of {width}"), help));
+        let help = "a percentage needs a value other than zero";
+        return Err(fault(
+            format!("the tolerance is {width}, but must be greater than zero"),
+            help,
+        ));
     }
     Ok(VariationKind::Uniform {
         from: nominal - width,

@@ -150,7 +150,7 @@ impl<'a> PlaneStop<'a> {
         }
     }
 
-    /// The error where the trajectory cannot go on. One arm for each cause, so longer than a screen.
+    /// The error where the trajectory cannot continue. One arm for each cause, so longer than a screen.
     fn explain_limit(
         &self,
         scene: &PlaneScene,

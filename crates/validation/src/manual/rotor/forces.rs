@@ -12,14 +12,14 @@ pub(super) fn as_number(value: &Value) -> Option<f64> {
 /// The torques and the inertia.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RotorForces {
-    /// With the rotors of motors, kg m².
+    /// Moment of inertia including the rotors of motors, kg m².
     pub(crate) inertia: f64,
     drives: Vec<RotorDrive>,
-    /// Limits, stiffness and damping of a stop that yields.
+    /// Limits, stiffness and damping of a compliant stop.
     yielding: Option<([f64; 2], [f64; 2])>,
-    /// Torque of dry friction in motion and at rest, N m.
+    /// Torque of dry friction in motion, and its limit at rest, N m.
     friction: [f64; 2],
-    /// Torque of the weight where the centre is level with the pin, N m.
+    /// Torque of the weight when the centre of mass is level with the pin, N m.
     weight: f64,
 }
 
@@ -45,7 +45,7 @@ enum RotorDrive {
     },
 }
 
-/// A number, or a table of it over the time.
+/// A number, or a table over time.
 #[derive(Debug, Clone, PartialEq)]
 enum RotorMagnitude {
     Constant(f64),
@@ -180,7 +180,7 @@ impl RotorForces {
         let friction = section("friction").next().map(|friction| {
             let of = |key: &str| friction.get(key).and_then(as_number);
             let dry = of("coefficient").unwrap_or(0.0);
-            // On a guide the force itself counts.
+            // On a guide the arm is one.
             let arm = of("radius").unwrap_or(1.0) * mass * weight;
             [dry * arm, of("static-coefficient").unwrap_or(dry) * arm]
         });
@@ -207,7 +207,7 @@ impl RotorForces {
         }
         sum[0] -= self.weight * y[0].cos();
         if let Some(([low, high], [stiffness, damping])) = self.yielding {
-            // It only pushes.
+            // The stop can only push.
             sum[0] += match y[0] {
                 angle if angle > high => (-stiffness * (angle - high) - damping * y[1]).min(0.0),
                 angle if angle < low => (-stiffness * (angle - low) - damping * y[1]).max(0.0),
@@ -217,13 +217,13 @@ impl RotorForces {
         sum
     }
 
-    /// How much more torque dry friction at rest can hold, as a part of what it holds at most.
+    /// The remaining torque of sticking friction, relative to its limit.
     pub(crate) fn rest_margin(&self, t: f64, y: RotorState) -> f64 {
         let [torque, _] = self.torque(t, y);
         1.0 - torque.abs() / self.friction[1]
     }
 
-    /// Whether it is at rest and held there by dry friction.
+    /// Whether it is at rest and sticks.
     pub(super) fn holds(&self, t: f64, y: RotorState) -> bool {
         y[1] == 0.0 && self.friction[1] > 0.0 && self.rest_margin(t, y) >= 0.0
     }
