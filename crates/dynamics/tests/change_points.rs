@@ -4,7 +4,7 @@
 mod parts;
 
 use dwell_dynamics::{
-    Atlas, ChartChangeReason, ContinuedMotion, MachineDescription, Method, Options,
+    Atlas, ChartChangeReason, ContinuedMotion, Machine, MachineDescription, Method, Options,
 };
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Body, BodyId, Joint, Mechanism, Reaction, Vec2, vec2};
@@ -110,6 +110,34 @@ fn val_a02_through_the_flat_positions() {
                 assert_eq!(fit.indeterminate.len(), 3 * n + 1);
             }
         }
+    }
+}
+
+/// At rest m q̈ = (m + J) q̈ with a flywheel J, within a window and outside of it.
+#[test]
+fn a_flywheel_counts_on_a_fit() {
+    const J: f64 = 0.7;
+    let setup = chain_at(1, 0.05);
+    let mut atlas = setup.atlas();
+    let start = setup.initial_state(&atlas, 0.0);
+    solve_setup(&mut atlas, &start, [2.0, 0.5], Method::Tsit45, &[]);
+    let fit = atlas.change_point_fits().next().expect("a fit");
+    let machine = &atlas.charts()[0].machine;
+    let heavier = machine.clone().with_flywheel(0, J);
+    let outside = fit.center + 1.5 * fit.half_width;
+    for (q, is_fitted) in [(fit.center, true), (outside, false)] {
+        let at_rest = machine.initial_state(&[q], &[0.0]);
+        assert_eq!(machine.is_in_fit_window(&at_rest), is_fitted, "{q}");
+        let acceleration = |of: &Machine| {
+            let mut workspace = of.workspace();
+            let state = of.evaluate(0.0, &at_rest, &mut workspace).expect("a pose");
+            state.q_ddot()[0]
+        };
+        let moving = machine.initial_state(&[q], &[1.0]);
+        let energy = machine.energy(0.0, &moving, &mut machine.workspace());
+        let m = 2.0 * energy.expect("a pose")[0];
+        let ratio = acceleration(machine) / acceleration(&heavier);
+        assert!((ratio / (1.0 + J / m) - 1.0).abs() < 1e-10, "{q}: {ratio}");
     }
 }
 

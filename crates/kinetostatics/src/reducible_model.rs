@@ -21,7 +21,7 @@ pub struct Coefficients<T = f64> {
 
 impl<T: Scalar> Coefficients<T> {
     /// A buffer for so many reactions.
-    pub(crate) fn buffer(reactions: usize) -> Self {
+    pub fn buffer(reactions: usize) -> Self {
         let zeros = vec![T::from_f64(0.0); reactions];
         Self {
             a: zeros.clone(),

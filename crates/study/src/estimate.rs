@@ -7,7 +7,7 @@
 
 use dwell_dynamics::{DynamicsError, Method, Options, Orbit};
 use dwell_geometry::PositionError;
-use dwell_kinetostatics::{Coefficients, Model};
+use dwell_kinetostatics::{Coefficients, ReducibleModel};
 use dwell_numerics::{DoubleDouble, Scalar};
 
 /// A run at a tenth of the tolerance has 1/14 (order 5) to a third (order 1 or 2) of the error, so the difference of
@@ -94,15 +94,18 @@ pub(crate) fn beyond_rounding(difference: f64, kinetic: f64, potential: f64) -> 
 ///
 /// # Errors
 /// [`PositionError`] when there is no pose at `q`.
-pub fn coefficients_with_errors(
-    model: &Model,
+pub fn coefficients_with_errors<M: ReducibleModel>(
+    model: &M,
     q: f64,
 ) -> Result<(Coefficients, Coefficients), PositionError> {
-    let mut values = model.coefficient_buffer::<f64>();
-    let mut finer = model.coefficient_buffer::<DoubleDouble>();
-    model.reduce(q, &mut model.workspace(), &mut values)?;
+    let reactions = model.reaction_count();
+    let (mut values, mut finer) = (
+        Coefficients::buffer(reactions),
+        Coefficients::buffer(reactions),
+    );
+    model.reduce_at(q, &mut model.pass_workspace(), &mut values)?;
     let exact_q = DoubleDouble::from_f64(q);
-    model.reduce(exact_q, &mut model.workspace(), &mut finer)?;
+    model.reduce_at(exact_q, &mut model.pass_workspace(), &mut finer)?;
     let list = |of: &[f64], finer: &[DoubleDouble]| {
         let size = of.iter().fold(0.0_f64, |size, v| size.max(v.abs()));
         let pairs = of.iter().zip(finer);

@@ -3,14 +3,12 @@
 use crate::check;
 use crate::explain::StudyError;
 use crate::export::{ExportRequest, fit_in_plane, only_as_c, several_freedoms_in_plane};
-use crate::free_motion::compute::orbit_in_plane;
 use crate::models::PreparedScene;
 use crate::page::{drawing_along, plane_page};
 use crate::study_scene::StudyScene;
 use crate::symbolic::compute::closed_form_in_plane;
 use crate::trajectory::compute::{ComputedTrajectory, RowSource, reject_unknown_variables};
 use crate::unit_runs::compute::UnitRunScene as _;
-use dwell_dynamics::Orbit;
 use dwell_export::{Export, SeveralFreedomsExport};
 use dwell_findings::{Finding, Record};
 use dwell_page::{Drawing, Page};
@@ -66,10 +64,6 @@ impl StudyScene for PlaneScene {
         span: PictureSpan,
     ) -> Result<Outcome, StudyError> {
         report(source.scene, computed, span)
-    }
-
-    fn orbit(&self) -> Result<Orbit, StudyError> {
-        orbit_in_plane(self)
     }
 
     fn closed_form(

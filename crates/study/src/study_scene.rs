@@ -6,7 +6,7 @@ use crate::export::ExportRequest;
 use crate::free_motion::compute::SimulatedScene;
 use crate::trajectory::compute::{ComputedTrajectory, RowSource};
 use crate::unit_runs::compute::UnitRunScene;
-use dwell_dynamics::Orbit;
+use dwell_dynamics::{Orbit, ReducedState};
 use dwell_export::{Export, SeveralFreedomsExport};
 use dwell_findings::{Finding, Record};
 use dwell_page::{Drawing, Page};
@@ -98,7 +98,16 @@ pub trait StudyScene: SimulatedScene + UnitRunScene + CalibratedScene {
     ///
     /// # Errors
     /// As of that.
-    fn orbit(&self) -> Result<Orbit, StudyError>;
+    fn orbit(&self) -> Result<Orbit, StudyError> {
+        let (machine, start) = self.motion_machine()?;
+        let state = |k: usize| start.get(k).copied().unwrap_or_default();
+        let from = ReducedState {
+            t: 0.0,
+            q: state(0),
+            q_dot: state(machine.free().len()),
+        };
+        Orbit::loaded(&machine, from).map_err(|error| self.explain(machine.model(), &error))
+    }
 
     /// The results of [`compute_closed_form`](crate::compute_closed_form).
     ///

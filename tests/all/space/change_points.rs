@@ -10,7 +10,8 @@ use dwell_kinetostatics::{ExactModel, ReducedModel};
 use dwell_scene::{PlaneScene, SpaceScene};
 use dwell_study::machines::MachineScene;
 use dwell_study::{
-    MotionSolver, SolverSettings, StudyError, compute_free_motion, model_with_loads, no_progress,
+    MotionSolver, PictureSpan, SolverSettings, StudyError, compute_free_motion, model_with_loads,
+    no_progress, simulate_within,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -117,6 +118,53 @@ fn change_points_are_found_where_the_parallelogram_is_flat() {
     for name in ONE_COORDINATE {
         let (model, _) = Reference::read(name).model();
         assert_eq!(model.plan().change_points(), [], "{name}");
+    }
+}
+
+/// At rest the acceleration falls as the inertia grows by a flywheel, within a window and outside of it.
+#[test]
+fn a_flywheel_counts_on_a_fit() {
+    let (m, flywheel) = (0.127, 0.7);
+    let scene = oblique(PARALLEL, KINDS[1], "");
+    let machine = scene.machine(&[]).unwrap_or_else(|e| panic!("{e}"));
+    let machine = machine.with_change_points(1e-9);
+    let heavier = machine.clone().with_flywheel(0, flywheel);
+    let window = &machine.change_point_windows()[0];
+    let outside = window.at.q + 1.5 * window.half_width;
+    for (q, is_fitted) in [(window.at.q, true), (outside, false)] {
+        let at_rest = machine.initial_state(&[q], &[0.0]);
+        assert_eq!(machine.is_in_fit_window(&at_rest), is_fitted, "{q}");
+        let [lighter, heavier] = [&machine, &heavier].map(|machine| {
+            let mut workspace = machine.workspace();
+            let state = machine.evaluate(0.0, &at_rest, &mut workspace);
+            state.expect("a pose").q_ddot()[0]
+        });
+        let ratio = lighter / heavier;
+        assert!(
+            (ratio / (1.0 + flywheel / m) - 1.0).abs() < 1e-9,
+            "{q}: {ratio}"
+        );
+    }
+}
+
+/// The summary of a motion by quadrature says the required accuracy, and the change points that it passes.
+#[test]
+fn a_motion_by_quadrature_says_its_accuracy_and_change_points() {
+    let scene = oblique(PARALLEL, KINDS[1], MOTION);
+    let solver = MotionSolver::Accuracy {
+        accuracy: 1e-6,
+        sample_interval: None,
+    };
+    let span = PictureSpan::default();
+    let done = simulate_within(&scene, &solver, None, span, &no_progress);
+    let text = done.unwrap_or_else(|e| panic!("{e}")).outcome.summary;
+    for words in [
+        "  accuracy 1e-6: quadrature (conservative, periodic motion), ",
+        " of the largest reaction\n",
+        " s: change point crossed\n",
+        "  change point at 3.14159: crossed by a polynomial fit",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
     }
 }
 

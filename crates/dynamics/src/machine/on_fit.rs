@@ -9,7 +9,7 @@ use dwell_kinetostatics::{
     EvaluatedState, ForceState, InverseDynamics, MachineModel, Magnitude, Model, Workspace,
 };
 use dwell_numerics::polynomial_fit::{PolynomialFit, chebyshev_nodes};
-use dwell_numerics::{DoubleDouble, Dual, Scalar};
+use dwell_numerics::{DoubleDouble, Dual, Scalar, lu};
 use std::fmt::Debug;
 
 /// Nodes on each side of the window, and highest degree, of the fit of the reactions.
@@ -114,6 +114,55 @@ impl<M: MovingModel> Machine<M> {
     }
 }
 
+/// The equation of motion (1) within a window, in the plane and in space.
+impl<M: MovingModel> Machine<M> {
+    /// m and ½m′ of the bodies with what rotors and flywheels add, where the coordinates of drives move so at unit speed.
+    ///
+    /// # Errors
+    /// [`DynamicsError::NoInertia`](crate::DynamicsError::NoInertia).
+    pub(super) fn inertia_on_fit<T: Scalar>(
+        &self,
+        [mut m, mut half_dm]: [T; 2],
+        q: T,
+        unit_motion: impl Fn(M::CoordinateFunction) -> [T; 3],
+    ) -> Result<[T; 2]> {
+        for drive in &self.drives {
+            let [_, first, second] = unit_motion(drive.measured);
+            m += T::from_f64(drive.reflected_inertia) * first * first;
+            half_dm += T::from_f64(drive.reflected_inertia) * first * second;
+        }
+        m += T::from_f64(self.flywheels[0]);
+        positive_inertia(m.value(), q.value())?;
+        Ok([m, half_dm])
+    }
+
+    /// Solves (1) for the acceleration of the only coordinate, along which loads and drives exert this force.
+    pub(super) fn accelerate_on_fit<T: Scalar>(
+        &self,
+        [m, half_dm]: [T; 2],
+        force: T,
+        equation: &mut EquationWorkspace<T>,
+    ) -> T {
+        let pushed = equation.stop_forces.iter();
+        let pushed = pushed.fold(T::from_f64(0.0), |sum, force| sum + *force);
+        let q_dot = equation.q_dot[0];
+        let total = force + pushed - half_dm * q_dot * q_dot;
+        let q_ddot = match equation.locked[0] {
+            true => T::from_f64(0.0),
+            false => total / m,
+        };
+        equation.q_ddot[0] = q_ddot;
+        // What the actuator's coordinate takes, for a stop on which it rests and for impacts.
+        equation.inverse_dynamics.tau[0] = m * q_ddot - total + pushed;
+        equation.mass_matrix[0] = m;
+        lu::factor(&mut equation.mass_matrix, &mut equation.pivots);
+        let response = &mut equation.acceleration_responses[0];
+        response.tau[0] = m;
+        response.reactions.fill(T::from_f64(f64::NAN));
+        q_ddot
+    }
+}
+
 impl MovingModel for Model {
     type FitWindow = FitWindow;
 
@@ -161,19 +210,13 @@ impl MovingModel for Model {
         machine.evaluate_drives(t, drive_states, input_offsets, &mut state, equation)?;
         let mut state = state.wrenches()?;
         let unit_states = &workspace.unit_states;
-        let [mut m, mut half_dm] = model.inertia_sums(unit_states);
-        for drive in &machine.drives {
-            let [_, first, second] = unit_states.coordinate(drive.measured);
-            m += T::from_f64(drive.reflected_inertia) * first * first;
-            half_dm += T::from_f64(drive.reflected_inertia) * first * second;
-        }
-        positive_inertia(m.value(), q.value())?;
+        let unit_motion = |of| unit_states.coordinate(of);
+        let inertia = machine.inertia_on_fit(model.inertia_sums(unit_states), q, unit_motion)?;
         let mut force = zero;
         for wrench in state.wrenches() {
             force += wrench.power(unit_states);
         }
-        let q_ddot = (force - half_dm * q_dot * q_dot) / m;
-        equation.q_ddot[0] = q_ddot;
+        let q_ddot = machine.accelerate_on_fit(inertia, force, equation);
         let set = |motion: &mut Motion<T>| set_motion(&workspace.values, [q_dot, q_ddot], motion);
         state.bodies_with(set);
         machine.read_drive_accelerations(&state, equation);

@@ -4,12 +4,12 @@
 use super::workspace::EquationWorkspace;
 use super::{Machine, MachineState, MovingModel};
 use crate::change_point_fit::{ChangePointFitError, farthest_good_fit, half_width_of_groups};
-use crate::error::{Result, positive_inertia};
+use crate::error::Result;
 use dwell_geometry::PositionError;
 use dwell_geometry::space::{BranchFit, BranchFitWorkspace, ChangePoint};
 use dwell_kinetostatics::space::{Model, Workspace};
 use dwell_kinetostatics::{EvaluatedState, ForceState, InverseDynamics, MachineModel as _};
-use dwell_numerics::{Scalar, lu};
+use dwell_numerics::Scalar;
 use std::sync::Arc;
 
 /// Of the way to the next change point, or to the end of the range.
@@ -171,33 +171,14 @@ impl MovingModel for Model {
         let (fit, model) = (window.fit()?, &machine.model);
         let (q, q_dot) = (equation.q[0], equation.q_dot[0]);
         let at = [q, q - T::from_f64(q.value() - x)];
-        let [mut m, mut half_dm] = model.inertia_on_fit(fit, at, inner);
-        for drive in &machine.drives {
-            let [_, first, second] = model.coordinate_motion(drive.measured, inner);
-            m += T::from_f64(drive.reflected_inertia) * first * first;
-            half_dm += T::from_f64(drive.reflected_inertia) * first * second;
-        }
-        m += T::from_f64(machine.flywheels[0]);
-        positive_inertia(m.value(), q.value())?;
+        let bodies = model.inertia_on_fit(fit, at, inner);
+        let unit_motion = |of| model.coordinate_motion(of, inner);
+        let inertia = machine.inertia_on_fit(bodies, q, unit_motion)?;
         let state = model.state_on_fit(fit, at, q_dot, inner);
         let mut state = state.apply_loads(t)?;
         machine.evaluate_drives(t, drive_states, input_offsets, &mut state, equation)?;
         let mut state = state.wrenches()?;
-        let pushed = equation.stop_forces.iter();
-        let pushed = pushed.fold(T::from_f64(0.0), |sum, force| sum + *force);
-        let force = state.unit_power() + pushed - half_dm * q_dot * q_dot;
-        let q_ddot = match equation.locked[0] {
-            true => T::from_f64(0.0),
-            false => force / m,
-        };
-        equation.q_ddot[0] = q_ddot;
-        // What the actuator's coordinate takes, for a stop on which it rests and for impacts.
-        equation.inverse_dynamics.tau[0] = m * q_ddot - force + pushed;
-        equation.mass_matrix[0] = m;
-        lu::factor(&mut equation.mass_matrix, &mut equation.pivots);
-        let response = &mut equation.acceleration_responses[0];
-        response.tau[0] = m;
-        response.reactions.fill(T::from_f64(f64::NAN));
+        let q_ddot = machine.accelerate_on_fit(inertia, state.unit_power(), equation);
         state.accelerate_on_fit(fit, at, [q_dot, q_ddot]);
         machine.read_drive_accelerations(&state, equation);
         machine.set_net_drive_forces(&mut state, equation)?;

@@ -2,16 +2,13 @@
 
 use super::check;
 use super::export::{fit_in_space, several_freedoms_error};
-use super::motion::SpaceMotionProblem;
 use super::prepared::PreparedSpaceScene;
 use super::trajectory::space_page;
 use super::views::page_drawing;
 use crate::explain::StudyError;
 use crate::export::ExportRequest;
-use crate::free_motion::compute::MotionProblem as _;
 use crate::study_scene::StudyScene;
 use crate::trajectory::compute::{ComputedTrajectory, RowSource};
-use dwell_dynamics::Orbit;
 use dwell_export::{Export, SeveralFreedomsExport};
 use dwell_findings::{Finding, Record};
 use dwell_page::{Drawing, Page};
@@ -104,11 +101,6 @@ impl StudyScene for SpaceScene {
         let mut outcome = outcome_of(&scene.file, computed, &document, pictures)?;
         outcome.run = Some(Box::new(space_page(source, computed)));
         Ok(outcome)
-    }
-
-    fn orbit(&self) -> Result<Orbit, StudyError> {
-        let problem = SpaceMotionProblem::new(self)?;
-        problem.orbit(1.0).map_err(|error| problem.explain(&error))
     }
 
     fn closed_form(&self, _: Option<&str>) -> Result<(ClosedForm, Vec<Finding>), StudyError> {

@@ -9,11 +9,11 @@
 //!    finer run nothing is known but that it is better, ten or a hundred thousand times.
 
 use crate::explain::StudyError;
+use crate::free_motion::compute::quadrature::by_quadrature;
 use crate::free_motion::compute::refinement::{
     COARSE_TOLERANCE, Candidate, FIRST_TOLERANCE_RATIO, MIN_TOLERANCE, Refinement, Run, refine,
 };
-use crate::free_motion::compute::tried_motion::TriedMotion;
-use crate::free_motion::compute::{ComputedMotion, Difference, FreeMotionProblem};
+use crate::free_motion::compute::{ChartedProblem, ComputedMotion, Difference, MotionOf};
 use dwell_dynamics::{DynamicsError, Method, Options, Statistics};
 use dwell_findings::Record;
 
@@ -29,31 +29,21 @@ const TABLE_BREAK_EVEN: f64 = 30_000.0;
 const MAX_COARSE_STEPS: usize = 100_000;
 
 /// A motion to an accuracy, by the method that was found.
-pub(crate) struct FoundMotion<M> {
-    pub(crate) found: Refinement<M>,
-    pub(crate) method: Method,
-    pub(crate) method_text: String,
+struct FoundMotion<M> {
+    found: Refinement<M>,
+    method_text: String,
     /// How it was found.
     how: String,
 }
 
-impl<M> FoundMotion<M> {
-    /// What is said of it, and the numbers in it.
-    pub(crate) fn remarks(&self, accuracy: f64) -> (String, Record) {
-        let (text, mut record) = self.found.difference.remarks(accuracy, &self.how);
-        record.add("tolerance", "", self.found.tolerance);
-        (text, record)
-    }
-}
-
 /// The motion to `accuracy`: rad (lengths: relative to the largest change), and relative to the largest kinetic energy and the largest
 /// reaction; by the cheapest method that reaches it, else by the one that comes nearest.
-pub(crate) fn find_motion<P: TriedMotion>(
+fn find_motion<P: ChartedProblem>(
     problem: &P,
     accuracy: f64,
     duration: f64,
     sample_interval: f64,
-) -> Result<FoundMotion<P::Motion>, StudyError> {
+) -> Result<FoundMotion<MotionOf<P>>, StudyError> {
     let coarse_run = |method: Method| {
         let options = Options {
             max_steps: MAX_COARSE_STEPS,
@@ -71,7 +61,7 @@ pub(crate) fn find_motion<P: TriedMotion>(
     {
         candidates.insert(0, (methods[0], Some(visited)));
     }
-    let is_comparable = candidates[0] == (Method::Dop853, None) && P::reached_end(&explicit);
+    let is_comparable = candidates[0] == (Method::Dop853, None) && explicit.failure.is_none();
     let first = is_comparable.then_some((COARSE_TOLERANCE, explicit));
     let solve = |(method, visited): Candidate, tolerance: f64| {
         let options = Options {
@@ -96,20 +86,19 @@ pub(crate) fn find_motion<P: TriedMotion>(
     Ok(FoundMotion {
         how: format!("{method_text}, {reason}; {} runs", found.runs),
         found,
-        method,
         method_text,
     })
 }
 
 /// The first candidate that reaches the accuracy, or else the one that comes nearest to it.
-fn best_of<P: TriedMotion>(
+fn best_of<P: ChartedProblem>(
     problem: &P,
     candidates: &[Candidate],
     accuracy: f64,
-    mut last: Option<Run<P::Motion>>,
-    solve: &dyn Fn(Candidate, f64) -> Result<Option<P::Motion>, StudyError>,
-) -> Result<Best<P::Motion>, StudyError> {
-    let mut best: Best<P::Motion> = None;
+    mut last: Option<Run<MotionOf<P>>>,
+    solve: &dyn Fn(Candidate, f64) -> Result<Option<MotionOf<P>>, StudyError>,
+) -> Result<Best<MotionOf<P>>, StudyError> {
+    let mut best: Best<MotionOf<P>> = None;
     for &candidate in candidates {
         let by_candidate = |tolerance| solve(candidate, tolerance);
         let refined = refine(problem, accuracy, candidate.0, last.take(), &by_candidate)?;
@@ -130,13 +119,13 @@ fn best_of<P: TriedMotion>(
 type Best<M> = Option<(Candidate, Refinement<M>)>;
 
 /// The methods to try, the cheaper first; the expected number of evaluations; and the reason.
-fn rank_methods<P: TriedMotion>(
+fn rank_methods<P: ChartedProblem>(
     problem: &P,
-    explicit: &P::Motion,
-    implicit: impl FnOnce() -> Result<P::Motion, StudyError>,
+    explicit: &MotionOf<P>,
+    implicit: impl FnOnce() -> Result<MotionOf<P>, StudyError>,
     accuracy: f64,
 ) -> Result<([Method; 2], f64, String), StudyError> {
-    let statistics = P::statistics(explicit);
+    let statistics = explicit.statistics;
     let stiff_fraction = statistics.stiff_steps as f64 / (statistics.steps.max(1)) as f64;
     // The cost of accuracy grows as the root of the method's order; the cost of stability does not grow.
     let refinement_ratio = COARSE_TOLERANCE
@@ -144,14 +133,14 @@ fn rank_methods<P: TriedMotion>(
     let by_explicit = statistics.evaluations as f64
         * (stiff_fraction + (1.0 - stiff_fraction) * refinement_ratio.powf(1.0 / 8.0));
     let smooth = [Method::Dop853, Method::Bdf];
-    let reached = P::reached_end(explicit);
+    let reached = explicit.failure.is_none();
     let reason = |method| reason_for(method, stiff_fraction);
     if reached && stiff_fraction <= MAX_STIFF_FRACTION {
         return Ok((smooth, by_explicit, reason(Method::Dop853)));
     }
     let implicit = implicit()?;
     let freedoms = problem.machine().free().len();
-    let by_implicit = equivalent_evaluations(&P::statistics(&implicit), freedoms)
+    let by_implicit = equivalent_evaluations(&implicit.statistics, freedoms)
         * (BDF_ERROR_RATIO * refinement_ratio).powf(1.0 / 6.0);
     Ok(if reached && by_explicit <= by_implicit {
         (smooth, by_explicit, reason(Method::Dop853))
@@ -167,30 +156,29 @@ fn equivalent_evaluations(statistics: &Statistics, freedoms: usize) -> f64 {
     (statistics.evaluations + columns * statistics.jacobians + 2 * statistics.steps) as f64
 }
 
-impl FreeMotionProblem<'_> {
-    /// The motion to an accuracy, by quadrature or else as [`find_motion`] says.
-    pub(crate) fn to_accuracy(
-        &self,
-        accuracy: f64,
-        duration: f64,
-        sample_interval: f64,
-    ) -> Result<ComputedMotion, StudyError> {
-        if let Some(found) = self.by_quadrature(accuracy, duration, sample_interval) {
-            return Ok(found);
-        }
-        let by_method = find_motion(self, accuracy, duration, sample_interval)?;
-        let (remarks, record) = by_method.remarks(accuracy);
-        let found = by_method.found;
-        Ok(ComputedMotion {
-            method_text: by_method.method_text,
-            remarks,
-            record,
-            accuracy: Some([accuracy, found.difference.largest()]),
-            comparison: Some(found.finer),
-            motion: found.motion,
-            ..ComputedMotion::default()
-        })
+/// The motion to an accuracy, by quadrature or else as [`find_motion`] says.
+pub(crate) fn to_accuracy<P: ChartedProblem>(
+    problem: &P,
+    accuracy: f64,
+    duration: f64,
+    sample_interval: f64,
+) -> Result<ComputedMotion<P::Chart>, StudyError> {
+    if let Some(found) = by_quadrature(problem, accuracy, duration, sample_interval) {
+        return Ok(found);
     }
+    let by_method = find_motion(problem, accuracy, duration, sample_interval)?;
+    let found = by_method.found;
+    let (remarks, mut record) = found.difference.remarks(accuracy, &by_method.how);
+    record.add("tolerance", "", found.tolerance);
+    Ok(ComputedMotion {
+        method_text: by_method.method_text,
+        remarks,
+        record,
+        accuracy: Some([accuracy, found.difference.largest()]),
+        comparison: Some(found.finer),
+        motion: found.motion,
+        ..ComputedMotion::default()
+    })
 }
 
 impl Difference {
@@ -234,7 +222,8 @@ pub(crate) fn two_digits(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::free_motion::compute::MotionProblem as _;
+    use crate::free_motion::compute::difference::difference;
+    use crate::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
     use crate::models::with_drive_loads;
     use dwell_scene::PlaneScene;
 
@@ -265,26 +254,21 @@ mod tests {
             let reference = by(1e-13);
             // A tenth of the tolerance has a tenth of the error, here with as much again to spare.
             let reference_error = 0.2
-                * problem
-                    .difference(&reference, &by(1e-12))
+                * difference(&problem, [&reference, &by(1e-12)])
                     .unwrap()
                     .largest();
             for exponent in 2..13 {
                 let accuracy = 10_f64.powi(-exponent);
-                let found = problem
-                    .to_accuracy(accuracy, duration, sample_interval)
-                    .unwrap();
-                let difference = problem
-                    .difference(&reference, &found.motion)
-                    .unwrap()
-                    .largest();
+                let found = to_accuracy(&problem, accuracy, duration, sample_interval).unwrap();
+                let off = difference(&problem, [&reference, &found.motion]).unwrap();
+                let off = off.largest();
                 let [_, estimate] = found.accuracy.unwrap();
                 println!(
-                    "{case} {accuracy:e}: {difference:.1e} of {estimate:.1e}, floor {reference_error:.1e}"
+                    "{case} {accuracy:e}: {off:.1e} of {estimate:.1e}, floor {reference_error:.1e}"
                 );
                 assert!(
-                    difference <= estimate.max(reference_error),
-                    "{case} {accuracy:e}: {difference:e} {estimate:e} {reference_error:e}"
+                    off <= estimate.max(reference_error),
+                    "{case} {accuracy:e}: {off:e} {estimate:e} {reference_error:e}"
                 );
                 // What cannot be promised is beyond the digits of a motion that multiplies every rounding.
                 assert!(
@@ -302,23 +286,19 @@ mod tests {
         let problem =
             FreeMotionProblem::new(&scene, &loaded_scene, scene.motion.as_ref().unwrap()).unwrap();
         let sample_interval = duration / 200.0;
-        let found = problem
-            .to_accuracy(accuracy, duration, sample_interval)
-            .unwrap();
+        let found = to_accuracy(&problem, accuracy, duration, sample_interval).unwrap();
         let options = Options {
             sample_interval: Some(sample_interval),
             ..Options::new(reference.0, reference.1)
         };
         let reference = problem.solve(duration, &options).unwrap();
-        let difference = problem
-            .difference(&reference, &found.motion)
-            .unwrap()
-            .largest();
+        let off = difference(&problem, [&reference, &found.motion]).unwrap();
+        let off = off.largest();
         let [accuracy, estimate] = found.accuracy.unwrap();
-        println!("{difference:e} {estimate:e} {}", found.remarks);
+        println!("{off:e} {estimate:e} {}", found.remarks);
         assert!(
-            difference <= estimate && estimate <= accuracy,
-            "{difference:e} {estimate:e}"
+            off <= estimate && estimate <= accuracy,
+            "{off:e} {estimate:e}"
         );
         found.method_text
     }

@@ -1,26 +1,14 @@
 //! A computed motion between its samples: at its steps, and at any time within a step.
 
 use crate::free_motion::compute::{
-    ChartedProblem as _, FreeMotionProblem, MotionSolver, PlaceInMotion, SegmentedMotion,
-    StatesWithinSteps, exact_state,
+    ChartedProblem, Instant, ModelOf, MotionOf, MotionSolver, PlaceInMotion, StatesWithinSteps,
+    exact_state, sample_of,
 };
+use crate::machines::MachineScene as _;
 use crate::trajectory::compute::{SamplePrecision, TrajectorySample};
-use dwell_dynamics::{EventSide, Machine, MachineOde, MachineWorkspace, Method, OdeState};
-use dwell_geometry::body_states::CoordinateFunction;
+use dwell_dynamics::{EventSide, MachineOde, MachineWorkspace, Method, OdeState};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::f64::consts::TAU;
-impl FreeMotionProblem<'_> {
-    /// A motion at any of its times.
-    pub(crate) fn sampler<'m>(&'m self, motion: &'m SegmentedMotion) -> MotionSampler<'m> {
-        MotionSampler {
-            problem: self,
-            motion,
-            machines: BTreeMap::new(),
-            within_steps: StatesWithinSteps::default(),
-        }
-    }
-}
 
 /// Steps are thinned as if this had been the tolerance: their accuracy is finer than what the search for extrema needs.
 const SEARCH_TOLERANCE: f64 = 1e-6;
@@ -77,15 +65,27 @@ impl Thinning {
 }
 
 /// A motion at any of its times, with the working memory to compute it, by chart.
-pub(crate) struct MotionSampler<'m> {
-    problem: &'m FreeMotionProblem<'m>,
-    motion: &'m SegmentedMotion,
-    machines: BTreeMap<usize, (MachineOde<'m>, MachineWorkspace)>,
+pub(crate) struct MotionSampler<'m, P: ChartedProblem> {
+    problem: &'m P,
+    motion: &'m MotionOf<P>,
+    machines: BTreeMap<usize, Evaluated<'m, ModelOf<P::Scene>>>,
     /// By segment and number of the step.
     within_steps: StatesWithinSteps<(usize, usize)>,
 }
 
-impl<'m> MotionSampler<'m> {
+/// The equation of motion of a machine and its working memory.
+type Evaluated<'m, M> = (MachineOde<'m, M>, MachineWorkspace<f64, M>);
+
+impl<'m, P: ChartedProblem> MotionSampler<'m, P> {
+    pub(crate) fn new(problem: &'m P, motion: &'m MotionOf<P>) -> Self {
+        Self {
+            problem,
+            motion,
+            machines: BTreeMap::new(),
+            within_steps: StatesWithinSteps::default(),
+        }
+    }
+
     /// The motion at a time (s): from its orbit, or from the step before, which is integrated once more up to there; or by interpolation
     /// within the step, at a fraction of the cost where many times are in one step. None where that is not possible.
     pub(crate) fn sample_at(
@@ -124,11 +124,11 @@ impl<'m> MotionSampler<'m> {
     fn machine_of(
         &mut self,
         place: &PlaceInMotion<'m>,
-    ) -> Option<&mut (MachineOde<'m>, MachineWorkspace)> {
+    ) -> Option<&mut Evaluated<'m, ModelOf<P::Scene>>> {
         Some(match self.machines.entry(place.chart) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => {
-                let machine: &Machine = self.problem.machine_in(self.motion, place.chart);
+                let machine = self.problem.machine_in(self.motion, place.chart);
                 let before = &place.steps()[place.step];
                 // At rest the energies show nothing of the works that come: steps would follow their rounding.
                 let end = Some(self.motion.end_time());
@@ -150,24 +150,12 @@ impl<'m> MotionSampler<'m> {
             return None;
         }
         let along = (&place.solution.modes, EventSide::After);
+        let of = (machine, problem.scene().drives());
         let workspace = &mut self.machine_of(place)?.1;
-        let mut sample = problem
-            .sample((place.chart, machine, &mut *workspace), point, along)
-            .ok()?;
-        if let Some(steps) = motion.actuator_coordinates.steps.get(place.segment) {
-            let mechanism = &problem.loaded_scene.mechanism;
-            let measured =
-                CoordinateFunction::find(mechanism, mechanism.actuators[0].coordinate())?;
-            let mut state = machine.evaluate(point.t, &point.y, workspace).ok()?;
-            let mut now = state.bodies().coordinate(measured);
-            if let CoordinateFunction::Angle(_) = measured {
-                let [q, q_dot, _] = *steps.get(place.step)?;
-                let before = &place.steps()[place.step];
-                let near = q + 0.5 * (q_dot + now[1]) * (point.t - before.t);
-                now[0] += TAU * ((near - now[0]) / TAU).round();
-            }
-            sample.actuator_coordinate = Some(now);
-        }
+        let mut sample = sample_of(of, point, along, workspace).ok()?;
+        sample.chart = place.chart;
+        let within = Instant::Within(place.segment, place.step, point);
+        sample.actuator_coordinate = problem.own_coordinate(motion, &within, &sample);
         Some(sample)
     }
 }

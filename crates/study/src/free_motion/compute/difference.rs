@@ -1,10 +1,11 @@
 //! The difference of two computations of one motion.
 
 use crate::estimate::{beyond_rounding, error_scale, relative};
-use crate::free_motion::compute::{
-    ChartedProblem as _, FreeMotionProblem, MotionProblem, SegmentedMotion,
-};
-use crate::trajectory::compute::{TrajectorySample, force_scales};
+use crate::explain::StudyError;
+use crate::free_motion::compute::description::imbalance;
+use crate::free_motion::compute::{ChartedProblem, MotionOf, MotionProblem, SegmentedMotion};
+use crate::machines::MachineScene as _;
+use crate::trajectory::compute::{RowScene as _, TrajectorySample, force_scales};
 use dwell_dynamics::DynamicsError;
 use dwell_kinetostatics::{KinematicState, MachineModel};
 
@@ -78,24 +79,23 @@ impl Difference {
 }
 
 /// The reactions of the first or the second computation (0 or 1) at a sample.
-pub(crate) type ReactionsOf<'r> =
-    &'r dyn Fn(usize, &TrajectorySample) -> Result<Vec<f64>, DynamicsError>;
+type ReactionsOf<'r> = &'r dyn Fn(usize, &TrajectorySample) -> Result<Vec<f64>, DynamicsError>;
 
 /// What of two computations of one motion is compared.
-pub(crate) struct Compared<'s> {
+struct Compared<'s> {
     /// The samples of both.
-    pub(crate) samples: [&'s [TrajectorySample]; 2],
+    samples: [&'s [TrajectorySample]; 2],
     /// When they end, s.
-    pub(crate) ends: [f64; 2],
+    ends: [f64; 2],
     /// The size of the mechanism, m.
-    pub(crate) size: f64,
+    size: f64,
     /// The units of the reactions.
-    pub(crate) units: Vec<&'static str>,
+    units: Vec<&'static str>,
 }
 
 impl Compared<'_> {
     /// The difference of the second computation from the first.
-    pub(crate) fn difference(
+    fn difference(
         &self,
         problem: &impl MotionProblem,
         reactions: ReactionsOf<'_>,
@@ -182,31 +182,41 @@ impl Compared<'_> {
     }
 }
 
-impl FreeMotionProblem<'_> {
-    /// The difference of a second computation from a first.
-    pub(crate) fn difference(
-        &self,
-        one: &SegmentedMotion,
-        two: &SegmentedMotion,
-    ) -> Result<Difference, DynamicsError> {
-        let (first, second) = (self.samples(one)?, self.samples(two)?);
-        let reactions = self.output_model.reactions().iter();
-        let compared = Compared {
-            samples: [&first, &second],
-            ends: [one, two].map(SegmentedMotion::end_time),
-            size: self.loaded_scene.mechanism.size(),
-            units: reactions.map(|r| r.component.unit()).collect(),
-        };
-        compared.difference(self, &|which, sample| {
-            let chart = [one, two][which].charts.get(sample.chart);
-            let model = chart.map_or(&self.output_model, |chart| &chart.output_model);
-            reactions_at(model, sample)
-        })
-    }
+/// The difference of a second computation of a motion from a first, with what the balance of the first shows.
+pub(crate) fn difference_of<P: ChartedProblem>(
+    problem: &P,
+    motions: [&MotionOf<P>; 2],
+) -> Result<Difference, StudyError> {
+    let found = difference(problem, motions).map_err(|error| problem.explain(&error))?;
+    Ok(found.with_imbalance(imbalance(problem, motions[0])))
+}
+
+/// The difference of a second computation of a motion from a first.
+pub(crate) fn difference<P: ChartedProblem>(
+    problem: &P,
+    motions: [&MotionOf<P>; 2],
+) -> Result<Difference, DynamicsError> {
+    let [first, second] = motions.map(|motion| problem.samples(motion));
+    let (first, second) = (first?, second?);
+    let model = P::Scene::model_of(problem.rows());
+    let units = problem.scene().reaction_units(model).into_iter();
+    let units: Vec<_> = units.map(|(_, unit)| unit).collect();
+    let compared = Compared {
+        samples: [&first, &second],
+        ends: motions.map(SegmentedMotion::end_time),
+        size: model.size(),
+        units: units[..problem.result_reactions()].to_vec(),
+    };
+    let sources = motions.map(|motion| problem.row_source(motion));
+    let charts = [0, 1].map(|which| sources[which].charts_or(problem.rows()));
+    compared.difference(problem, &|which, sample| {
+        let (_, rows) = charts[which][sample.chart];
+        reactions_at(P::Scene::model_of(rows), sample)
+    })
 }
 
 /// All reactions of a model at a sample.
-pub(crate) fn reactions_at<M: MachineModel>(
+fn reactions_at<M: MachineModel>(
     model: &M,
     sample: &TrajectorySample,
 ) -> Result<Vec<f64>, DynamicsError> {

@@ -1,7 +1,7 @@
 //! The events of a motion, those of the scene and the changes of contacts, in one order: their names and their table.
 
 use crate::explain::NamedScene as _;
-use crate::free_motion::compute::{MotionProblem, NamedContacts};
+use crate::free_motion::compute::{ChartedProblem, MotionOf, MotionProblem, NamedContacts};
 use crate::machines::MachineScene as _;
 use crate::number_format::coordinate_unit;
 use dwell_dynamics::{EventOccurrence, Machine, MovingModel, OdeState, Solution};
@@ -62,11 +62,7 @@ pub(crate) fn named_events(
 
 /// The time of each event, the actuator coordinates and speeds then, as far as they are found, and where there are end stops the
 /// impulses of the requested reactions; zero where no impact is.
-pub(crate) fn event_table(
-    problem: &impl MotionProblem,
-    parts: &[(usize, Solution)],
-    coordinates_at: impl Fn(&NumberedEvent) -> Option<Vec<f64>>,
-) -> Table {
+pub(crate) fn event_table<P: ChartedProblem>(problem: &P, motion: &MotionOf<P>) -> Table {
     let scene = problem.scene();
     let mut columns = vec![Column::new("t", "s"), Column::new("event", "")];
     for (name, is_angle) in (0..).map_while(|k| scene.actuator(k)) {
@@ -86,14 +82,14 @@ pub(crate) fn event_table(
     }
     let row = |event: NumberedEvent| {
         let mut row = vec![event.state.t, event.number as f64];
-        row.extend(coordinates_at(&event).into_iter().flatten());
+        row.extend(problem.coordinates_at(motion, &event).into_iter().flatten());
         row.resize(before_impulses, f64::NAN);
         if let Some((machine, requested)) = impacts {
             row.extend(first_impulses(machine, &event, requested));
         }
         row
     };
-    let all = numbered_events(problem, parts).into_iter();
+    let all = numbered_events(problem, &motion.segments).into_iter();
     let rows = all.map(row).collect();
     Table { columns, rows }
 }

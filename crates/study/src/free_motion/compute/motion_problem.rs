@@ -11,7 +11,7 @@ use dwell_scene::{
 use std::num::NonZeroUsize;
 
 /// The model of a scene's machine.
-type ModelOf<S> = <S as MachineScene>::Model;
+pub(crate) type ModelOf<S> = <S as MachineScene>::Model;
 
 /// The initial value problem of a scene's free motion.
 pub trait MotionProblem {

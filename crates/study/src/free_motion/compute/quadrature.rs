@@ -5,10 +5,10 @@
 //! rounding of the initial state is added, which acts as a delay.
 
 use crate::estimate;
+use crate::free_motion::compute::description::imbalance;
+use crate::free_motion::compute::difference::difference;
 use crate::free_motion::compute::refinement::MIN_TOLERANCE;
-use crate::free_motion::compute::{
-    ComputedMotion, Difference, FreeMotionProblem, MotionProblem as _, SegmentedMotion,
-};
+use crate::free_motion::compute::{ChartedProblem, ComputedMotion, Difference, SegmentedMotion};
 use dwell_dynamics::{
     DynamicsError, Method, ObservedMachine, OdeState, Options, Orbit, OrbitSequence, ReducedState,
     Solution, solve_orbit,
@@ -23,75 +23,115 @@ const COMPARED_PARTS: usize = 64;
 /// How much smaller the last coefficients of a rule must be that follows one which did not keep the accuracy.
 const TAIL_RATIO: f64 = 0.01;
 
-impl FreeMotionProblem<'_> {
-    /// The motion by quadrature, if it is conservative and periodic.
-    pub(super) fn by_quadrature(
-        &self,
-        accuracy: f64,
-        duration: f64,
-        sample_interval: f64,
-    ) -> Option<ComputedMotion> {
-        if self.spec.laws.iter().any(Option::is_some) {
-            return None;
-        }
-        let start = self.initial_reduced_state();
-        let mut sequence = OrbitSequence::loaded(&self.machine, start).ok()?;
-        let exact = self.orbit(1.0).ok()?;
-        if exact.passes_close_branches(&self.machine) {
-            return None;
-        }
-        let delay = estimate::of_period(&exact, |factor| self.orbit(factor)).ok()? / exact.period;
-        let along = |orbit: Orbit| self.along(orbit, accuracy, duration, sample_interval);
-        let mut tail = accuracy;
+/// Two computations of a motion along orbits: the first, the second, and what its difference shows.
+struct ComparedOrbits<C> {
+    motion: SegmentedMotion<C>,
+    difference: Difference,
+    comparison: SegmentedMotion<C>,
+    points: usize,
+}
+
+/// A motion by quadrature over a duration, s.
+struct Quadrature<'p, P> {
+    problem: &'p P,
+    accuracy: f64,
+    duration: f64,
+    sample_interval: f64,
+    /// The part of all times by which the rounding of the start delays it.
+    delay: f64,
+}
+
+/// The motion by quadrature, if it is conservative and periodic.
+pub(super) fn by_quadrature<P: ChartedProblem>(
+    problem: &P,
+    accuracy: f64,
+    duration: f64,
+    sample_interval: f64,
+) -> Option<ComputedMotion<P::Chart>> {
+    if problem.spec().laws.iter().any(Option::is_some) {
+        return None;
+    }
+    let exact = problem.orbit(1.0).ok()?;
+    if problem.passes_close_branches(&exact) {
+        return None;
+    }
+    let delay = estimate::of_period(&exact, |factor| problem.orbit(factor)).ok()? / exact.period;
+    let quadrature = Quadrature {
+        problem,
+        accuracy,
+        duration,
+        sample_interval,
+        delay,
+    };
+    let found = match P::IS_THINNED {
+        true => quadrature.by_fewest_points()?,
+        false => quadrature.compared([&exact; 2])?,
+    };
+    let (difference, points) = (found.difference, found.points);
+    let how = format!("quadrature (conservative, periodic motion), {points} quadrature points");
+    let (remarks, record) = difference.remarks(accuracy, &how);
+    Some(ComputedMotion {
+        motion: found.motion,
+        method_text: "quadrature".to_owned(),
+        remarks,
+        record,
+        accuracy: Some([accuracy, difference.largest()]),
+        comparison: Some(found.comparison),
+        delay: Some(delay),
+        ..ComputedMotion::default()
+    })
+}
+
+impl<P: ChartedProblem> Quadrature<'_, P> {
+    /// The motion by the rule of the fewest points that keeps the accuracy.
+    fn by_fewest_points(&self) -> Option<ComparedOrbits<P::Chart>> {
+        let (machine, start) = (self.problem.machine(), self.problem.initial_reduced_state());
+        let mut sequence = OrbitSequence::loaded(machine, start).ok()?;
+        let mut tail = self.accuracy;
         let mut orbit = sequence.next_orbit(tail).ok()?;
-        let (motion, difference, comparison) = loop {
+        loop {
             let is_candidate = orbit.is_resolved || orbit.tail < tail;
             let finer = sequence.next_orbit(tail).ok()?;
-            if !is_candidate {
-                orbit = finer;
-                continue;
-            }
-            let motion = along(orbit.clone())?;
-            let next = along(finer.clone())?;
-            let ends = [motion.end_time(), next.end_time()];
-            let difference = self.orbit_difference([&orbit, &finer], ends, delay).ok()?;
-            // The compared times may miss a peak that a row or a step shows.
-            let difference = difference.with_imbalance(SAFETY_FACTOR * self.imbalance(&motion));
-            // More points than both need would change roundings only.
-            if difference.largest() <= accuracy || (orbit.is_resolved && finer.is_resolved) {
-                // Both errors together, with the events and the end of the finer orbit.
-                let mut comparison = delayed(&motion, &finer, delay);
-                for ((_, to), (_, from)) in comparison.segments.iter_mut().zip(next.segments) {
-                    to.event_occurrences = from.event_occurrences;
-                    to.steps = from.steps;
+            if is_candidate {
+                let compared = self.compared([&orbit, &finer])?;
+                // More points than both need would change roundings only.
+                let are_resolved = orbit.is_resolved && finer.is_resolved;
+                if compared.difference.largest() <= self.accuracy || are_resolved {
+                    return Some(compared);
                 }
-                break (motion, difference, comparison);
+                tail *= TAIL_RATIO;
             }
-            tail *= TAIL_RATIO;
             orbit = finer;
-        };
-        let points = orbit.points;
-        let how = format!("quadrature (conservative, periodic motion), {points} quadrature points");
-        let (remarks, record) = difference.remarks(accuracy, &how);
-        Some(ComputedMotion {
+        }
+    }
+
+    /// The motions along two orbits, compared.
+    fn compared(&self, [orbit, finer]: [&Orbit; 2]) -> Option<ComparedOrbits<P::Chart>> {
+        let motion = self.along(orbit.clone())?;
+        let next = self.along(finer.clone())?;
+        let ends = [motion.end_time(), next.end_time()];
+        let difference = self.orbit_difference([orbit, finer], ends).ok()?;
+        // The compared times may miss a peak that a row or a step shows.
+        let imbalance = SAFETY_FACTOR * imbalance(self.problem, &motion);
+        // Both errors together, with the events and the end of the finer orbit.
+        let mut comparison = delayed(&motion, finer, self.delay);
+        for ((_, to), (_, from)) in comparison.segments.iter_mut().zip(next.segments) {
+            to.event_occurrences = from.event_occurrences;
+            to.steps = from.steps;
+        }
+        Some(ComparedOrbits {
             motion,
-            method_text: "quadrature".to_owned(),
-            remarks,
-            record,
-            accuracy: Some([accuracy, difference.largest()]),
-            comparison: Some(comparison),
-            delay: Some(delay),
-            ..ComputedMotion::default()
+            difference: difference.with_imbalance(imbalance),
+            comparison,
+            points: orbit.points,
         })
     }
 
-    /// The error of an orbit's rule, from a finer one, and of the rounding that delays it by a part of the time; `ends`
-    /// are those of the two motions, s.
+    /// The error of an orbit's rule, from a finer one, and of the rounding that delays it; `ends` are those of the two motions, s.
     fn orbit_difference(
         &self,
         [orbit, finer]: [&Orbit; 2],
         ends: [f64; 2],
-        delay: f64,
     ) -> Result<Difference, DynamicsError> {
         let times = compared_times(orbit, ends[0]);
         let at_times = |orbit: &Orbit, end: f64, delay: f64| {
@@ -102,28 +142,25 @@ impl FreeMotionProblem<'_> {
             compared_motion(times.iter().map(late).collect(), end)
         };
         let these = at_times(orbit, ends[0], 0.0);
-        let rounding = self.difference(&these, &at_times(orbit, ends[0], delay))?;
-        let truncation = self.difference(&these, &at_times(finer, ends[1], 0.0))?;
+        let late = at_times(orbit, ends[0], self.delay);
+        let rounding = difference(self.problem, [&these, &late])?;
+        let others = at_times(finer, ends[1], 0.0);
+        let truncation = difference(self.problem, [&these, &others])?;
         Ok(truncation.scaled(SAFETY_FACTOR).plus(&rounding))
     }
 
     /// The motion along an orbit.
-    fn along(
-        &self,
-        orbit: Orbit,
-        accuracy: f64,
-        duration: f64,
-        sample_interval: f64,
-    ) -> Option<SegmentedMotion> {
-        let outputs = ObservedMachine::new(&self.machine, &self.output_model);
+    fn along(&self, orbit: Orbit) -> Option<SegmentedMotion<P::Chart>> {
+        let (events, output_model) = self.problem.events();
+        let outputs = ObservedMachine::new(self.problem.machine(), output_model);
         let options = Options {
-            sample_interval: Some(sample_interval),
-            rtol: accuracy,
+            sample_interval: Some(self.sample_interval),
+            rtol: self.accuracy,
             // What an event must pass its value by is relative to the motion, whatever its size.
             atol: f64::MIN_POSITIVE,
             ..Options::new(Method::Dop853, MIN_TOLERANCE)
         };
-        let solution = solve_orbit(&orbit, outputs, duration, &options, &self.events()).ok()?;
+        let solution = solve_orbit(&orbit, outputs, self.duration, &options, &events).ok()?;
         if let Some(DynamicsError::MaxStepsReached { .. }) = solution.error {
             return None;
         }
@@ -132,7 +169,7 @@ impl FreeMotionProblem<'_> {
 }
 
 /// The instants of a motion on an orbit that is delayed by a fraction of the time.
-fn delayed(motion: &SegmentedMotion, orbit: &Orbit, delay: f64) -> SegmentedMotion {
+fn delayed<C>(motion: &SegmentedMotion<C>, orbit: &Orbit, delay: f64) -> SegmentedMotion<C> {
     let shifted = |point: &OdeState| {
         let ReducedState { q, q_dot, .. } = orbit.state_at(point.t * (1.0 + delay));
         OdeState {
@@ -164,7 +201,7 @@ fn compared_times(orbit: &Orbit, end: f64) -> Vec<f64> {
 }
 
 /// The states of a motion at the times at which it is compared, and its end (s).
-fn compared_motion(samples: Vec<OdeState>, end: f64) -> SegmentedMotion {
+fn compared_motion<C>(samples: Vec<OdeState>, end: f64) -> SegmentedMotion<C> {
     let last = samples.last().map(|last| OdeState {
         t: end,
         y: last.y.clone(),
@@ -179,6 +216,7 @@ fn compared_motion(samples: Vec<OdeState>, end: f64) -> SegmentedMotion {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
     use crate::models::with_drive_loads;
     use dwell_scene::PlaneScene;
 
@@ -203,11 +241,19 @@ mod tests {
         let duration = periods * orbit.period;
         // No whole number of rows in a period.
         let interval = duration / 499.3;
-        let found = problem.by_quadrature(accuracy, duration, interval)?;
+        let found = by_quadrature(&problem, accuracy, duration, interval)?;
         let [_, estimate] = found.accuracy.unwrap();
         let points = found.motion.statistics.evaluations;
-        let exact = problem.along(orbit, 1e-12, duration, interval).unwrap();
-        let true_error = problem.difference(&exact, &found.motion).unwrap().largest();
+        let quadrature = Quadrature {
+            problem: &problem,
+            accuracy: 1e-12,
+            duration,
+            sample_interval: interval,
+            delay: 0.0,
+        };
+        let exact = quadrature.along(orbit).unwrap();
+        let off = difference(&problem, [&exact, &found.motion]).unwrap();
+        let true_error = off.largest();
         Some((points, estimate, true_error))
     }
 

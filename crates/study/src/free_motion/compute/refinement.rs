@@ -1,7 +1,8 @@
 //! A motion at finer and finer tolerances, until two runs agree.
 
 use crate::explain::StudyError;
-use crate::free_motion::compute::{Difference, TriedMotion};
+use crate::free_motion::compute::difference::difference_of;
+use crate::free_motion::compute::{ChartedProblem, Difference, MotionOf, SegmentedMotion};
 use dwell_dynamics::Method;
 
 /// Tolerance of the coarse run.
@@ -46,13 +47,13 @@ pub(crate) struct Refinement<M> {
 
 /// Repeats the motion at finer tolerances until two runs agree; keeps the one whose error their difference is: the
 /// coarser. `None` if a run cannot be made.
-pub(super) fn refine<P: TriedMotion>(
+pub(super) fn refine<P: ChartedProblem>(
     problem: &P,
     accuracy: f64,
     method: Method,
-    last: Option<Run<P::Motion>>,
-    solve: &dyn Fn(f64) -> Result<Option<P::Motion>, StudyError>,
-) -> Result<Option<Refinement<P::Motion>>, StudyError> {
+    last: Option<Run<MotionOf<P>>>,
+    solve: &dyn Fn(f64) -> Result<Option<MotionOf<P>>, StudyError>,
+) -> Result<Option<Refinement<MotionOf<P>>>, StudyError> {
     let min_tolerance = match method.is_implicit() {
         true => MIN_IMPLICIT_TOLERANCE,
         false => MIN_TOLERANCE,
@@ -69,12 +70,12 @@ pub(super) fn refine<P: TriedMotion>(
         let finer = (next, motion);
         runs += 1;
         let is_finest = next <= 1.01 * min_tolerance || runs >= MAX_RUNS;
-        let is_independent = step_growth::<P>(&kept, &finer) >= INDEPENDENT_STEPS;
+        let is_independent = step_growth(&kept, &finer) >= INDEPENDENT_STEPS;
         if !is_independent && !is_finest {
             factor *= EQUAL_STEPS_FACTOR;
             continue;
         }
-        let difference = problem.difference_of([&kept.1, &finer.1])?;
+        let difference = difference_of(problem, [&kept.1, &finer.1])?;
         let least = if is_independent { 0.0 } else { next };
         let difference = difference.scaled(SAFETY_FACTOR).with_minimum(least);
         let largest = difference.largest();
@@ -102,12 +103,12 @@ pub(super) fn refine<P: TriedMotion>(
 type FirstRun<M> = Option<(Run<M>, f64)>;
 
 /// Makes it.
-fn first_run<P: TriedMotion>(
+fn first_run<P: ChartedProblem>(
     accuracy: f64,
     min_tolerance: f64,
-    coarse: Option<Run<P::Motion>>,
-    solve: &dyn Fn(f64) -> Result<Option<P::Motion>, StudyError>,
-) -> Result<FirstRun<P::Motion>, StudyError> {
+    coarse: Option<Run<MotionOf<P>>>,
+    solve: &dyn Fn(f64) -> Result<Option<MotionOf<P>>, StudyError>,
+) -> Result<FirstRun<MotionOf<P>>, StudyError> {
     let [_, max_factor] = TOLERANCE_FACTORS;
     let first = (FIRST_TOLERANCE_RATIO * accuracy).clamp(10.0 * min_tolerance, COARSE_TOLERANCE);
     let coarse = match coarse {
@@ -119,7 +120,7 @@ fn first_run<P: TriedMotion>(
         // From the coarse run it is known whether tolerances decide the steps.
         let is_limited = coarse.is_some_and(|coarse| {
             let decades = (coarse.0 / run.0).log10();
-            step_growth::<P>(&coarse, &run) < INDEPENDENT_STEPS.powf(decades)
+            step_growth(&coarse, &run) < INDEPENDENT_STEPS.powf(decades)
         });
         let further = if is_limited { EQUAL_STEPS_FACTOR } else { 1.0 };
         (run, further * max_factor)
@@ -127,7 +128,7 @@ fn first_run<P: TriedMotion>(
 }
 
 /// The number of steps of a run over that of a coarser one.
-fn step_growth<P: TriedMotion>(coarser: &Run<P::Motion>, finer: &Run<P::Motion>) -> f64 {
-    let [coarser, finer] = [coarser, finer].map(|(_, motion)| P::statistics(motion).steps as f64);
+fn step_growth<C>(coarser: &Run<SegmentedMotion<C>>, finer: &Run<SegmentedMotion<C>>) -> f64 {
+    let [coarser, finer] = [coarser, finer].map(|(_, motion)| motion.statistics.steps as f64);
     finer / coarser.max(1.0)
 }

@@ -6,9 +6,8 @@ use dwell_dynamics::{DynamicsError, EventOccurrence, OdeState, Orbit, Solution, 
 use dwell_findings::Record;
 
 /// A computed motion and its description.
-#[derive(Default)]
-pub(crate) struct ComputedMotion {
-    pub(crate) motion: SegmentedMotion,
+pub(crate) struct ComputedMotion<C = Chart> {
+    pub(crate) motion: SegmentedMotion<C>,
     /// The method, for captions and the summary.
     pub(crate) method_text: String,
     /// Further lines of the summary.
@@ -20,14 +19,30 @@ pub(crate) struct ComputedMotion {
     /// Why it is no result although nothing failed, if so.
     pub(crate) inaccuracy: Option<String>,
     /// A second computation, whose difference shows the errors.
-    pub(crate) comparison: Option<SegmentedMotion>,
+    pub(crate) comparison: Option<SegmentedMotion<C>>,
     /// The samples of the motion and of the second computation, where they have been evaluated already.
     pub(crate) evaluated: [Option<Vec<TrajectorySample>>; 2],
     /// The relative error of all times, where the second computation is the same motion delayed.
     pub(crate) delay: Option<f64>,
 }
 
-impl ComputedMotion {
+impl<C> Default for ComputedMotion<C> {
+    fn default() -> Self {
+        Self {
+            motion: SegmentedMotion::default(),
+            method_text: String::new(),
+            remarks: String::new(),
+            record: Record::default(),
+            accuracy: None,
+            inaccuracy: None,
+            comparison: None,
+            evaluated: [None, None],
+            delay: None,
+        }
+    }
+}
+
+impl<C> ComputedMotion<C> {
     /// Ends it and its second computation at their last samples up to a time, s.
     pub(crate) fn end_at(&mut self, t: f64) {
         let second = self.comparison.as_mut();

@@ -2,11 +2,17 @@
 
 use crate::estimate;
 use crate::explain::StudyError;
-use crate::free_motion::compute::between_samples::max_skipped;
+use crate::free_motion::compute::accuracy::to_accuracy;
+use crate::free_motion::compute::between_samples::{MotionSampler, max_skipped};
+use crate::free_motion::compute::description::{method_hint, moves, starts_unstable, summary};
+use crate::free_motion::compute::error_estimate::estimate_error;
+use crate::free_motion::compute::events::{event_table, named_events};
+use crate::free_motion::compute::shortfall::{not_accurate, not_resolved, too_many_steps};
+use crate::free_motion::compute::tables::trajectory;
 use crate::free_motion::compute::{
-    ChartedProblem as _, ComputedMotion, FreeMotionProblem, MotionProblem as _, SegmentedMotion,
-    motion_to_simulate, named_events, not_accurate, not_resolved, too_many_steps,
+    ChartedProblem, ComputedMotion, FreeMotionProblem, MotionOf, motion_to_simulate,
 };
+use crate::machines::MachineScene as _;
 use crate::models::{SolverSettings, with_drive_loads};
 use crate::number_format::digits;
 use crate::progress::Progress;
@@ -102,7 +108,7 @@ impl SimulatedScene for PlaneScene {
         let spec = motion_to_simulate(self, self.motion.as_ref())?;
         let loaded_scene = with_drive_loads(self)?;
         let problem = FreeMotionProblem::new(self, &loaded_scene, spec)?;
-        problem.simulated(solver, times, progress, then)
+        simulated(&problem, solver, (times, progress), then)
     }
 }
 
@@ -132,7 +138,7 @@ fn check_sample_interval(interval: f64, duration: f64) -> Result<f64, StudyError
 }
 
 /// Refuses wanted times (s) that are not ascending, or outside a motion of this duration (s).
-pub(crate) fn check_times(times: &[f64], duration: f64) -> Result<(), StudyError> {
+fn check_times(times: &[f64], duration: f64) -> Result<(), StudyError> {
     let pairs = times.iter().zip(times.iter().skip(1));
     let mut unordered = pairs.filter(|(before, after)| after <= before);
     let is_outside = |t: &&f64| **t < 0.0 || **t > duration;
@@ -173,185 +179,188 @@ impl MotionSolver {
     }
 }
 
-impl FreeMotionProblem<'_> {
-    /// Does something with the motion by a solver, as [`SimulatedScene::simulate_then`] does.
-    fn simulated<R>(
-        &self,
-        solver: &MotionSolver,
-        times: Option<&[f64]>,
-        progress: Progress<'_>,
-        then: impl FnOnce(&RowSource<'_, '_, PlaneScene>, DescribedMotion<'_>) -> R,
-    ) -> Result<R, StudyError> {
-        let duration = self.duration()?;
-        times.map_or(Ok(()), |times| check_times(times, duration))?;
-        let mut integrated = self.integrate(solver, duration)?;
-        let [evaluated, others] = std::mem::take(&mut integrated.evaluated);
-        let motion = &integrated.motion;
-        // Where branches are too close at the start, the scene is a valid one.
-        let is_refused =
-            |error: &&DynamicsError| !matches!(error, DynamicsError::NearBranches { .. });
-        let failure = motion.failure.as_ref().filter(is_refused);
-        if let Some(error) = failure.filter(|_| motion.end_time() == 0.0) {
-            return Err(self.explain(error));
+/// A motion of a problem with what is said of it.
+type Computed<P> = ComputedMotion<<P as ChartedProblem>::Chart>;
+
+/// Does something with the motion by a solver, as [`SimulatedScene::simulate_then`] does.
+pub(crate) fn simulated<P: ChartedProblem, R>(
+    problem: &P,
+    solver: &MotionSolver,
+    (times, progress): (Option<&[f64]>, Progress<'_>),
+    then: impl FnOnce(&RowSource<'_, '_, P::Scene>, DescribedMotion<'_>) -> R,
+) -> Result<R, StudyError> {
+    let duration = problem.duration()?;
+    times.map_or(Ok(()), |times| check_times(times, duration))?;
+    let mut integrated = integrate(problem, solver, duration)?;
+    let [evaluated, others] = std::mem::take(&mut integrated.evaluated);
+    let motion = &integrated.motion;
+    // Where branches are too close at the start, the scene is a valid one.
+    let is_refused = |error: &&DynamicsError| !matches!(error, DynamicsError::NearBranches { .. });
+    let failure = motion.failure.as_ref().filter(is_refused);
+    if let Some(error) = failure.filter(|_| motion.end_time() == 0.0) {
+        return Err(problem.explain(error));
+    }
+    let method_text = &integrated.method_text;
+    let max_skipped = if P::IS_THINNED {
+        max_skipped(solver)
+    } else {
+        0
+    };
+    let (followed, steps) = rayon::join(
+        || trajectory(problem, (motion, evaluated), method_text, times),
+        || problem.steps_as_samples(motion, max_skipped),
+    );
+    let followed = followed.map_err(|e| problem.explain(&e))?;
+    let sampler = || -> Sampler<'_> {
+        let mut sampler = MotionSampler::new(problem, motion);
+        Box::new(move |t, precision| sampler.sample_at(t, precision))
+    };
+    let between = steps.map(|further| MotionBetweenRows {
+        further,
+        sampler: &sampler,
+    });
+    let second = || second_rows(problem, &integrated, others, times);
+    let followed = ((followed, between), second);
+    let rows = rows_and_summary(problem, &integrated, followed, duration, progress);
+    let (mut computed, mut said) = rows?;
+    if let Some(end) = computed.end_of_rows() {
+        integrated.end_at(end);
+        said = summary(problem, &integrated, duration);
+    }
+    let shortfall = shortfall(problem, &integrated, solver);
+    computed.early_stop = shortfall.or(computed.early_stop);
+    let source = problem.row_source(&integrated.motion);
+    Ok(then(
+        &source,
+        described(problem, &integrated, computed, said),
+    ))
+}
+
+/// A motion with its rows, and what is said of it besides its method.
+fn described<'m, P: ChartedProblem>(
+    problem: &'m P,
+    integrated: &'m Computed<P>,
+    computed: ComputedTrajectory<'static>,
+    (mut summary, mut record): (String, Record),
+) -> DescribedMotion<'m> {
+    let motion = FreeMotion {
+        computed,
+        events: named_events(problem, &integrated.motion.segments),
+        estimated_error: integrated.accuracy.map(|[_, error]| error),
+    };
+    let description = Box::new(move || {
+        record.extend(integrated.record.clone());
+        let notes = problem
+            .scene()
+            .assembly_note(P::Scene::model_of(problem.rows()));
+        summary = summary + &notes + &integrated.remarks;
+        MotionDescription {
+            event_table: event_table(problem, &integrated.motion),
+            summary,
+            record,
         }
-        let (trajectory, steps) = rayon::join(
-            || self.trajectory(motion, evaluated, &integrated.method_text, times),
-            || self.steps_as_samples(motion, max_skipped(solver)),
-        );
-        let trajectory = trajectory.map_err(|e| self.explain(&e))?;
-        let sampler = || -> Sampler<'_> {
-            let mut sampler = self.sampler(motion);
-            Box::new(move |t, precision| sampler.sample_at(t, precision))
-        };
-        let between = steps.map(|further| MotionBetweenRows {
-            further,
-            sampler: &sampler,
+    });
+    DescribedMotion {
+        motion,
+        description,
+    }
+}
+
+fn integrate<P: ChartedProblem>(
+    problem: &P,
+    solver: &MotionSolver,
+    duration: f64,
+) -> Result<Computed<P>, StudyError> {
+    let interval = solver.sample_interval(duration)?;
+    let settings = match solver {
+        MotionSolver::Settings(settings) => settings,
+        MotionSolver::Accuracy { accuracy, .. } => {
+            return to_accuracy(problem, *accuracy, duration, interval);
+        }
+    };
+    let options = Options {
+        sample_interval: Some(interval),
+        ..settings.options()
+    };
+    let finer = estimate::comparison_options(&options);
+    // The second run is the same unless the first one fails.
+    let (motion, second) = rayon::join(
+        || problem.by_method(duration, &options),
+        || problem.by_method(duration, &finer).ok(),
+    );
+    let motion = motion?;
+    let second = match &motion.failure {
+        None => second,
+        Some(_) if motion.end_time() == 0.0 => None,
+        Some(_) => problem.by_method(motion.end_time(), &finer).ok(),
+    };
+    let (estimate, hint) = rayon::join(
+        || estimate_error(problem, &motion, second, &options),
+        || method_hint(problem, &motion, settings),
+    );
+    let mut estimate = estimate?;
+    estimate.record.add("tolerance", "", settings.rtol);
+    let leaves_unstable = starts_unstable(problem) && moves(problem, &motion);
+    let unstable = leaves_unstable.then(|| STARTS_UNSTABLE.to_owned());
+    Ok(ComputedMotion {
+        method_text: settings.describe(),
+        remarks: hint + &estimate.remarks,
+        inaccuracy: unstable.or(estimate.inaccuracy),
+        motion,
+        ..estimate
+    })
+}
+
+/// The rows of a motion with the errors of their columns, and what is said of it.
+fn rows_and_summary<P: ChartedProblem>(
+    problem: &P,
+    integrated: &Computed<P>,
+    (followed, second_rows): (
+        FollowedMotion<'_>,
+        impl FnOnce() -> Option<SecondRows> + Send,
+    ),
+    duration: f64,
+    progress: Progress<'_>,
+) -> Result<(ComputedTrajectory<'static>, (String, Record)), StudyError> {
+    let mut beside = None;
+    let computed = rayon::in_place_scope(|scope| {
+        // On another core: the rows of the second computation, and the summary.
+        scope.spawn(|_| {
+            beside = Some((second_rows(), summary(problem, integrated, duration)));
         });
-        let second = || self.second_rows(&integrated, others, times);
-        let followed = ((trajectory, between), second);
-        let rows = self.rows_and_summary(&integrated, followed, duration, progress);
-        let (mut computed, (mut summary, mut record)) = rows?;
-        if let Some(end) = computed.end_of_rows() {
-            integrated.end_at(end);
-            (summary, record) = self.summary(&integrated, duration);
-        }
-        let shortfall = self.shortfall(&integrated, solver);
-        computed.early_stop = shortfall.or(computed.early_stop);
-        let source = self.row_source(&integrated.motion);
-        let said = (summary, record);
-        Ok(then(&source, self.described(&integrated, computed, said)))
-    }
+        let (trajectory, between) = followed;
+        let source = problem.row_source(&integrated.motion);
+        source.along(trajectory, between, progress)
+    });
+    let mut computed = computed?;
+    let (second, summary) = beside.unwrap_or_default();
+    computed.set_errors(second.as_ref());
+    Ok((computed, summary))
+}
 
-    /// A motion with its rows, and what is said of it besides its method.
-    fn described<'m>(
-        &'m self,
-        integrated: &'m ComputedMotion,
-        computed: ComputedTrajectory<'static>,
-        (mut summary, mut record): (String, Record),
-    ) -> DescribedMotion<'m> {
-        let motion = FreeMotion {
-            computed,
-            events: named_events(self, &integrated.motion.segments),
-            estimated_error: integrated.accuracy.map(|[_, error]| error),
-        };
-        let description = Box::new(move || {
-            record.extend(integrated.record.clone());
-            summary = summary + &self.notes + &integrated.remarks;
-            MotionDescription {
-                event_table: self.event_table(&integrated.motion),
-                summary,
-                record,
-            }
-        });
-        DescribedMotion {
-            motion,
-            description,
-        }
-    }
+/// The rows of a motion's second computation, at the same times; none where it has none.
+fn second_rows<P: ChartedProblem>(
+    problem: &P,
+    integrated: &Computed<P>,
+    evaluated: Option<Vec<TrajectorySample>>,
+    times: Option<&[f64]>,
+) -> Option<SecondRows> {
+    let second: &MotionOf<P> = integrated.comparison.as_ref()?;
+    let followed = trajectory(problem, (second, evaluated), &integrated.method_text, times);
+    SecondRows::new(&problem.row_source(second), &followed.ok()?)
+}
 
-    fn integrate(
-        &self,
-        solver: &MotionSolver,
-        duration: f64,
-    ) -> Result<ComputedMotion, StudyError> {
-        let interval = solver.sample_interval(duration)?;
-        let settings = match solver {
-            MotionSolver::Settings(settings) => settings,
-            MotionSolver::Accuracy { accuracy, .. } => {
-                return self.to_accuracy(*accuracy, duration, interval);
-            }
-        };
-        let options = Options {
-            sample_interval: Some(interval),
-            ..settings.options()
-        };
-        let finer = estimate::comparison_options(&options);
-        // The second run is the same unless the first one fails.
-        let (motion, second) = rayon::join(
-            || self.solve(duration, &options),
-            || self.solve(duration, &finer).ok(),
-        );
-        let motion = motion?;
-        let second = match &motion.failure {
-            None => second,
-            Some(_) if motion.end_time() == 0.0 => None,
-            Some(_) => self.solve(motion.end_time(), &finer).ok(),
-        };
-        let (estimate, hint) = rayon::join(
-            || self.estimate_error(&motion, second, &options),
-            || self.method_hint(&motion, settings),
-        );
-        let mut estimate = estimate?;
-        estimate.record.add("tolerance", "", settings.rtol);
-        let leaves_unstable = self.starts_unstable() && self.moves(&motion);
-        let unstable = leaves_unstable.then(|| STARTS_UNSTABLE.to_owned());
-        Ok(ComputedMotion {
-            method_text: settings.describe(),
-            remarks: hint + &estimate.remarks,
-            inaccuracy: unstable.or(estimate.inaccuracy),
-            motion,
-            ..estimate
-        })
-    }
-
-    /// The rows of a motion with the errors of their columns, and what is said of it.
-    fn rows_and_summary(
-        &self,
-        integrated: &ComputedMotion,
-        (followed, second_rows): (
-            FollowedMotion<'_>,
-            impl FnOnce() -> Option<SecondRows> + Send,
-        ),
-        duration: f64,
-        progress: Progress<'_>,
-    ) -> Result<(ComputedTrajectory<'static>, (String, Record)), StudyError> {
-        let mut beside = None;
-        let computed = rayon::in_place_scope(|scope| {
-            // On another core: the rows of the second computation, and the summary.
-            scope.spawn(|_| {
-                beside = Some((second_rows(), self.summary(integrated, duration)));
-            });
-            let (trajectory, between) = followed;
-            self.row_source(&integrated.motion)
-                .along(trajectory, between, progress)
-        });
-        let mut computed = computed?;
-        let (second, summary) = beside.unwrap_or_default();
-        computed.set_errors(second.as_ref());
-        Ok((computed, summary))
-    }
-
-    /// The rows of a motion's second computation, at the same times; none where it has none.
-    fn second_rows(
-        &self,
-        integrated: &ComputedMotion,
-        evaluated: Option<Vec<TrajectorySample>>,
-        times: Option<&[f64]>,
-    ) -> Option<SecondRows> {
-        let second = integrated.comparison.as_ref()?;
-        let trajectory = self.trajectory(second, evaluated, &integrated.method_text, times);
-        SecondRows::new(&self.row_source(second), &trajectory.ok()?)
-    }
-
-    /// What the rows of a motion are evaluated of.
-    fn row_source<'p>(&'p self, motion: &'p SegmentedMotion) -> RowSource<'p, 'p, PlaneScene> {
-        let charts = motion.charts.iter();
-        RowSource {
-            charts: charts
-                .map(|c| (self.loaded_scene, &c.output_model))
-                .collect(),
-            ..RowSource::new(self.loaded_scene, &self.output_model)
-        }
-    }
-
-    /// Why a motion is not what was required: it ended early, or is less accurate.
-    fn shortfall(&self, integrated: &ComputedMotion, solver: &MotionSolver) -> Option<StudyError> {
-        let (scene, failure) = (self.loaded_scene, integrated.motion.failure.as_ref());
-        let ended = || Some(self.explain_end(&integrated.motion, failure?));
-        let inaccuracy = || Some(not_resolved(scene, integrated.inaccuracy.as_ref()?));
-        too_many_steps(scene, failure, solver)
-            .or_else(ended)
-            .or_else(inaccuracy)
-            .or_else(|| not_accurate(scene, integrated.accuracy?))
-    }
+/// Why a motion is not what was required: it ended early, or is less accurate.
+fn shortfall<P: ChartedProblem>(
+    problem: &P,
+    integrated: &Computed<P>,
+    solver: &MotionSolver,
+) -> Option<StudyError> {
+    let (scene, failure) = (problem.scene(), integrated.motion.failure.as_ref());
+    let ended = || Some(problem.explain_end(&integrated.motion, failure?));
+    let inaccuracy = || Some(not_resolved(scene, integrated.inaccuracy.as_ref()?));
+    too_many_steps(scene, failure, solver)
+        .or_else(ended)
+        .or_else(inaccuracy)
+        .or_else(|| not_accurate(scene, integrated.accuracy?))
 }

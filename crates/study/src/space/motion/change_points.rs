@@ -1,7 +1,6 @@
 //! What a motion in space says of the change points of its branch.
 
 use super::problem::SpaceMotionProblem;
-use super::run::Run;
 use crate::free_motion::compute::{MotionProblem as _, first_changes};
 use crate::number_format::digits;
 use dwell_dynamics::{DynamicsError, Event, EventKind, OdeState, Solution, SpaceFitWindow};
@@ -18,12 +17,6 @@ const AT_LIMIT: f64 = 1e-4;
 /// How far in front of a change point that it cannot cross a motion ends, in half windows: at their edge nothing is evaluated any more.
 const IN_FRONT: f64 = 1.02;
 
-/// Lines of the first of some changes.
-fn first_change_lines(all: Vec<String>) -> String {
-    let lines = first_changes(all).into_iter();
-    lines.map(|line| format!("  {line}\n")).collect()
-}
-
 /// How many change points of a window are at or below a coordinate.
 fn count_below(window: &SpaceFitWindow, q: f64) -> f64 {
     let x = q - window.at.q;
@@ -34,54 +27,32 @@ fn count_below(window: &SpaceFitWindow, q: f64) -> f64 {
 }
 
 impl SpaceMotionProblem<'_> {
-    /// Lines of the summary: where the motion changes its coordinate, and where it passes change points, and how.
-    pub(super) fn describe_changes(&self, run: &Run) -> String {
-        let changes = self
-            .changes(&run.motion)
-            .into_iter()
-            .map(|(t, [from, to])| {
-                let t = digits(t, 6);
-                format!(
-                    "t = {t} s: coordinate changed from {from} (next to its dead point) to {to}"
-                )
-            });
-        let text = first_change_lines(changes.collect());
-        let parts = self.parts(&run.motion);
-        let passed = parts.map(|(problem, solution)| problem.describe_change_points(solution));
-        text + &passed.collect::<String>()
-    }
-
-    /// The same of the change points of one coordinate.
-    fn describe_change_points(&self, solution: &Solution) -> String {
+    /// Lines of the summary: which change points of its coordinate a part of the motion passes, and how.
+    pub(super) fn describe_change_points(&self, solution: &Solution) -> Vec<String> {
         let windows = self.machine.change_point_windows();
         let steps = &solution.steps;
-        let passages: Vec<f64> = steps
-            .windows(2)
-            .flat_map(|pair| {
-                windows
-                    .iter()
-                    .filter_map(move |window| passage(window, pair))
-            })
-            .collect();
-        let passages = passages.iter().map(|t| digits(*t, 6));
-        let passages = passages.map(|t| format!("t = {t} s: change point crossed"));
-        let mut text = first_change_lines(passages.collect());
+        let passages = steps.windows(2).flat_map(|pair| {
+            let passed = windows.iter();
+            passed.filter_map(move |window| passage(window, pair))
+        });
+        let passages = passages.map(|t| format!("t = {} s: change point crossed", digits(t, 6)));
+        let mut lines = first_changes(passages.collect());
         // Those that the motion came to.
         let is_met = |window: &&SpaceFitWindow| {
             let crossed = steps.windows(2).any(|pair| passage(window, pair).is_some());
             crossed || steps.iter().any(|step| window.contains(step.y[0]))
         };
-        for window in windows.iter().filter(is_met) {
+        lines.extend(windows.iter().filter(is_met).map(|window| {
             let at = digits(window.at.q, 6);
-            text += &match &window.fit {
+            match &window.fit {
                 Ok(_) => format!(
-                    "  change point at {at}: crossed by a polynomial fit within ±{}, where the tables have no rows\n",
+                    "change point at {at}: crossed by a polynomial fit within ±{}, where the tables have no rows",
                     digits(window.half_width, 3)
                 ),
-                Err(error) => format!("  the change point at {at} cannot be crossed: {error}\n"),
-            };
-        }
-        text
+                Err(error) => format!("the change point at {at} cannot be crossed: {error}"),
+            }
+        }));
+        lines
     }
 }
 

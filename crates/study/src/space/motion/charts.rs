@@ -6,9 +6,13 @@
 
 use super::problem::SpaceMotionProblem;
 use crate::explain::StudyError;
-use crate::free_motion::compute::{ChartedProblem, MotionProblem as _, Picked, SegmentedMotion};
+use crate::free_motion::compute::{
+    ChartedProblem, Instant, MotionProblem as _, NumberedEvent, SegmentedMotion, first_changes,
+};
+use crate::number_format::digits;
+use crate::space::trajectory::SpaceRows;
 use crate::trajectory::compute::TrajectorySample;
-use dwell_dynamics::{Machine, OdeState, Solution};
+use dwell_dynamics::{DynamicsError, Event, Machine, OdeState, Options, Solution};
 use dwell_geometry::JointId;
 use dwell_geometry::space::{
     Actuator, ActuatorKind, Condition, Coordinate, CoordinateFunction, Placement, Plan, Pose,
@@ -27,8 +31,6 @@ const SAME: f64 = 1e-7;
 /// What a chart is to the scene's own coordinate.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct OfChart {
-    /// Behind the scene's own coordinate, 0.
-    pub(super) number: usize,
     /// The scene's coordinate in the chart, and what it differs by, whole revolutions.
     own: CoordinateFunction,
     offset: f64,
@@ -57,33 +59,54 @@ impl SpaceMotionProblem<'_> {
         chart.unwrap_or(self)
     }
 
-    /// The error that ended a motion early, in the names of the scene, if one did.
-    pub(super) fn explained_end(&self, motion: &Motion) -> Option<StudyError> {
-        let (problem, solution) = self.parts(motion).next_back()?;
-        let error = motion.failure.as_ref()?;
-        let explained = problem.explain(error);
-        Some(problem.with_instant(error, explained, solution.steps.last()))
-    }
-
-    /// The times at which the coordinate changes, s, with the names before and after.
-    pub(super) fn changes(&self, motion: &Motion) -> Vec<(f64, [String; 2])> {
+    /// Lines of the summary: where the motion changes its coordinate.
+    fn changes(&self, motion: &Motion) -> Vec<String> {
         let name = |chart: usize| {
             let scene = self.in_chart(motion, chart).scene();
-            scene.mechanism.actuators[0].name.clone()
+            &scene.mechanism.actuators[0].name
         };
-        let pairs = motion.segments.windows(2).filter_map(|pair| {
+        let lines = motion.segments.windows(2).filter_map(|pair| {
             let [(from, _), (to, solution)] = pair else {
                 return None;
             };
             let start = solution.steps.first().filter(|_| from != to)?;
-            Some((start.t, [name(*from), name(*to)]))
+            let (t, [from, to]) = (digits(start.t, 6), [*from, *to].map(name));
+            Some(format!(
+                "t = {t} s: coordinate changed from {from} (next to its dead point) to {to}"
+            ))
         });
-        pairs.collect()
+        lines.collect()
     }
 }
 
 impl ChartedProblem for SpaceMotionProblem<'_> {
     type Chart = SpaceMotionProblem<'static>;
+
+    const IS_THINNED: bool = false;
+
+    fn by_method(&self, duration: f64, options: &Options) -> Result<Motion, StudyError> {
+        let motion = self.through_charts(options, duration);
+        motion.map_err(|error| self.explain(&error))
+    }
+
+    fn events(&self) -> (Vec<Event<CoordinateFunction>>, &Model) {
+        (self.events.clone(), &self.event_model)
+    }
+
+    fn rows(&self) -> &SpaceRows {
+        &self.rows
+    }
+
+    fn charts<'p>(&'p self, motion: &'p Motion) -> Vec<(&'p SpaceScene, &'p SpaceRows)> {
+        let charts = (0..=motion.charts.len()).map(|chart| self.in_chart(motion, chart));
+        charts
+            .map(|problem| (problem.scene(), &problem.rows))
+            .collect()
+    }
+
+    fn result_reactions(&self) -> usize {
+        self.rows.requested.len()
+    }
 
     fn machine_in<'m>(&'m self, motion: &'m Motion, chart: usize) -> &'m Machine<Model> {
         &self.in_chart(motion, chart).machine
@@ -92,11 +115,39 @@ impl ChartedProblem for SpaceMotionProblem<'_> {
     fn own_coordinate(
         &self,
         motion: &Motion,
-        (segment, ..): (usize, Picked, usize),
+        _: &Instant<'_>,
         sample: &TrajectorySample,
     ) -> Option<[f64; 3]> {
-        let (chart, _) = motion.segments.get(segment)?;
-        self.in_chart(motion, *chart).scene_coordinate(sample)
+        let problem = self.in_chart(motion, sample.chart);
+        problem.coordinate_of(problem.chart?, [&sample.q, &sample.q_dot, &sample.q_ddot])
+    }
+
+    fn describe_changes(&self, motion: &Motion) -> Vec<String> {
+        let mut lines = first_changes(self.changes(motion));
+        for (problem, solution) in self.parts(motion) {
+            lines.extend(problem.describe_change_points(solution));
+        }
+        lines
+    }
+
+    fn coordinates_at(&self, motion: &Motion, event: &NumberedEvent) -> Option<Vec<f64>> {
+        let problem = self.in_chart(motion, event.chart);
+        let (at, mut workspace) = (&event.state, problem.machine.workspace());
+        let state = problem.machine.evaluate(at.t, &at.y, &mut workspace).ok()?;
+        let motion = [state.q(), state.q_dot(), state.q_ddot()];
+        Some(match problem.chart {
+            Some(chart) => problem.coordinate_of(chart, motion)?[..2].to_vec(),
+            None => {
+                let both = state.q().iter().zip(state.q_dot());
+                both.flat_map(|(q, speed)| [*q, *speed]).collect()
+            }
+        })
+    }
+
+    fn explain_end(&self, motion: &Motion, error: &DynamicsError) -> StudyError {
+        let last = self.parts(motion).next_back();
+        let (problem, step) = last.map_or((self, None), |(p, s)| (p, s.steps.last()));
+        problem.with_instant(error, problem.explain(error), step)
     }
 }
 
@@ -115,11 +166,6 @@ impl SpaceMotionProblem<'_> {
             && self.machine.free() == [0]
             && !self.machine.has_contacts()
             && !self.spec.events.iter().any(counts)
-    }
-
-    /// In a chart, the coordinate of the scene with its rate and acceleration at a sample.
-    pub(super) fn scene_coordinate(&self, sample: &TrajectorySample) -> Option<[f64; 3]> {
-        self.coordinate_of(self.chart?, [&sample.q, &sample.q_dot, &sample.q_ddot])
     }
 
     /// The coordinate of the scene with its rate and acceleration, at a state of a chart.
@@ -157,7 +203,7 @@ impl SpaceMotionProblem<'_> {
                     let state = charts[k].state_from(&self.machine, motion, from);
                     return Some(NextChart::Known(k + 1, state));
                 }
-                let chart = main.chart(kind, motion, &places, charts.len() + 1)?;
+                let chart = main.chart(kind, motion, &places)?;
                 let chart = chart.counting_from(own, motion).filter(is_fit)?;
                 let state = chart.state_from(&self.machine, motion, from);
                 Some(NextChart::New(Box::new(chart), state))
@@ -221,7 +267,6 @@ impl SpaceMotionProblem<'_> {
         kind: ActuatorKind,
         [q, q_dot]: [f64; 2],
         places: &[Placement],
-        number: usize,
     ) -> Option<SpaceMotionProblem<'static>> {
         let mut scene: SpaceScene = self.scene().clone();
         let own_joint = scene.mechanism.actuators[0].kind;
@@ -243,11 +288,7 @@ impl SpaceMotionProblem<'_> {
         }
         let own = own_joint.coordinate(&self.scene().mechanism.joints[own_joint.joint().0]);
         let own = chart.event_model.coordinate_function(own).ok()?;
-        chart.chart = Some(OfChart {
-            number,
-            own,
-            offset: 0.0,
-        });
+        chart.chart = Some(OfChart { own, offset: 0.0 });
         Some(chart)
     }
 
