@@ -1,12 +1,12 @@
 //! The friction of a joint, as a magnitude of a load.
 
 use super::LoadKind;
+use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Component, Joint, JointId, JointKind, Mechanism, Reaction};
 
-/// Coulomb friction in a joint, which holds at zero speed or is regularised around it. The load must be a [`LoadKind::Torque`] on the bodies of
-/// a revolute joint or a [`LoadKind::SlideForce`] on those of a prismatic joint or slot; in space a
-/// [`JointTorque`](crate::space::LoadKind::JointTorque) of a revolute joint, a [`SlideForce`](crate::space::LoadKind::SlideForce) of a
-/// prismatic joint, or of a cylindrical joint one of each.
+/// Coulomb friction in a joint, which holds at zero speed or is regularised around it. The load must be a [`couple`](LoadKind::couple) on the
+/// bodies of a revolute joint or a [`slide_force`](LoadKind::slide_force) on those of a prismatic joint or slot; in space also, of a cylindrical
+/// joint, one of each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Friction {
     /// The joint.
@@ -51,14 +51,13 @@ impl Friction {
         self.validate_numbers()?;
         let bodies = joint.bodies;
         let fits = match (joint.kind, self.contact) {
-            (JointKind::Revolute, FrictionContact::Pin { .. }) => {
-                kind == LoadKind::Torque { bodies }
-            }
+            (JointKind::Revolute, FrictionContact::Pin { .. }) => kind == LoadKind::couple(bodies),
             (
                 JointKind::Prismatic { .. } | JointKind::Slot { .. },
                 FrictionContact::Guide { .. },
             ) => {
-                matches!(kind, LoadKind::SlideForce(guide) if guide.bodies == bodies)
+                let along = kind.sliding_coordinate();
+                matches!(along, Some(CoordinateFunction::Travel(guide)) if guide.bodies == bodies)
             }
             (JointKind::Revolute, FrictionContact::Guide { .. })
             | (JointKind::Prismatic { .. } | JointKind::Slot { .. }, FrictionContact::Pin { .. })

@@ -6,7 +6,7 @@ use super::bodies::Space;
 use super::coordinates::coordinates;
 use super::friction::add_friction;
 use super::joints::Joints;
-use super::loads::LoadReader;
+use super::loads::SpaceLoads;
 use super::requests::{SpaceRequests, in_ground_axes, one_reaction, requests};
 use super::scene::SpaceScene;
 use crate::bodies::Bodies;
@@ -89,7 +89,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
     let prescribed = prescribed.and_then(|f| prescribed_motion(&f, &by_name, &start));
     let sweep = section("coordinate-sweep");
     let sweep = sweep.and_then(|f| coordinate_sweep(&f, &by_name, &start));
-    let reader = LoadReader {
+    let reader = SpaceLoads {
         bodies: &bodies,
         joints: &joints,
         magnitudes: &magnitudes,

@@ -13,8 +13,11 @@ use crate::body_motion::slide_axis;
 use crate::dense::add_scaled;
 use crate::loads::reaction_row;
 use crate::lu::Lu;
+use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Component, JointKind};
-use dwell_kinetostatics::{Friction, FrictionContact, Load, LoadKind, Magnitude, PressureAngle};
+use dwell_kinetostatics::{
+    Friction, FrictionContact, Load, LoadKind, Magnitude, PressureAngle, Strength,
+};
 use faer::Mat;
 
 const MAX_NEWTON_STEPS: usize = 100;
@@ -38,14 +41,17 @@ impl MultibodySystem {
         let Some(joint) = self.mechanism.joints.get(friction.joint.0) else {
             return false;
         };
-        let on_pin = matches!(kind, LoadKind::Torque { bodies } if *bodies == joint.bodies);
-        let on_slide = matches!(kind, LoadKind::SlideForce(guide) if guide.bodies == joint.bodies);
+        let on_pin = *kind == LoadKind::couple(joint.bodies);
+        let on_slide = matches!(
+            kind,
+            LoadKind::Along(CoordinateFunction::Travel(guide), Strength::Direct) if guide.bodies == joint.bodies
+        );
         on_pin && joint.kind == JointKind::Revolute || on_slide && slide_axis(joint.kind).is_some()
     }
 
     /// Whether a separating force is that of the teeth of its joint.
     pub(super) fn check_teeth(&self, kind: &LoadKind, teeth: &PressureAngle) -> bool {
-        let LoadKind::SeparatingForce(mesh) = kind else {
+        let LoadKind::Special(mesh) = kind else {
             return false;
         };
         let joint = self.mechanism.joints.get(teeth.joint.0);
@@ -78,20 +84,15 @@ impl MultibodySystem {
         let Magnitude::Friction(friction) = &load.magnitude else {
             return None;
         };
-        let [_, velocity] = match load.kind {
-            LoadKind::SlideForce(guide) => {
+        let LoadKind::Along(along, Strength::Direct) = load.kind else {
+            return None;
+        };
+        let [_, velocity] = match along {
+            CoordinateFunction::Travel(guide) => {
                 at.motion().travel(guide.bodies, guide.points, guide.axis)?
             }
-            LoadKind::Torque { bodies } => at.motion().angle(bodies)?,
-            LoadKind::Gravity { .. }
-            | LoadKind::Force { .. }
-            | LoadKind::Spring { .. }
-            | LoadKind::TorsionSpring { .. }
-            | LoadKind::Damper { .. }
-            | LoadKind::RotationalDamper { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::SlideDamper(_)
-            | LoadKind::SeparatingForce(_) => return None,
+            CoordinateFunction::Angle(bodies) => at.motion().angle(bodies)?,
+            CoordinateFunction::Length { .. } => return None,
         };
         let sign = match friction.regularization_speed {
             Some(speed) => (velocity / speed).tanh(),

@@ -11,6 +11,7 @@ use super::DensePose;
 use super::state::SpaceCase;
 use crate::error::Result;
 use dwell_geometry::space::{BodyMotion, Joint, JointKind, Placement, Vec3, Wrench};
+use dwell_kinetostatics::LoadShape as _;
 use dwell_kinetostatics::space::LoadKind;
 use dwell_kinetostatics::{Friction, FrictionContact};
 
@@ -137,7 +138,7 @@ impl Law<'_> {
             FrictionContact::Bearing { radius, .. } => radius,
             FrictionContact::Guide { .. } | FrictionContact::Pin { .. } => 1.0,
         };
-        let is_couple = matches!(kind, LoadKind::JointTorque(_));
+        let is_couple = kind.is_couple();
         let mu = self.friction.coefficient;
         let smoothed = |speed: f64| match self.friction.regularization_speed {
             Some(slow) => (speed / slow).tanh(),
