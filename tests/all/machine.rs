@@ -5,7 +5,7 @@ use dwell_dynamics::{
     StepControl, integrate,
 };
 use dwell_kinetostatics::{
-    Drive, DriveKind, Friction, FrictionContact, Guide, Load, LoadKind, MachineModel as _,
+    Drive, DriveKind, Friction, FrictionContact, Guide, Load, LoadKind, LoadShape as _, MachineModel as _,
     Magnitude, Model, Motor, SpeedController, Strength,
 };
 use dwell_scene::PlaneScene;
@@ -434,7 +434,8 @@ fn reactions_are_the_sum_of_their_channels() {
                 .unit_load_response(load, &mut run)
                 .expect("a direction");
             add(&run, f);
-            kinds.insert(std::mem::discriminant(&model.loads()[load].kind));
+            let kind = &model.loads()[load].kind;
+            kinds.insert((std::mem::discriminant(kind), kind.unit()));
             if n == 1 && model.is_conservative(load) {
                 let h = 1e-4;
                 let mut potential = |x: f64| {

@@ -30,11 +30,7 @@ fn falling_body_and_fan(is_plane: bool) -> String {
             r#""turn""#,
         ],
     };
-    let angle = if is_plane {
-        r#"["ground", "rotor"]"#
-    } else {
-        r#""turn""#
-    };
+    let travel = if is_plane { "length" } else { "travel" };
     let [drag, fan_drag] = COEFFICIENTS;
     let gravity = down.replace("-1", "-9.81");
     format!(
@@ -47,8 +43,8 @@ rotor = {{ points = {{ O = {origin} }}, mass = 1.0, center = {origin}, inertia =
 slide = {{ prismatic = [\"ground.O\", \"body.O\"], axis = {down} }}
 turn = {{ revolute = [\"ground.O\", \"rotor.O\"]{axis} }}
 [actuators]
-s = {{ travel = \"slide\" }}
-q = {{ angle = {angle} }}
+s = {{ {travel} = \"slide\" }}
+q = {{ angle = {fan} }}
 [assembly]
 s = 0.0
 q = 0.0
