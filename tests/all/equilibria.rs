@@ -16,9 +16,7 @@ fn torque(value: f64) -> Load {
     let scene = scene("pendulum-a01");
     Load {
         name: "push".into(),
-        kind: LoadKind::Torque {
-            bodies: scene.mechanism.joints[0].bodies,
-        },
+        kind: LoadKind::couple(scene.mechanism.joints[0].bodies),
         magnitude: Magnitude::Constant(value),
     }
 }
@@ -325,7 +323,7 @@ fn a_pressed_block_jams() {
     let with = |coefficient: f64| {
         let friction = Load {
             name: "rub".into(),
-            kind: LoadKind::SlideForce(Guide {
+            kind: LoadKind::slide_force(Guide {
                 bodies: guide.bodies,
                 points: guide.points,
                 axis: dwell_geometry::vec2(1.0, 0.0),

@@ -40,10 +40,7 @@ fn sprung(stiffness: f64, free_angle: f64) -> Machine {
     let scene = scene("pendulum-a01");
     let spring = Load {
         name: "coil".into(),
-        kind: LoadKind::TorsionSpring {
-            bodies: scene.mechanism.joints[0].bodies,
-            free_angle,
-        },
+        kind: LoadKind::torsion_spring(scene.mechanism.joints[0].bodies, free_angle),
         magnitude: Magnitude::Constant(stiffness),
     };
     machine(&scene, &[spring], &[])

@@ -5,8 +5,8 @@ use dwell_dynamics::{
     StepControl, integrate,
 };
 use dwell_kinetostatics::{
-    Drive, DriveKind, Friction, FrictionContact, Guide, Load, LoadKind, MachineModel as _,
-    Magnitude, Model, Motor, SpeedController,
+    Drive, DriveKind, Friction, FrictionContact, Guide, Load, LoadKind, LoadShape as _,
+    MachineModel as _, Magnitude, Model, Motor, SpeedController, Strength,
 };
 use dwell_scene::PlaneScene;
 use dwell_tests::cases::CASES;
@@ -214,9 +214,7 @@ push = { torque = "two", magnitude = { table = [[-4, 1], [0, 2], [4, -1]], of = 
     let scene = parse(&text);
     let friction = |name: &str, j: usize| Load {
         name: name.to_owned(),
-        kind: LoadKind::Torque {
-            bodies: scene.mechanism.joints[j].bodies,
-        },
+        kind: LoadKind::couple(scene.mechanism.joints[j].bodies),
         magnitude: Magnitude::Friction(Friction {
             joint: dwell_geometry::JointId(j),
             coefficient: 0.4,
@@ -317,7 +315,7 @@ fn a_block_on_an_incline() {
     let joint = &scene.mechanism.joints[0];
     let friction = |coefficient| Load {
         name: "rub".into(),
-        kind: LoadKind::SlideForce(Guide {
+        kind: LoadKind::slide_force(Guide {
             bodies: joint.bodies,
             points: joint.points,
             axis: dwell_geometry::vec2(0.8, -0.6),
@@ -384,11 +382,9 @@ fn reactions_are_the_sum_of_their_channels() {
             .iter()
             .zip(&loads)
             .map(|(load, &f)| match load.kind {
-                LoadKind::Damper { bodies, points } => {
-                    let between = state.bodies().separation(bodies, points);
-                    f * between.direction.expect("a line").dot(between.velocity)
+                LoadKind::Along(along, Strength::Viscous) => {
+                    f * state.bodies().coordinate(along)[1]
                 }
-                LoadKind::RotationalDamper { bodies } => f * state.bodies().angle(bodies)[1],
                 _ => f,
             })
             .collect();
@@ -438,7 +434,8 @@ fn reactions_are_the_sum_of_their_channels() {
                 .unit_load_response(load, &mut run)
                 .expect("a direction");
             add(&run, f);
-            kinds.insert(std::mem::discriminant(&model.loads()[load].kind));
+            let kind = &model.loads()[load].kind;
+            kinds.insert((std::mem::discriminant(kind), kind.unit()));
             if n == 1 && model.is_conservative(load) {
                 let h = 1e-4;
                 let mut potential = |x: f64| {

@@ -99,7 +99,9 @@ fn differences(reference: &Reference) -> Differences {
     let mut work = model.workspace::<f64>();
     let mut pose = model.plan().pose::<f64>();
     let mut out = model.coefficient_buffer::<f64>();
-    let gravity = reference.gravity().map(LoadKind::Gravity);
+    let gravity = reference
+        .gravity()
+        .map(|direction| LoadKind::Gravity { direction });
     let mut scale = [0.0_f64; 3];
     let mut wrong = [0.0_f64; 3];
     let samples = reference.samples();
@@ -232,7 +234,9 @@ fn the_governor_agrees_in_two_coordinates() {
     let (model, names) = reference.model_at(&start);
     let mut work = model.workspace::<f64>();
     let (mut found, mut second) = (model.result_buffer(), model.result_buffer());
-    let gravity = LoadKind::Gravity(reference.gravity().expect("gravity"));
+    let gravity = LoadKind::Gravity {
+        direction: reference.gravity().expect("gravity"),
+    };
     let mut compared = 0;
     for sample in reference.samples() {
         let q = [number(&sample["beta"]), number(&sample["sigma"])];

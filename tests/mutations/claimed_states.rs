@@ -3,8 +3,9 @@
 
 use super::detection::Detection;
 use super::tested_mechanism::{CheckMode, TestedMechanism};
+use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, JointKind, Vec2, vec2};
-use dwell_kinetostatics::{LoadKind, Magnitude};
+use dwell_kinetostatics::{Direction, LoadKind, Magnitude, Strength};
 use dwell_scene::PlaneScene;
 use dwell_verify::{ClaimedState, Twist};
 
@@ -178,50 +179,46 @@ impl Mutation {
     }
 
     fn alter_load(self, kind: &mut LoadKind, f: &mut f64, ground: BodyId) -> bool {
+        use Strength::{Direct, Elastic, Quadratic, Viscous};
         match (self, kind) {
             (Self::GravityReversed, LoadKind::Gravity { .. })
-            | (Self::SpringReversed, LoadKind::Spring { .. } | LoadKind::TorsionSpring { .. })
+            | (Self::SpringReversed, LoadKind::Along(_, Elastic { .. }))
             | (
                 Self::DamperReversed,
-                LoadKind::Damper { .. }
-                | LoadKind::RotationalDamper { .. }
-                | LoadKind::SlideDamper(_),
+                LoadKind::Along(_, Viscous | Quadratic) | LoadKind::Drag { .. },
             )
-            | (Self::PullForPush, LoadKind::PointToPointForce { .. } | LoadKind::SlideForce(_))
-            | (Self::TorqueReversed, LoadKind::Torque { .. }) => *f = -*f,
-            (Self::HalfStiffness, LoadKind::Spring { .. } | LoadKind::TorsionSpring { .. })
             | (
-                Self::HalfDamper,
-                LoadKind::Damper { .. }
-                | LoadKind::RotationalDamper { .. }
-                | LoadKind::SlideDamper(_),
-            ) => *f *= 0.5,
-            (
-                Self::NoFreeLength,
-                LoadKind::Spring {
-                    free_length: free, ..
-                }
-                | LoadKind::TorsionSpring {
-                    free_angle: free, ..
-                },
-            ) => {
-                *free = 0.0;
+                Self::PullForPush,
+                LoadKind::Along(
+                    CoordinateFunction::Length { .. } | CoordinateFunction::Travel(_),
+                    Direct,
+                ),
+            )
+            | (Self::TorqueReversed, LoadKind::Along(CoordinateFunction::Angle(_), Direct)) => {
+                *f = -*f;
             }
+            (Self::HalfStiffness, LoadKind::Along(_, Elastic { .. }))
+            | (Self::HalfDamper, LoadKind::Along(_, Viscous | Quadratic) | LoadKind::Drag { .. }) => {
+                *f *= 0.5
+            }
+            (Self::NoFreeLength, LoadKind::Along(_, Elastic { free })) => *free = 0.0,
             (
                 Self::OtherEnd,
-                LoadKind::Spring { points, .. } | LoadKind::PointToPointForce { points, .. },
-            ) => {
-                points[1] += vec2(0.01, 0.0);
+                LoadKind::Along(CoordinateFunction::Length { points, .. }, Direct | Elastic { .. }),
+            ) => points[1] += vec2(0.01, 0.0),
+            (Self::NoLever, LoadKind::Force { point, .. } | LoadKind::Drag { point, .. }) => {
+                *point = Vec2::ZERO;
             }
-            (Self::NoLever, LoadKind::Force { point, .. }) => *point = Vec2::ZERO,
+            (Self::ForceTurns, LoadKind::Force { direction, .. }) => {
+                *direction = match *direction {
+                    Direction::Ground(u) => Direction::Body(u),
+                    Direction::Body(u) => Direction::Ground(u),
+                };
+            }
             (
-                Self::ForceTurns,
-                LoadKind::Force {
-                    body_fixed: follows,
-                    ..
-                },
-            ) => *follows = !*follows,
-            (Self::TorqueFromTheGround, LoadKind::Torque { bodies }) => bodies[0] = ground,
+                Self::TorqueFromTheGround,
+                LoadKind::Along(CoordinateFunction::Angle(bodies), Direct),
+            ) => bodies[0] = ground,
             _ => return false,
         }
         true

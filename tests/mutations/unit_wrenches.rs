@@ -1,7 +1,9 @@
 //! What a wrong inertia force does: the answer of the mechanism to forces on its bodies, which is linear.
 
 use dwell_geometry::{BodyId, JointId, JointKind, Mechanism, Vec2, vec2};
-use dwell_kinetostatics::{InverseDynamics, KinetostaticsError, Load, LoadKind, Magnitude, Model};
+use dwell_kinetostatics::{
+    Direction, InverseDynamics, KinetostaticsError, Load, LoadKind, Magnitude, Model,
+};
 use dwell_scene::PlaneScene;
 use dwell_verify::SubjectError;
 
@@ -45,12 +47,9 @@ impl UnitWrenches {
             let force = |direction| LoadKind::Force {
                 body: BodyId(b),
                 point: scene.masses[b].center,
-                direction,
-                body_fixed: false,
+                direction: Direction::Ground(direction),
             };
-            let couple = LoadKind::Torque {
-                bodies: [ground, BodyId(b)],
-            };
+            let couple = LoadKind::couple([ground, BodyId(b)]);
             [force(vec2(1.0, 0.0)), force(vec2(0.0, 1.0)), couple].map(load)
         };
         let loads = (0..mechanism.bodies.len()).flat_map(on).collect();

@@ -14,8 +14,18 @@ def load_magnitude(load, motion, names):
     amount = value_of(load.magnitude, names, motion.count)
     if load.source == "given":
         return amount
+    if load.source == "drag":
+        speed = along_drag(load, motion)
+        return -amount * np.abs(speed) * speed
     coordinate = motion.measure(load.measure)
     return -amount * (coordinate.value - load.free if load.source == "spring" else coordinate.first)
+
+
+def along_drag(load, motion):
+    """The speed of the point of a drag, or the angular velocity of a fan."""
+    if load.kind == "drag":
+        return np.linalg.norm(motion.point(load.place).first, axis=-1)
+    return motion.measure(load.measure).first
 
 
 def load_terms(load, motion, names):
@@ -23,6 +33,8 @@ def load_terms(load, motion, names):
     amount = np.abs(value_of(load.magnitude, names, motion.count))
     if load.source == "given":
         return amount
+    if load.source == "drag":
+        return amount * along_drag(load, motion) ** 2
     coordinate = motion.measure(load.measure)
     return amount * (np.abs(coordinate.value) + abs(load.free) if load.source == "spring" else np.abs(coordinate.first))
 
@@ -44,6 +56,10 @@ def unit_load(load, motion):
         point = motion.point(load.place).value
         force = motion.direction(load.place.body, load.direction).value if load.in_body else load.direction
         return [Wrench(load.place.body, np.broadcast_to(force, point.shape), point, 0.0 * point)]
+    if load.kind == "drag":
+        velocity, speed = motion.point(load.place).first, along_drag(load, motion)[:, None]
+        forward = np.divide(velocity, speed, out=np.zeros_like(velocity), where=speed > 0.0)
+        return [Wrench(load.place.body, forward, motion.point(load.place).value, 0.0 * forward)]
     if load.kind == "torque":
         axis = motion.direction(load.bodies[0], load.direction).value
         return pair(load.bodies, 0.0 * axis, 0.0 * axis, axis)
@@ -51,7 +67,11 @@ def unit_load(load, motion):
 
 
 def coefficient(load, motion):
-    """The magnitude of a load whose number in `reduce` is 1: a force of 1 N, a stiffness of 1 N/m, a resistance of 1 N."""
+    """The magnitude of a load whose number in `reduce` is 1: a force of 1 N, a stiffness of 1 N/m, a resistance of 1 N; of a drag that of
+    coefficient 1 at unit speed."""
+    if load.source == "drag":
+        speed = along_drag(load, motion)
+        return -np.abs(speed) * speed
     if load.source == "spring":
         return load.free - motion.measure(load.measure).value
     return np.full(motion.count, -1.0 if load.source == "damper" else 1.0)

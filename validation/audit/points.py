@@ -52,10 +52,12 @@ class Reduced:
         return total, terms
 
     def load_numbers(self, q, velocity, time):
-        """F of every load; of a damper the resistance, positive where it opposes growth."""
+        """F of every load; of a damper the resistance, positive where it opposes growth; of a drag times |velocity| velocity."""
         signals, found = {self.name: q, f"{self.name}.velocity": velocity, "t": time}, {}
         for load in self.scene.loads:
             amount = known(load.magnitude, signals, q)
+            if load.source == "drag":
+                amount = amount * np.abs(velocity) * velocity
             rate = -self.at(f"{load.name}.w", q)[0] * velocity if load.source == "damper" else 1.0
             found[load.name] = amount * rate
         return found

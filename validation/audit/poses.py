@@ -156,7 +156,7 @@ def shaking(motion, of_loads):
         sizes[1] += size * np.linalg.norm(at, axis=-1) + np.linalg.norm(couple, axis=-1)
 
     for load in motion.scene.loads:
-        if load.kind in ("gravity", "force") and load.name in of_loads:
+        if load.kind in ("gravity", "force", "drag") and load.name in of_loads:
             for w in of_loads[load.name]:
                 add(w.force, w.point, w.couple)
     for k, body in enumerate(motion.scene.bodies):

@@ -92,7 +92,7 @@ class Magnitude:
 
 @dataclass
 class Load:
-    """A load: gravity, a force at a place, a torque about a direction, or a force along a measure."""
+    """A load: gravity, a force at a place, a torque about a direction, the drag of a place, or a force along a measure."""
 
     name: str
     kind: str
@@ -101,7 +101,7 @@ class Load:
     direction: np.ndarray | None = None
     bodies: list | None = None  # of a torque about a direction in the first body
     in_body: bool = False
-    source: str = "given"  # given, spring or damper
+    source: str = "given"  # given, spring, damper or drag
     magnitude: Magnitude | None = None
     free: float = 0.0
 
@@ -310,6 +310,8 @@ class Scene:
             axis = self.direction(table.get("axis", Z))
             bodies = [self.body_index(body) for body in bodies]
             return Load(name, "torque", direction=axis, bodies=bodies, magnitude=magnitude("magnitude"))
+        if "drag" in table:
+            return Load(name, "drag", place=self.place(table["drag"]), source="drag", magnitude=magnitude("coefficient"))
         key = next(key for key in ALONG if key in table)
         kind, source = ALONG[key]
         of = table[key]
@@ -317,7 +319,7 @@ class Scene:
             measure = self.measure_of(self.joint(of), kind)
         else:
             measure = self.angle_between(of) if kind == "angle" else self.distance(of)
-        amount = {"given": "magnitude", "spring": "stiffness", "damper": "damping"}[source]
+        amount = {"given": "magnitude", "spring": "stiffness", "damper": "damping", "drag": "coefficient"}[source]
         free = table.get("free-length", 0.0) * self.length + table.get("free-angle", 0.0) * self.angle
         return Load(name, "along", measure=measure, source=source, magnitude=magnitude(amount), free=free)
 
@@ -402,6 +404,7 @@ ALONG = {
     "damper": ("length", "damper"),
     "rotational-damper": ("angle", "damper"),
     "slide-damper": ("travel", "damper"),
+    "rotational-drag": ("angle", "drag"),
 }
 
 

@@ -27,8 +27,8 @@ use dwell_geometry::PositionError;
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_kinetostatics::table::{Bound, IntegratedCurve, PiecewiseColumns, Result, TableBuilder};
 use dwell_kinetostatics::{
-    CompiledSignal, ExactModel, Load, LoadKind, MachineModel as _, Magnitude, TableDomain,
-    TableError, TableQuantity,
+    CompiledSignal, ExactModel, Load, LoadShape as _, MachineModel as _, Magnitude, Strength,
+    TableDomain, TableError, TableQuantity,
 };
 use dwell_laws::Features;
 use source::{AuxiliaryColumns, TotalInertia, TotalPotential};
@@ -106,10 +106,8 @@ struct TabulatedLoad {
 /// How a magnitude acts.
 #[derive(Debug, Clone, PartialEq)]
 enum LoadEffect {
-    /// F itself acts.
-    Force,
-    /// F resists in proportion to the speed.
-    Damper,
+    /// By a law on its unit response.
+    Load(Strength),
     /// It is the input of a drive.
     Drive(Box<CompiledDrive>),
 }
@@ -266,7 +264,7 @@ impl TabulatedLoad {
     fn drive(&self) -> Option<&CompiledDrive> {
         match &self.effect {
             LoadEffect::Drive(drive) => Some(drive),
-            LoadEffect::Force | LoadEffect::Damper => None,
+            LoadEffect::Load(_) => None,
         }
     }
 
@@ -274,25 +272,9 @@ impl TabulatedLoad {
         let model = machine.model();
         let drive = machine.drives.iter().find(|drive| drive.load == load);
         let found = &model.loads()[load];
-        let (effect, magnitude) = match (drive, found.kind) {
-            (Some(drive), _) => (LoadEffect::Drive(Box::new(drive.clone())), &drive.input),
-            (
-                None,
-                LoadKind::Damper { .. }
-                | LoadKind::RotationalDamper { .. }
-                | LoadKind::SlideDamper(_),
-            ) => (LoadEffect::Damper, &found.magnitude),
-            (
-                None,
-                LoadKind::Gravity { .. }
-                | LoadKind::Force { .. }
-                | LoadKind::Torque { .. }
-                | LoadKind::Spring { .. }
-                | LoadKind::TorsionSpring { .. }
-                | LoadKind::PointToPointForce { .. }
-                | LoadKind::SlideForce(_)
-                | LoadKind::SeparatingForce(_),
-            ) => (LoadEffect::Force, &found.magnitude),
+        let (effect, magnitude) = match drive {
+            Some(drive) => (LoadEffect::Drive(Box::new(drive.clone())), &drive.input),
+            None => (LoadEffect::Load(found.kind.strength()), &found.magnitude),
         };
         let signals = model.compiled_signals(load).iter().map(|signal| {
             Ok(match *signal {

@@ -25,7 +25,11 @@ pub(crate) const ACCESS: Access = Access {
     inputs: "in->",
     state: "s->",
     zero: "ZERO",
+    choice: CHOICE,
 };
+
+/// A conditional expression of C.
+pub(crate) const CHOICE: [&str; 4] = ["(", " ? ", " : ", ")"];
 
 /// The first arguments of functions of a state.
 const ARGUMENTS: &str =

@@ -79,7 +79,7 @@ pub use fmu::{FmiVersion, FmuFiles, fmu_files};
 pub use identifiers::Identifiers;
 pub use machine::{
     Domain, Function, FunctionSampler, LoadDescription, LoadEffect, MachineDescription, Motor,
-    PartKind, ReferenceSizes,
+    PartKind, ReferenceSizes, Resistance,
 };
 pub use matlab::matlab_files;
 pub use part::{Column, Part, Precision};

@@ -79,6 +79,15 @@ pub struct LoadDescription {
     pub unit: &'static str,
 }
 
+/// How a resistance grows with the velocity.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Resistance {
+    /// F = −d w q̇.
+    Linear,
+    /// F = d |q̇| q̇, where w is that of the drag at unit speed.
+    Quadratic,
+}
+
 /// How a load acts. F is what w and the c of the reactions are multiplied by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LoadEffect {
@@ -92,15 +101,19 @@ pub enum LoadEffect {
         /// The parameter's value in the scene.
         magnitude: f64,
     },
-    /// F = −d w q̇, where d is a parameter.
+    /// F by a resistance, whose d is a parameter.
     Damper {
         /// The parameter's value in the scene.
         damping: f64,
+        /// How F follows from d.
+        law: Resistance,
     },
-    /// F = −d w q̇, where d is an input.
+    /// F by a resistance, whose d is an input.
     VariableDamper {
         /// The input's value at the start.
         initial: f64,
+        /// How F follows from d.
+        law: Resistance,
     },
     /// F is an input.
     Input {
@@ -180,8 +193,8 @@ impl LoadEffect {
     pub(crate) fn scene_value(&self) -> f64 {
         match *self {
             Self::Conservative { magnitude } | Self::Constant { magnitude } => magnitude,
-            Self::Damper { damping } => damping,
-            Self::VariableDamper { initial } | Self::Input { initial } => initial,
+            Self::Damper { damping, .. } => damping,
+            Self::VariableDamper { initial, .. } | Self::Input { initial } => initial,
             Self::Motor(motor) => motor.initial_voltage,
         }
     }

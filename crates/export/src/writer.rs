@@ -2,7 +2,7 @@
 
 use crate::export::Export;
 use crate::identifiers::{Identifiers, comment};
-use crate::machine::{LoadDescription, LoadEffect};
+use crate::machine::{LoadDescription, LoadEffect, Resistance};
 
 /// The names of the functions and members of an export of one or several degrees of freedom.
 pub(crate) struct Members<'a> {
@@ -105,7 +105,7 @@ impl<'a> Members<'a> {
                 LoadEffect::Conservative { magnitude } | LoadEffect::Constant { magnitude } => {
                     one("magnitude", magnitude, &format!("{unit}: magnitude"));
                 }
-                LoadEffect::Damper { damping } => {
+                LoadEffect::Damper { damping, .. } => {
                     one("damping", damping, &format!("{unit}: constant"));
                 }
                 LoadEffect::Motor(motor) => {
@@ -163,6 +163,8 @@ pub(crate) struct Access {
     pub(crate) inputs: &'static str,
     pub(crate) state: &'static str,
     pub(crate) zero: &'static str,
+    /// What is before, between and behind a condition and its two values.
+    pub(crate) choice: [&'static str; 4],
 }
 
 impl Access {
@@ -172,17 +174,15 @@ impl Access {
             parameters: p,
             inputs,
             state,
-            zero,
+            ..
         } = self;
         match effect {
             LoadEffect::Conservative { .. } | LoadEffect::Constant { .. } => {
                 format!("{p}magnitude_{name}")
             }
             LoadEffect::Input { .. } => format!("{inputs}load_{name}"),
-            LoadEffect::Damper { .. } => format!("{zero} - {p}damping_{name} * {velocity}"),
-            LoadEffect::VariableDamper { .. } => {
-                format!("{zero} - {inputs}damping_{name} * {velocity}")
-            }
+            LoadEffect::Damper { law, .. } => self.resistance(*law, p, name, velocity),
+            LoadEffect::VariableDamper { law, .. } => self.resistance(*law, inputs, name, velocity),
             LoadEffect::Motor(_) => {
                 let constant = format!("({p}gear_ratio_{name} * {p}torque_constant_{name})");
                 match effect.has_current() {
@@ -191,6 +191,20 @@ impl Access {
                         "{constant} * ({inputs}voltage_{name} - {constant} * {velocity}) / {p}resistance_{name}"
                     ),
                 }
+            }
+        }
+    }
+
+    /// F of a resistance, whose damping is a member of `from`.
+    fn resistance(&self, law: Resistance, from: &str, name: &str, velocity: &str) -> String {
+        let (zero, q_dot) = (self.zero, format!("{}q_dot", self.state));
+        match law {
+            Resistance::Linear => format!("{zero} - {from}damping_{name} * {velocity}"),
+            Resistance::Quadratic => {
+                let [when, then, otherwise, end] = self.choice;
+                let speed =
+                    format!("{when}{q_dot} < {zero}{then}{zero} - {q_dot}{otherwise}{q_dot}{end}");
+                format!("{from}damping_{name} * {speed} * {q_dot}")
             }
         }
     }

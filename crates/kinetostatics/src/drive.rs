@@ -67,6 +67,58 @@ impl<C> DriveKind<C> {
     }
 }
 
+/// How a kind of drive is named, and its state if it has one of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DriveWords {
+    /// The kind.
+    pub kind: &'static str,
+    /// Its input.
+    pub input: &'static str,
+    /// The unit of its input.
+    pub input_unit: &'static str,
+    /// Name, unit and meaning of its state; the meaning is empty where the name says it.
+    pub state: Option<[&'static str; 3]>,
+}
+
+impl<C> DriveKind<C> {
+    /// Its names and units on an angle or a length.
+    pub fn words(&self, is_angle: bool) -> DriveWords {
+        let of = |angle, length| if is_angle { angle } else { length };
+        match self {
+            Self::AppliedForce(_) => DriveWords {
+                kind: "applied force",
+                input: "applied_force",
+                input_unit: of("N m", "N"),
+                state: None,
+            },
+            Self::Motor(motor) => DriveWords {
+                kind: "direct-current motor",
+                input: "voltage",
+                input_unit: "V",
+                state: (motor.inductance > 0.0).then_some(["current", "A", ""]),
+            },
+            Self::SpeedController(controller) => DriveWords {
+                kind: "speed controller",
+                input: "set_speed",
+                input_unit: of("rad/s", "m/s"),
+                state: (controller.integral_gain > 0.0).then_some([
+                    "integral",
+                    of("rad", "m"),
+                    "integral of the controller error",
+                ]),
+            },
+        }
+    }
+
+    /// The motor, if it is one.
+    pub fn motor(&self) -> Option<&Motor<C>> {
+        match self {
+            Self::Motor(motor) => Some(motor),
+            Self::AppliedForce(_) | Self::SpeedController(_) => None,
+        }
+    }
+}
+
 /// A direct-current motor behind a gear, eq. (1).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motor<C = Coordinate> {

@@ -47,9 +47,9 @@ pub use drive::{Drive, DriveKind, Motor, SpeedController};
 pub use error::{KinetostaticsError, LoadError, ModelError};
 pub use friction::FrictionState;
 pub use load::{
-    AppliedWrench, CompiledSignal, ForceSource, Friction, FrictionContact, Guide, Load, LoadKind,
-    LoadState, MAX_FUNCTION_SIGNALS, Magnitude, MagnitudeFunction, Mesh, PitchLines, PressureAngle,
-    Signal,
+    AppliedWrench, CompiledSignal, Direction, ForceSource, Friction, FrictionContact, Guide, Load,
+    LoadCoordinate, LoadKind, LoadNames, LoadShape, LoadState, LoadSymbol, MAX_FUNCTION_SIGNALS,
+    Magnitude, MagnitudeFunction, Mesh, PitchLines, PressureAngle, Signal, Strength,
 };
 pub use mass::Mass;
 pub use model::{

@@ -49,6 +49,6 @@ mod response;
 mod surface_friction;
 
 pub use dwell_geometry::space::{Coordinate, CoordinateFunction};
-pub use load::{Direction, Load, LoadKind};
+pub use load::{DirectedCouple, Direction, Load, LoadKind};
 pub use mass::Mass;
 pub use model::{Axes, Component, Model, ModelError, Reaction, Workspace};

@@ -117,11 +117,7 @@ fn loads(model: &Model) -> Vec<Load> {
     let ground = model.plan().tree().joints[0].parent;
     let bodies = [ground, model.plan().moving_bodies()[0].body].map(BodyId);
     let points = [vec2(0.3, 0.2), vec2(-0.1, 0.4)];
-    let spring = LoadKind::Spring {
-        bodies,
-        points,
-        free_length: 0.02,
-    };
+    let spring = LoadKind::spring(bodies, points, 0.02);
     let length = Coordinate::Length { bodies, points };
     let law = Law::Polynomial(Polynomial::motion(1.0, 2.0, 3.0));
     let direction = vec2(0.0, -1.0);
@@ -130,7 +126,7 @@ fn loads(model: &Model) -> Vec<Load> {
     [
         (LoadKind::Gravity { direction }, Magnitude::Constant(9.81)),
         (spring, Magnitude::Law(Signal::Velocity(length), law)),
-        (LoadKind::Torque { bodies }, formula),
+        (LoadKind::couple(bodies), formula),
     ]
     .map(|(kind, magnitude)| Load {
         name: "load".into(),
@@ -244,6 +240,8 @@ fn machines_in_space_allocate_nothing() {
 spring = { spring = ["ground.A", "slider.C"], stiffness = 31.0, free-length = 0.15 }
 coil = { torsion-spring = "A", stiffness = 0.7, free-angle = 0.4 }
 rub = { slide-damper = "D", damping = 1.5 }
+wind = { drag = "slider.C", coefficient = 0.4 }
+fan = { rotational-drag = "A", coefficient = 0.02 }
 push = { slide-force = "D", magnitude = "3*sin(2*t) - 4*s" }
 [coordinates]
 s = { travel = "D" }

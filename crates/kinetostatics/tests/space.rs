@@ -134,7 +134,9 @@ fn a_screw_jack_lifts_its_load() {
     let [thread, moment] = [AXIAL, Component::Moment(Axes::Joint, 2)].map(|c| ("thread", c));
     let (inertia, mass, h) = (0.00004, 25.0, 0.006 / TAU);
     let m = inertia + mass * h * h;
-    let gravity = LoadKind::Gravity(vec3(0.0, 0.0, -1.0));
+    let gravity = LoadKind::Gravity {
+        direction: vec3(0.0, 0.0, -1.0),
+    };
     for by_travel in [false, true] {
         // The travel of the spindle's thread in the nut is −h for a unit of the angle.
         let unit = if by_travel { -1.0 / h } else { 1.0 };

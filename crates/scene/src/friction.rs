@@ -54,10 +54,10 @@ fn add_loads(
     };
     let bodies = joint.bodies;
     let [force, damper] = match joints.guide(id) {
-        Some(guide) => [LoadKind::SlideForce(guide), LoadKind::SlideDamper(guide)],
+        Some(guide) => [LoadKind::slide_force(guide), LoadKind::slide_damper(guide)],
         None => [
-            LoadKind::Torque { bodies },
-            LoadKind::RotationalDamper { bodies },
+            LoadKind::couple(bodies),
+            LoadKind::rotational_damper(bodies),
         ],
     };
     let friction = friction.map(|friction| Friction {

@@ -1,8 +1,9 @@
 //! The loads on the mechanism: where they act, and their magnitudes.
 
-use crate::bodies::TWO_POINTS;
+use crate::bodies::{Bodies, TWO_POINTS};
 use crate::coordinates::AnyCoordinate;
 use crate::diagnostics::Span;
+use crate::dimensions::{Dimensions, Notation, Plane};
 use crate::joints::Joints;
 use crate::kind::{kind, reject_unread_kind};
 use crate::magnitude::{Magnitudes, Names};
@@ -12,17 +13,181 @@ use crate::table_reader::{Entry, TableReader};
 use crate::units::SI;
 use crate::value::{NumberRule, POINT, SignRule, Value};
 use crate::wording::shorten;
-use dwell_geometry::{BodyId, JointId, Vec2, vec2};
-use dwell_kinetostatics::{Load, LoadKind, Magnitude};
+use dwell_geometry::body_states::CoordinateFunction;
+use dwell_geometry::{BodyId, Coordinate, JointId, vec2};
+use dwell_kinetostatics::load::AnyLoadKind;
+use dwell_kinetostatics::{
+    Direction, Load, LoadCoordinate, LoadKind, LoadShape as _, Magnitude, Mesh, Strength,
+};
 use toml::de::DeValue;
+
+/// Where a load of some kind acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Place {
+    Force,
+    Torque,
+    /// A point, against its velocity.
+    Point,
+    /// Two points, along their line.
+    Points,
+    /// A relative angle.
+    Turn,
+    /// A travel.
+    Slide,
+}
+
+/// A spring without force at zero: its own length or angle is read beside its kind.
+const ELASTIC: Strength = Strength::Elastic { free: 0.0 };
+
+/// Where the loads of each kind act, and their laws; gravity has neither.
+const KINDS: [(&str, Place, Strength); 12] = [
+    ("force", Place::Force, Strength::Direct),
+    ("torque", Place::Torque, Strength::Direct),
+    ("joint-torque", Place::Turn, Strength::Direct),
+    ("point-to-point-force", Place::Points, Strength::Direct),
+    ("slide-force", Place::Slide, Strength::Direct),
+    ("spring", Place::Points, ELASTIC),
+    ("torsion-spring", Place::Turn, ELASTIC),
+    ("damper", Place::Points, Strength::Viscous),
+    ("rotational-damper", Place::Turn, Strength::Viscous),
+    ("slide-damper", Place::Slide, Strength::Viscous),
+    ("drag", Place::Point, Strength::Quadratic),
+    ("rotational-drag", Place::Turn, Strength::Quadratic),
+];
+
+/// The kind of a load of a reader.
+type KindOf<R> = AnyLoadKind<PointOf<R>, <R as LoadReader>::Along, <R as LoadReader>::Special>;
+type PointOf<R> = <<R as LoadReader>::Dimensions as Dimensions>::Point;
+
+/// What reads loads in the plane or in space.
+pub(crate) trait LoadReader: Sized {
+    type Dimensions: Notation;
+    /// A coordinate along which a load acts.
+    type Along: LoadCoordinate<Point = PointOf<Self>>;
+    /// A kind of load that there is in the plane or in space alone.
+    type Special;
+    /// A coordinate on which a magnitude depends.
+    type Coordinate: AnyCoordinate;
+
+    fn bodies(&self) -> &Bodies<'_, Self::Dimensions>;
+    fn magnitudes(&self) -> &Magnitudes<Self::Coordinate>;
+    fn force(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<KindOf<Self>>;
+    fn torque(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<KindOf<Self>>;
+    fn turn(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<Self::Along>;
+    fn slide(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<Self::Along>;
+
+    /// The k-th load without its name, of a kind other than gravity.
+    fn kind_and_size(
+        &self,
+        (kind, entry): (&str, &Entry<'_>),
+        (fields, k): (&TableReader<'_>, usize),
+    ) -> Option<(KindOf<Self>, Magnitude<Self::Coordinate>)> {
+        let Some(&(_, place, law)) = KINDS.iter().find(|(name, ..)| *name == kind) else {
+            return reject_unread_kind(entry);
+        };
+        let load_kind = self.load_kind((place, law), entry, fields);
+        let words = law.words();
+        let (size, is_couple) = (
+            words.magnitude,
+            matches!(place, Place::Torque | Place::Turn),
+        );
+        let unit = words.units[usize::from(is_couple)];
+        let magnitude = fields.require(size, &format!("add for instance `{size} = 10`, in {unit}"));
+        fields.place(size, SceneLocation::Magnitude(k));
+        let rule = match words.not_negative {
+            None => NumberRule::new(&SI, SignRule::Any),
+            Some(why) => NumberRule::new(&SI, SignRule::NotNegative).because(why),
+        };
+        let magnitude = magnitude.and_then(|e| self.magnitudes().read(e, fields, &rule));
+        load_kind.zip(magnitude)
+    }
+
+    fn load_kind(
+        &self,
+        (place, law): (Place, Strength),
+        entry: &Entry<'_>,
+        fields: &TableReader<'_>,
+    ) -> Option<KindOf<Self>> {
+        let along = match place {
+            Place::Force => return self.force(entry, fields),
+            Place::Torque => return self.torque(entry, fields),
+            Place::Point => {
+                let (body, point) = self.moving_point(entry, fields)?;
+                return Some(AnyLoadKind::Drag { body, point });
+            }
+            Place::Points => self.two_points(entry, fields),
+            Place::Turn => self.turn(entry, fields),
+            Place::Slide => self.slide(entry, fields),
+        };
+        let law = match (law, place) {
+            (Strength::Elastic { .. }, Place::Turn) => {
+                let help = "add `free-angle = 0.0`, the angle at which its torque is zero";
+                let free = fields.require("free-angle", help);
+                let free = free.and_then(|e| e.value.angle(fields.name_of(e)));
+                free.map(|free| Strength::Elastic { free })
+            }
+            (Strength::Elastic { .. }, _) => {
+                let rule = NumberRule::new(&fields.units().length, SignRule::NotNegative);
+                let help = "add `free-length = 0.1`, its length without force";
+                let free = fields.number("free-length", help, &rule);
+                free.map(|free| Strength::Elastic { free })
+            }
+            (law, _) => Some(law),
+        };
+        Some(AnyLoadKind::Along(along?, law?))
+    }
+
+    /// A point of a moving body.
+    fn moving_point(
+        &self,
+        entry: &Entry<'_>,
+        fields: &TableReader<'_>,
+    ) -> Option<(BodyId, PointOf<Self>)> {
+        let name = entry.value.string(fields.name_of(entry))?;
+        let span = entry.value.span();
+        let (body, k) = self.bodies().find_point(name, &span)?;
+        self.require_moving_body(body, entry.value, &fields.what)?;
+        Some((body, self.bodies().at(&(body, k, span))))
+    }
+
+    /// A load that acts on the ground alone has no effect, so it is taken for a mistake.
+    fn require_moving_body(&self, body: BodyId, value: Value<'_>, what: &str) -> Option<()> {
+        if self.bodies().ground != Some(body.0) {
+            return Some(());
+        }
+        let message = format!("{what} acts on the ground");
+        let help = "let it act on a moving body, or leave it out";
+        value.reject(message, "it does not move", help)
+    }
+
+    fn two_points(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<Self::Along> {
+        let what = fields.name_of(entry);
+        let [a, b] = self
+            .bodies()
+            .find_two_points(entry.value, TWO_POINTS, what)?;
+        let points = [self.bodies().at(&a), self.bodies().at(&b)];
+        let bodies = self.require_different_bodies([(a.0, &a.2), (b.0, &b.2)], fields)?;
+        Some(Self::Along::distance(bodies, points))
+    }
+
+    fn require_different_bodies(
+        &self,
+        ends: [(BodyId, &Span); 2],
+        fields: &TableReader<'_>,
+    ) -> Option<[BodyId; 2]> {
+        let message = |name: &str| format!("{} acts between body `{name}` and itself", fields.what);
+        let help = "a load within one rigid body has no effect";
+        self.bodies().require_different(ends, message, help)
+    }
+}
 
 impl Names<'_> {
     /// Every load of the section that was read well.
     pub(crate) fn loads(&self, fields: &TableReader<'_>) -> Vec<Load> {
         let mut gravity: Option<Span> = None;
         read_loads(fields, |entry, fields, k| {
-            let found = self.kind_and_magnitude(fields, k)?;
-            if let LoadKind::Gravity { .. } = found.0
+            let load = self.kind_and_magnitude(fields, k)?;
+            if load.0.is_gravity()
                 && let Some(other) = gravity.replace(entry.key.clone())
             {
                 let labels = [(&other, "here"), (&entry.key, "and here again")];
@@ -30,7 +195,7 @@ impl Names<'_> {
                 let log = entry.log();
                 log.report("gravity is given twice", &labels, help);
             }
-            Some(found)
+            Some(load)
         })
     }
 
@@ -45,71 +210,43 @@ impl Names<'_> {
             fields.place(kind, SceneLocation::Magnitude(k));
             return gravity(entry.value, &fields.name_of(entry));
         }
-        let load_kind = || self.load_kind(kind, entry, fields);
-        kind_and_size((kind, entry), (fields, k), self.magnitudes, load_kind)
+        self.kind_and_size((kind, entry), (fields, k))
     }
 
-    fn load_kind(
-        &self,
-        kind: &str,
-        entry: &Entry<'_>,
-        fields: &TableReader<'_>,
-    ) -> Option<LoadKind> {
-        match kind {
-            "force" => self.force(entry, fields),
-            "torque" => {
-                let bodies = self.torque(entry, fields)?;
-                Some(LoadKind::Torque { bodies })
-            }
-            "spring" => {
-                let both = self.two_points(entry, fields);
-                let rule = NumberRule::new(&fields.units().length, SignRule::NotNegative);
-                let help = "add `free-length = 0.1`, its length without force";
-                let free_length = fields.number("free-length", help, &rule);
-                let ((bodies, points), free_length) = (both?, free_length?);
-                Some(LoadKind::Spring {
-                    bodies,
-                    points,
-                    free_length,
-                })
-            }
-            "damper" => {
-                let (bodies, points) = self.two_points(entry, fields)?;
-                Some(LoadKind::Damper { bodies, points })
-            }
-            "point-to-point-force" => {
-                let (bodies, points) = self.two_points(entry, fields)?;
-                Some(LoadKind::PointToPointForce { bodies, points })
-            }
-            "slide-force" => {
-                let name = entry.value.string(fields.name_of(entry))?;
-                let joint = self.joints.sliding(name, &entry.value.span())?;
-                self.joints.guide(joint).map(LoadKind::SlideForce)
-            }
-            "torsion-spring" => {
-                let bodies = self.two_bodies(entry, fields);
-                let help = "add `free-angle = 0.0`, the angle at which its torque is zero";
-                let free = fields.require("free-angle", help);
-                let free_angle = free.and_then(|e| e.value.angle(fields.name_of(e)));
-                let (bodies, free_angle) = (bodies?, free_angle?);
-                Some(LoadKind::TorsionSpring { bodies, free_angle })
-            }
-            "rotational-damper" => {
-                let bodies = self.two_bodies(entry, fields)?;
-                Some(LoadKind::RotationalDamper { bodies })
-            }
-            _ => reject_unread_kind(entry),
-        }
+    fn two_bodies(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<[BodyId; 2]> {
+        let [a, b] = &self.bodies.find_two(entry.value, fields.name_of(entry))?;
+        self.require_different_bodies([(a.0, &a.1), (b.0, &b.1)], fields)
+    }
+}
+
+impl LoadReader for Names<'_> {
+    type Dimensions = Plane;
+    type Along = CoordinateFunction;
+    type Special = Mesh;
+    type Coordinate = Coordinate;
+
+    fn bodies(&self) -> &Bodies<'_> {
+        self.bodies
+    }
+
+    fn magnitudes(&self) -> &Magnitudes {
+        self.magnitudes
+    }
+
+    fn turn(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<CoordinateFunction> {
+        self.two_bodies(entry, fields)
+            .map(CoordinateFunction::Angle)
+    }
+
+    fn slide(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<CoordinateFunction> {
+        let name = entry.value.string(fields.name_of(entry))?;
+        let joint = self.joints.sliding(name, &entry.value.span())?;
+        self.joints.guide(joint).map(CoordinateFunction::Travel)
     }
 
     fn force(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<LoadKind> {
         let what = &fields.what;
-        let at = entry.value.string(fields.name_of(entry)).and_then(|name| {
-            let span = entry.value.span();
-            let (body, k) = self.bodies.find_point(name, &span)?;
-            self.require_moving_body(body, entry.value, what)?;
-            Some((body, self.bodies.at(&(body, k, span))))
-        });
+        let place = self.moving_point(entry, fields);
         let direction = fields.require("direction", "add `direction = [1, 0]`");
         let direction =
             direction.and_then(|e| e.value.unit_vector(format_args!("the direction of {what}")));
@@ -117,60 +254,25 @@ impl Names<'_> {
             None => Some(false),
             Some(e) => frame(e.value, what),
         };
-        let (body, point) = at?;
+        let (body, point) = place?;
         let (direction, body_fixed) = (direction?, body_fixed?);
         Some(LoadKind::Force {
             body,
             point,
-            direction,
-            body_fixed,
+            direction: match body_fixed {
+                true => Direction::Body(direction),
+                false => Direction::Ground(direction),
+            },
         })
     }
 
-    fn torque(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<[BodyId; 2]> {
+    fn torque(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<LoadKind> {
         let DeValue::String(name) = entry.value.get() else {
-            return self.two_bodies(entry, fields);
+            return self.two_bodies(entry, fields).map(LoadKind::couple);
         };
         let body = self.bodies.find(name, &entry.value.span())?;
         self.require_moving_body(body, entry.value, &fields.what)?;
-        Some([BodyId(self.bodies.ground?), body])
-    }
-
-    /// A load that acts on the ground alone has no effect, so it is taken for a mistake.
-    fn require_moving_body(&self, body: BodyId, value: Value<'_>, what: &str) -> Option<()> {
-        if self.bodies.ground != Some(body.0) {
-            return Some(());
-        }
-        let message = format!("{what} acts on the ground");
-        let help = "let it act on a moving body, or leave it out";
-        value.reject(message, "it does not move", help)
-    }
-
-    fn two_points(
-        &self,
-        entry: &Entry<'_>,
-        fields: &TableReader<'_>,
-    ) -> Option<([BodyId; 2], [Vec2; 2])> {
-        let what = fields.name_of(entry);
-        let [a, b] = self.bodies.find_two_points(entry.value, TWO_POINTS, what)?;
-        let points = [self.bodies.at(&a), self.bodies.at(&b)];
-        let bodies = self.require_different_bodies([(a.0, &a.2), (b.0, &b.2)], fields)?;
-        Some((bodies, points))
-    }
-
-    fn two_bodies(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<[BodyId; 2]> {
-        let [a, b] = &self.bodies.find_two(entry.value, fields.name_of(entry))?;
-        self.require_different_bodies([(a.0, &a.1), (b.0, &b.1)], fields)
-    }
-
-    fn require_different_bodies(
-        &self,
-        both: [(BodyId, &Span); 2],
-        fields: &TableReader<'_>,
-    ) -> Option<[BodyId; 2]> {
-        let message = |name: &str| format!("{} acts between body `{name}` and itself", fields.what);
-        let help = "a load within one rigid body has no effect";
-        self.bodies.require_different(both, message, help)
+        Some(LoadKind::couple([BodyId(self.bodies.ground?), body]))
     }
 }
 
@@ -189,32 +291,6 @@ pub(crate) fn read_loads<K, C>(
             magnitude,
         })
     })
-}
-
-/// The k-th load without its name, in the plane or in space, of a kind other than gravity, which `load_kind` reads.
-pub(crate) fn kind_and_size<K, C: AnyCoordinate>(
-    (kind, entry): (&str, &Entry<'_>),
-    (fields, k): (&TableReader<'_>, usize),
-    magnitudes: &Magnitudes<C>,
-    load_kind: impl FnOnce() -> Option<K>,
-) -> Option<(K, Magnitude<C>)> {
-    let stiffness = "a negative stiffness would push away from the free position";
-    let damping = "negative damping would accelerate the motion";
-    let (size, unit, sign, why) = match kind {
-        "force" | "point-to-point-force" | "slide-force" => ("magnitude", "N", SignRule::Any, ""),
-        "torque" | "joint-torque" => ("magnitude", "N m", SignRule::Any, ""),
-        "spring" => ("stiffness", "N/m", SignRule::NotNegative, stiffness),
-        "torsion-spring" => ("stiffness", "N m/rad", SignRule::NotNegative, stiffness),
-        "damper" | "slide-damper" => ("damping", "N s/m", SignRule::NotNegative, damping),
-        "rotational-damper" => ("damping", "N m s/rad", SignRule::NotNegative, damping),
-        _ => return reject_unread_kind(entry),
-    };
-    let kind = load_kind();
-    let magnitude = fields.require(size, &format!("add for instance `{size} = 10`, in {unit}"));
-    fields.place(size, SceneLocation::Magnitude(k));
-    let rule = NumberRule::new(&SI, sign).because(why);
-    let magnitude = magnitude.and_then(|e| magnitudes.read(e, fields, &rule));
-    kind.zip(magnitude)
 }
 
 /// Appends the separating forces of the teeth that have a pressure angle, in the order of the file.

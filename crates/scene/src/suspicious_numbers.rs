@@ -8,7 +8,7 @@ use crate::scene_data::{PlaneScene, SceneIn, SpaceScene};
 use crate::spans::SceneLocation;
 use crate::wording::{list, short, shorten};
 use dwell_geometry::{ActuatorId, BodyId};
-use dwell_kinetostatics::{LoadKind, Magnitude, space};
+use dwell_kinetostatics::{LoadShape as _, Magnitude};
 use std::f64::consts::TAU;
 
 /// Acceleration of free fall, m/s², and how much another may differ to be a thousand times it: a hundredth.
@@ -84,10 +84,10 @@ impl Doubtful for Plane {
             let points = points.map(|(_, p)| [p.x, p.y, 0.0]).collect();
             ([mass.mass, mass.inertia], [x, y, 0.0], points)
         };
-        let gravities = scene.loads.iter().map(|load| {
-            let is_gravity = matches!(load.kind, LoadKind::Gravity { .. });
-            (is_gravity, &load.magnitude)
-        });
+        let gravities = scene
+            .loads
+            .iter()
+            .map(|load| (load.kind.is_gravity(), &load.magnitude));
         let guesses = scene.assembly.initial_guess.iter().enumerate();
         let of_bodies = guesses.filter_map(|(b, angle)| {
             let location = SceneLocation::InitialGuess(BodyId(b));
@@ -119,10 +119,10 @@ impl Doubtful for Space {
             let center = [mass.center.x, mass.center.y, mass.center.z];
             ([mass.mass, largest], center, points)
         };
-        let gravities = scene.loads.iter().map(|load| {
-            let is_gravity = matches!(load.kind, space::LoadKind::Gravity(_));
-            (is_gravity, &load.magnitude)
-        });
+        let gravities = scene
+            .loads
+            .iter()
+            .map(|load| (load.kind.is_gravity(), &load.magnitude));
         let actuators = mechanism.actuators.iter().map(|actuator| {
             let joint = &mechanism.joints[actuator.kind.joint().0];
             let is_angle = actuator.kind.coordinate(joint).is_angle();

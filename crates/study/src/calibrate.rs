@@ -13,7 +13,7 @@ use crate::{number_format::digits_within, output::Outcome};
 use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, MovingModel, Orbit, ReducedState};
 #[cfg(feature = "output")]
 use dwell_findings::Record;
-use dwell_kinetostatics::{ExactModel, Load, Magnitude, Model, space};
+use dwell_kinetostatics::{ExactModel, Load, Model, space};
 use dwell_numerics::root;
 use dwell_scene::{PlaneScene, SceneLocation, SpaceScene};
 
@@ -277,9 +277,7 @@ impl CalibratedScene for PlaneScene {
 impl CalibratedScene for SpaceScene {
     fn conservative_motion(&self) -> Result<ConservativeMotion<space::Model>, StudyError> {
         refuse_drives(self)?;
-        let has_no_potential = |load: &space::Load| {
-            !(load.kind.is_conservative() && matches!(load.magnitude, Magnitude::Constant(_)))
-        };
+        let has_no_potential = |load: &space::Load| !load.is_conservative();
         if let Some(load) = self.loads.iter().position(has_no_potential) {
             return Err(without_potential(self, load));
         }

@@ -7,7 +7,7 @@ use crate::ranges::extent;
 use dwell_findings::Record;
 use dwell_geometry::{BodyId, Plan, Vec2};
 use dwell_kinetostatics::{
-    DriveKind, LoadKind, MachineModel, Magnitude, ModelLoad, Signal, VaryingInertia,
+    LoadNames, LoadShape as _, Magnitude, ModelLoad, Signal, VaryingInertia,
 };
 use dwell_scene::{
     CoordinateSweep, FreeMotionSpec, MotionDuration, PlaneScene, PrescribedMotion, SceneFile,
@@ -21,7 +21,10 @@ pub(crate) fn describe_contents(scene: &PlaneScene, plan: &Plan, record: &mut Re
         sweep: scene.sweep.as_ref(),
         motion: scene.motion.as_ref(),
     };
-    let described = |kind: &LoadKind| described(scene, kind);
+    let names = LoadNames {
+        bodies: scene.mechanism.bodies.iter().map(|b| &b.name[..]).collect(),
+        joints: scene.mechanism.joints.iter().map(|j| &j.name[..]).collect(),
+    };
     let mut text = String::new();
     if let Some(frames) = &frames {
         let joints = scene.mechanism.joints.iter();
@@ -31,7 +34,7 @@ pub(crate) fn describe_contents(scene: &PlaneScene, plan: &Plan, record: &mut Re
     }
     text + &describe_masses(scene, frames.as_deref(), record)
         + &describe_varying_inertias(scene, record)
-        + &describe_actions(scene, (&scene.loads, &described), &motions, record)
+        + &describe_actions(scene, (&scene.loads, &names), &motions, record)
 }
 
 /// The motions of a scene in the plane or in space.
@@ -168,35 +171,11 @@ fn describe_varying_inertias(scene: &PlaneScene, record: &mut Record) -> String 
     scene.varying_inertias.iter().map(one).collect()
 }
 
-/// What a load is, and the unit of its number.
-fn described(scene: &PlaneScene, kind: &LoadKind) -> (String, &'static str) {
-    let name = |body: BodyId| scene.mechanism.body_name(body);
-    let between =
-        |what: &str, [a, b]: [BodyId; 2]| format!("{what} between {} and {}", name(a), name(b));
-    match *kind {
-        LoadKind::Gravity { .. } => ("gravity".to_owned(), "m/s²"),
-        LoadKind::Force { body, .. } => (format!("force on {}", name(body)), "N"),
-        LoadKind::Torque { bodies: [a, b] } => {
-            (format!("couple of {} on {}", name(a), name(b)), "N m")
-        }
-        LoadKind::Spring { bodies, .. } => (between("spring", bodies), "N/m"),
-        LoadKind::TorsionSpring { bodies, .. } => (between("torsion spring", bodies), "N m/rad"),
-        LoadKind::Damper { bodies, .. } => (between("damper", bodies), "N s/m"),
-        LoadKind::RotationalDamper { bodies } => {
-            (between("rotational damper", bodies), "N m s/rad")
-        }
-        LoadKind::PointToPointForce { bodies, .. } => (between("force", bodies), "N"),
-        LoadKind::SlideForce(_) => ("force along a slide".to_owned(), "N"),
-        LoadKind::SlideDamper(_) => ("damper along a slide".to_owned(), "N s/m"),
-        LoadKind::SeparatingForce(_) => ("separating force of teeth".to_owned(), "N"),
-    }
-}
-
-/// The loads of a scene in the plane or in space, what each of them is with the unit of its number, its drives, its stops and its
+/// The loads of a scene in the plane or in space, its drives, its stops and its
 /// motions.
 pub(crate) fn describe_actions<S: MachineScene, R>(
     scene: &S,
-    loads: DescribedLoads<'_, S::Model>,
+    loads: NamedLoads<'_, S::Model>,
     motions: &ScheduledMotions<'_, CoordinateOf<S>, R>,
     record: &mut Record,
 ) -> String {
@@ -206,11 +185,8 @@ pub(crate) fn describe_actions<S: MachineScene, R>(
         + &describe_motions(scene, motions, record)
 }
 
-/// The loads of a model, and what a kind of load is, with the unit of its number.
-type DescribedLoads<'a, M> = (
-    &'a [ModelLoad<M>],
-    &'a dyn Fn(&<M as MachineModel>::LoadKind) -> (String, &'static str),
-);
+/// The loads of a model, and the names of what they act on.
+type NamedLoads<'a, M> = (&'a [ModelLoad<M>], &'a LoadNames<'a>);
 
 /// A constant, or what a magnitude depends on.
 fn magnitude<S: MachineScene>(
@@ -244,16 +220,16 @@ fn magnitude<S: MachineScene>(
 
 fn describe_loads<S: MachineScene>(
     scene: &S,
-    (loads, described): DescribedLoads<'_, S::Model>,
+    (loads, names): NamedLoads<'_, S::Model>,
     record: &mut Record,
 ) -> String {
     if loads.is_empty() {
         return "  no loads\n".to_owned();
     }
     let lines = loads.iter().map(|load| {
-        let (kind, unit) = described(&load.kind);
+        let (kind, unit) = (load.kind.label(names), load.kind.unit().replace('2', "²"));
         let name = format!("load.{}", load.name);
-        let magnitude = magnitude(scene, &load.magnitude, (&name, unit), record);
+        let magnitude = magnitude(scene, &load.magnitude, (&name, &unit), record);
         format!("    {}: {kind}, {magnitude}\n", load.name)
     });
     "  loads:\n".to_owned() + &lines.collect::<String>()
@@ -265,16 +241,11 @@ fn describe_drives<S: MachineScene>(scene: &S, record: &mut Record) -> String {
     }
     let lines = scene.drives().iter().map(|drive| {
         let is_angle = S::is_angle(drive.coordinate);
-        let speed_unit = format!("{}/s", coordinate_unit(is_angle));
-        let (kind, unit) = match &drive.kind {
-            DriveKind::AppliedForce(_) => ("applied force", force_unit(is_angle)),
-            DriveKind::Motor(_) => ("direct-current motor", "V"),
-            DriveKind::SpeedController(_) => ("speed controller", speed_unit.as_str()),
-        };
+        let words = drive.kind.words(is_angle);
         let name = format!("drive.{}", drive.name);
-        let input = magnitude(scene, drive.kind.input(), (&name, unit), record);
+        let input = magnitude(scene, drive.kind.input(), (&name, words.input_unit), record);
         let on = scene.name_of_coordinate(drive.coordinate);
-        format!("    {}: {kind} on {on}, {input}\n", drive.name)
+        format!("    {}: {} on {on}, {input}\n", drive.name, words.kind)
     });
     "  drives:\n".to_owned() + &lines.collect::<String>()
 }

@@ -58,6 +58,7 @@ mod loads;
 mod lu;
 mod motion;
 mod multibody;
+mod placed_load;
 mod pose;
 mod rank;
 mod redundant_rows;

@@ -1,10 +1,14 @@
-//! Loads as forces at points and couples, from the definitions of [`LoadKind`] and the frames of the
+//! Loads in the plane as forces at points and couples, from the definitions of [`LoadKind`] and the frames of the
 //! bodies: the reference for generalised forces.
 
 use crate::body_motion::BodyMotion;
+use crate::placed_load::{Line, LineKind, PlacedLoad};
+use crate::pose::lifted;
 use crate::wrenches::BodyWrench;
-use dwell_geometry::{BodyId, Component, JointId, Mechanism, Reaction, Vec2};
-use dwell_kinetostatics::{Guide, Load, LoadKind, Magnitude, Mass, Mesh, PitchLines};
+use dwell_geometry::body_states::CoordinateFunction;
+use dwell_geometry::space::{Vec3, vec3};
+use dwell_geometry::{BodyId, Component, JointId, Mechanism, Reaction};
+use dwell_kinetostatics::{Direction, Guide, Load, LoadKind, Magnitude, Mass, Mesh, PitchLines};
 
 /// The forces of a load of the given magnitude, with the bodies' frames and their velocities
 /// [x, y, θ] in m, rad and per s; a massless body has no weight, the ground's is left out.
@@ -12,7 +16,6 @@ use dwell_kinetostatics::{Guide, Load, LoadKind, Magnitude, Mass, Mesh, PitchLin
 ///
 /// Coincident points have no line between them: then a spring or damper between them gives
 /// forces that are not numbers, unless it is a spring of no free length.
-// Long: an arm for each kind of load.
 pub fn load_wrenches(
     kind: &LoadKind,
     magnitude: f64,
@@ -25,75 +28,80 @@ pub fn load_wrenches(
         poses: bodies,
         velocities,
     };
-    let couple = |on: [BodyId; 2], couple: f64| {
-        let exist = on.iter().all(|body| body.0 < bodies.len());
-        exist.then(|| pair(on, Vec2::ZERO, Vec2::ZERO, couple))
-    };
-    let force_at = |body: BodyId, point: Vec2, force: Vec2| {
-        let point = motion.point(body, point)?;
-        Some(BodyWrench::in_plane(body, force, point, 0.0))
-    };
-    // Both bodies at their own points: the force is along the line between these.
-    let pull = |bodies: [BodyId; 2], points: [Vec2; 2], on_second: Vec2| {
-        let on_first = force_at(bodies[0], points[0], -on_second)?;
-        Some(vec![on_first, force_at(bodies[1], points[1], on_second)?])
-    };
-    match *kind {
+    Some(placed(kind, (ground, masses), motion)?.wrenches(magnitude))
+}
+
+/// A load where the bodies are; none if it names a body that is not there.
+pub(crate) fn placed(
+    kind: &LoadKind,
+    (ground, masses): (usize, &[Mass]),
+    motion: BodyMotion<'_>,
+) -> Option<PlacedLoad> {
+    Some(match *kind {
         LoadKind::Gravity { direction } => {
             let all = masses.iter().enumerate();
             let heavy = all.filter(|&(b, mass)| b != ground && mass.mass != 0.0);
-            let weight = |(b, mass): (usize, &Mass)| {
-                force_at(BodyId(b), mass.center, direction * (mass.mass * magnitude))
+            let placed = |(b, mass): (usize, &Mass)| {
+                let center = motion.point(BodyId(b), mass.center)?;
+                Some((BodyId(b), mass.mass, lifted(center)))
             };
-            heavy.map(weight).collect()
+            PlacedLoad::Weight(lifted(direction), heavy.map(placed).collect::<Option<_>>()?)
         }
         LoadKind::Force {
             body,
             point,
             direction,
-            body_fixed,
-        } => {
-            let follower = motion.direction(body, direction)?;
-            let direction = if body_fixed { follower } else { direction };
-            Some(vec![force_at(body, point, direction * magnitude)?])
+        } => PlacedLoad::Force {
+            body,
+            point: lifted(motion.point(body, point)?),
+            direction: lifted(match direction {
+                Direction::Ground(vector) => vector,
+                Direction::Body(vector) => motion.direction(body, vector)?,
+            }),
+            turns: matches!(direction, Direction::Body(_)),
+        },
+        LoadKind::Drag { body, point } => PlacedLoad::Drag {
+            body,
+            point: lifted(motion.point(body, point)?),
+            velocity: lifted(motion.point_velocity(body, point)?),
+        },
+        LoadKind::Along(along, law) => PlacedLoad::Along(line(along, motion)?, law),
+        LoadKind::Special(mesh) => PlacedLoad::Given(separating_wrenches(mesh, &motion)?),
+    })
+}
+
+fn line(along: CoordinateFunction, motion: BodyMotion<'_>) -> Option<Line> {
+    let ([value, rate], bodies, points, along, kind) = match along {
+        CoordinateFunction::Angle(bodies) => {
+            let (axis, kind) = (vec3(0.0, 0.0, 1.0), LineKind::Angle { counts_turns: true });
+            (motion.angle(bodies)?, bodies, [Vec3::ZERO; 2], axis, kind)
         }
-        LoadKind::Torque { bodies } => couple(bodies, magnitude),
-        LoadKind::Spring {
+        // It acts on both bodies at the second's point.
+        CoordinateFunction::Travel(Guide {
             bodies,
             points,
-            free_length: free,
-        } => {
-            let [d, _] = motion.gap(bodies, points)?;
-            let stretch = match free {
-                0.0 => 1.0,
-                _ => 1.0 - free / d.norm(),
-            };
-            pull(bodies, points, d * (-magnitude * stretch))
+            axis,
+        }) => {
+            let at = lifted(motion.point(bodies[1], points[1])?);
+            let along = lifted(motion.direction(bodies[0], axis)?);
+            let travel = motion.travel(bodies, points, axis)?;
+            (travel, bodies, [at; 2], along, LineKind::Travel)
         }
-        LoadKind::TorsionSpring { bodies, free_angle } => {
-            let [angle, _] = motion.angle(bodies)?;
-            couple(bodies, -magnitude * (angle - free_angle))
+        CoordinateFunction::Length { bodies, points } => {
+            let [from, to] = motion.points(bodies, points)?.map(lifted);
+            let along = (to - from).scaled(1.0 / (to - from).norm());
+            let length = motion.length(bodies, points)?;
+            (length, bodies, [from, to], along, LineKind::Distance)
         }
-        LoadKind::Damper { bodies, points } => {
-            let [d, rate] = motion.gap(bodies, points)?;
-            let line = d * (1.0 / d.norm());
-            pull(bodies, points, line * (-magnitude * rate.dot(line)))
-        }
-        LoadKind::RotationalDamper { bodies } => {
-            let [_, rate] = motion.angle(bodies)?;
-            couple(bodies, -magnitude * rate)
-        }
-        LoadKind::PointToPointForce { bodies, points } => {
-            let [d, _] = motion.gap(bodies, points)?;
-            pull(bodies, points, d * (magnitude / d.norm()))
-        }
-        LoadKind::SlideForce(guide) => guide_wrenches(guide, magnitude, &motion),
-        LoadKind::SlideDamper(guide) => {
-            let [_, rate] = motion.travel(guide.bodies, guide.points, guide.axis)?;
-            guide_wrenches(guide, -magnitude * rate, &motion)
-        }
-        LoadKind::SeparatingForce(mesh) => separating_wrenches(mesh, magnitude, &motion),
-    }
+    };
+    Some(Line {
+        bodies,
+        points,
+        along,
+        kind,
+        value,
+        rate,
+    })
 }
 
 /// The magnitude of a load that answers to claimed reactions (in the order of [`Mechanism::reactions`]); of every
@@ -130,9 +138,9 @@ pub(crate) fn reaction_row(
     mechanism.reactions().iter().position(|r| *r == wanted)
 }
 
-/// The forces on two bodies whose teeth push each other apart: of gears along the line of centres, away from where the
+/// The forces of 1 N on two bodies whose teeth push each other apart: of gears along the line of centres, away from where the
 /// pitch circles touch; of a rack along the perpendicular from its pitch line to the pinion's centre.
-fn separating_wrenches(mesh: Mesh, force: f64, motion: &BodyMotion<'_>) -> Option<Vec<BodyWrench>> {
+fn separating_wrenches(mesh: Mesh, motion: &BodyMotion<'_>) -> Option<Vec<BodyWrench>> {
     let [first_center, center] = motion.points(mesh.bodies, mesh.points)?;
     let gap = center - first_center;
     let (at, away) = match mesh.pitch {
@@ -150,31 +158,17 @@ fn separating_wrenches(mesh: Mesh, force: f64, motion: &BodyMotion<'_>) -> Optio
             (center - from_line, from_line * (1.0 / from_line.norm()))
         }
     };
-    Some(pair(mesh.bodies, away * force, at, 0.0))
-}
-
-/// A force along a guide: it acts on both bodies at the second's point.
-fn guide_wrenches(guide: Guide, force: f64, motion: &BodyMotion<'_>) -> Option<Vec<BodyWrench>> {
-    let on_second = motion.direction(guide.bodies[0], guide.axis)? * force;
-    let at = motion.point(guide.bodies[1], guide.points[1])?;
-    Some(pair(guide.bodies, on_second, at, 0.0))
-}
-
-/// A force at a point and a couple on the second body, and their opposites on the first.
-fn pair(bodies: [BodyId; 2], force: Vec2, point: Vec2, couple: f64) -> Vec<BodyWrench> {
-    let signed = [-1.0, 1.0].into_iter().zip(bodies);
-    signed
-        .map(|(sign, body)| BodyWrench::in_plane(body, force * sign, point, couple * sign))
-        .collect()
+    let (force, at) = (lifted(away), lifted(at));
+    Some(BodyWrench::pair(mesh.bodies, force, at, Vec3::ZERO).into())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pose::{Pose, Twist, lifted};
+    use crate::pose::{Pose, Twist};
     use crate::wrenches::NetWrench;
-    use dwell_geometry::space::{Vec3, Wrench};
-    use dwell_geometry::vec2;
+    use dwell_geometry::space::Wrench;
+    use dwell_geometry::{Vec2, vec2};
 
     const BODIES: [[f64; 3]; 3] = [[0.0; 3], [1.0, 2.0, 0.5], [-0.5, 0.3, 4.0]];
     const VELOCITIES: [[f64; 3]; 3] = [[0.0; 3], [0.4, -0.7, 1.1], [0.2, 0.9, -0.6]];
@@ -234,11 +228,7 @@ mod tests {
             }),
         );
         for free in [0.0, 0.7] {
-            let spring = LoadKind::Spring {
-                bodies: ON,
-                points: POINTS,
-                free_length: free,
-            };
+            let spring = LoadKind::spring(ON, POINTS, free);
             close(
                 power(&wrenches(spring, &BODIES)),
                 fall(|x| {
@@ -247,10 +237,7 @@ mod tests {
                 }),
             );
         }
-        let spring = LoadKind::TorsionSpring {
-            bodies: ON,
-            free_angle: 0.4,
-        };
+        let spring = LoadKind::torsion_spring(ON, 0.4);
         close(
             power(&wrenches(spring, &BODIES)),
             fall(|x| 1.5 * (x[2][2] - x[1][2] - 0.4).powi(2)),
@@ -258,8 +245,7 @@ mod tests {
         let force = LoadKind::Force {
             body: BodyId(2),
             point: POINTS[1],
-            direction: down,
-            body_fixed: false,
+            direction: Direction::Ground(down),
         };
         close(
             power(&wrenches(force, &BODIES)),
@@ -274,20 +260,16 @@ mod tests {
                 |b: usize, p: Vec2| vec2(x[b][0], x[b][1]) + p.rotate(Vec2::from_angle(x[b][2]));
             -(at(2, POINTS[1]) - at(1, POINTS[0])).norm()
         });
-        let damper = LoadKind::Damper {
-            bodies: ON,
-            points: POINTS,
-        };
+        let damper = LoadKind::damper(ON, POINTS);
         close(power(&wrenches(damper, &BODIES)), -3.0 * rate * rate);
-        let damper = LoadKind::RotationalDamper { bodies: ON };
+        let damper = LoadKind::rotational_damper(ON);
         close(power(&wrenches(damper, &BODIES)), -3.0 * 1.7 * 1.7);
-        let torque = LoadKind::Torque { bodies: ON };
+        let torque = LoadKind::couple(ON);
         close(power(&wrenches(torque, &BODIES)), 3.0 * -1.7);
         let force = LoadKind::Force {
             body: BodyId(1),
             point: POINTS[0],
-            direction: vec2(0.0, 1.0),
-            body_fixed: true,
+            direction: Direction::Body(vec2(0.0, 1.0)),
         };
         let got = wrenches(force, &BODIES)[0].force;
         let want = lifted(Vec2::from_angle(0.5).perp() * 3.0);
@@ -295,7 +277,7 @@ mod tests {
     }
 
     fn mesh(pitch: PitchLines) -> LoadKind {
-        LoadKind::SeparatingForce(Mesh {
+        LoadKind::Special(Mesh {
             bodies: ON,
             points: POINTS,
             pitch,
@@ -306,16 +288,9 @@ mod tests {
     #[test]
     fn inner_loads_balance() {
         for kind in [
-            LoadKind::Spring {
-                bodies: ON,
-                points: POINTS,
-                free_length: 0.7,
-            },
-            LoadKind::Damper {
-                bodies: ON,
-                points: POINTS,
-            },
-            LoadKind::Torque { bodies: ON },
+            LoadKind::spring(ON, POINTS, 0.7),
+            LoadKind::damper(ON, POINTS),
+            LoadKind::couple(ON),
             mesh(PitchLines::Circles {
                 radii: [0.4, 0.9],
                 internal: true,
@@ -329,9 +304,7 @@ mod tests {
             let Wrench { force, moment } = NetWrench::of(wrenches.iter(), Vec3::ZERO).sum;
             assert!(force.norm() < 1e-14 && moment.norm() < 1e-14, "{kind:?}");
         }
-        let far = LoadKind::Torque {
-            bodies: [BodyId(0), BodyId(3)],
-        };
+        let far = LoadKind::couple([BodyId(0), BodyId(3)]);
         assert!(load_wrenches(&far, 1.0, 0, &[], &BODIES, &VELOCITIES).is_none());
     }
 }

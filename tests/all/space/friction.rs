@@ -5,7 +5,9 @@ use super::oblique::{G, SMOOTH, oblique_slider_crank, planar_slider_crank, scene
 use dwell_geometry::JointId;
 use dwell_geometry::space::{Joint, JointKind, Placement, Vec3, Wrench, vec3};
 use dwell_kinetostatics::space::{Axes, Component, LoadKind, Model, Reaction};
-use dwell_kinetostatics::{Friction, FrictionContact, MachineModel as _, Magnitude};
+use dwell_kinetostatics::{
+    Friction, FrictionContact, LoadShape as _, MachineModel as _, Magnitude,
+};
 use dwell_scene::SpaceScene;
 use dwell_study::model_with_loads;
 use dwell_verify::space::DenseSpace;
@@ -224,7 +226,7 @@ fn friction_of(
     match (joint, kind) {
         (JointKind::Prismatic, _) => limit * smooth(v),
         (JointKind::Revolute, _) => limit * radius * smooth(w),
-        (_, LoadKind::SlideForce(_)) => limit * smooth(s) * v / s,
+        (_, kind) if !kind.is_couple() => limit * smooth(s) * v / s,
         _ => limit * radius * smooth(s) * radius * w / s,
     }
 }

@@ -55,13 +55,18 @@ fn share(scene: &SpaceScene, torque: f64, limit: f64) -> f64 {
     let c = [block.velocity.z, RADIUS * block.angular_velocity.z];
     let length = c[0].hypot(c[1]);
     let applied = [
-        (LoadKind::Gravity(vec3(0.5, 0.0, -G)), 1.0),
-        (LoadKind::JointTorque(tube), torque),
+        (
+            LoadKind::Gravity {
+                direction: vec3(0.5, 0.0, -G),
+            },
+            1.0,
+        ),
+        (LoadKind::couple(tube), torque),
     ];
     let with = |force: f64| {
         let mut loads = applied.to_vec();
-        loads.push((LoadKind::SlideForce(tube), force * c[0] / length));
-        loads.push((LoadKind::JointTorque(tube), force * RADIUS * c[1] / length));
+        loads.push((LoadKind::slide_force(tube), force * c[0] / length));
+        loads.push((LoadKind::couple(tube), force * RADIUS * c[1] / length));
         dense([&[0.0], &[0.0]], &loads)
     };
     let [none, unit] = [0.0, 1.0].map(|force| with(force).actuator_actions[0]);

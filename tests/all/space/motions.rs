@@ -15,7 +15,7 @@ fn machine(reference: &Reference, model: &Model, loads: &Value) -> Machine<Model
     let gravity = reference.gravity().filter(|_| loads != "none");
     let load = |g| Load {
         name: "gravity".to_owned(),
-        kind: LoadKind::Gravity(g),
+        kind: LoadKind::Gravity { direction: g },
         magnitude: Magnitude::Constant(1.0),
     };
     let loads: Vec<Load> = gravity.map(load).into_iter().collect();

@@ -224,8 +224,8 @@ fn a_long_motion_arrives_at_the_steady_cycle() {
     for row in found.samples.rows.iter().step_by(40) {
         let torque = 4.0 * 0.05 * (6.0 - 4.0 * 0.05 * row[speed]) / 2.0;
         let loads = [
-            (LoadKind::JointTorque(joint("A")), torque),
-            (LoadKind::RotationalDamper(joint("D")), 0.004),
+            (LoadKind::couple(joint("A")), torque),
+            (LoadKind::rotational_damper(joint("D")), 0.004),
         ];
         let held = dense.actions([&[row[q]], &[row[speed]], &[row[acceleration]]], &loads);
         let inertia = dense.actions([&[row[q]], &[0.0], &[1.0]], &[])[0] - dense.holding(row[q]);

@@ -32,7 +32,12 @@ fn judge(made: &Assembled, random: &mut Random) -> Verdict {
         q: vec![made.q],
         placements: nearly.collect(),
     };
-    let gravity = (LoadKind::Gravity(vec3(0.0, 0.0, -1.0)), 9.81);
+    let gravity = (
+        LoadKind::Gravity {
+            direction: vec3(0.0, 0.0, -1.0),
+        },
+        9.81,
+    );
     let dense = |mechanism: &Mechanism,
                  placements: &[Placement],
                  rates: [&[f64]; 2],

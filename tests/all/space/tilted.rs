@@ -151,7 +151,9 @@ impl Subject<'_> {
     /// What the passes in space give.
     fn at<T: Scalar>(&self, q: f64) -> (Values, Coefficients) {
         let model = self.model;
-        let gravity = LoadKind::Gravity(tilt().rotation.apply(vec3(0.6, -0.8, 0.0)));
+        let gravity = LoadKind::Gravity {
+            direction: tilt().rotation.apply(vec3(0.6, -0.8, 0.0)),
+        };
         let (mut work, mut found) = (model.workspace(), model.coefficient_buffer::<T>());
         let done = model.reduce(T::from_f64(q), &mut work, &mut found);
         done.unwrap_or_else(|e| panic!("{q}: {e}"));

@@ -7,7 +7,8 @@ use crate::mutations::operations::MutatedSubject as _;
 use crate::mutations::source::SourceFiles;
 use crate::mutations::tested_mechanism::UNCHANGED_TOLERANCE;
 use dwell_geometry::space::{JointKind, Vec3, vec3};
-use dwell_kinetostatics::space::{Direction, LoadKind};
+use dwell_kinetostatics::Strength;
+use dwell_kinetostatics::space::{DirectedCouple, Direction, LoadKind};
 use dwell_scene::SpaceScene;
 use dwell_validation::SpaceClaims;
 use dwell_verify::ClaimedState;
@@ -250,13 +251,13 @@ impl Mutation {
             Direction::Body(u) => Direction::Ground(u),
         };
         match (self, kind) {
-            (GravityReversed, LoadKind::Gravity(g)) => *g = -*g,
+            (GravityReversed, LoadKind::Gravity { direction: g }) => *g = -*g,
             (
                 ForceInWrongFrame,
-                LoadKind::Force { direction, .. } | LoadKind::Torque { direction, .. },
+                LoadKind::Force { direction, .. }
+                | LoadKind::Special(DirectedCouple { direction, .. }),
             ) => *direction = other(*direction),
-            (FreeLengthForgotten, LoadKind::Spring { free_length, .. }) => *free_length = 0.0,
-            (FreeLengthForgotten, LoadKind::TorsionSpring { free_angle, .. }) => *free_angle = 0.0,
+            (FreeLengthForgotten, LoadKind::Along(_, Strength::Elastic { free })) => *free = 0.0,
             _ => {}
         }
     }

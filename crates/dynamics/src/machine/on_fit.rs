@@ -42,7 +42,7 @@ const REACTION_DEGREE: usize = 8;
 /// let model = Model::new(&mechanism, &masses, &Assembly::at(&[0.0]), &[])?;
 /// let weight = Load {
 ///     name: "weight".into(),
-///     kind: LoadKind::Gravity(vec3(0.0, 0.0, -1.0)),
+///     kind: LoadKind::Gravity { direction: vec3(0.0, 0.0, -1.0) },
 ///     magnitude: Magnitude::Constant(9.81),
 /// };
 /// let machine = Machine::new(model, &[weight], vec![CoordinateMode::Free], &[])?;

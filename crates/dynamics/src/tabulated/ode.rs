@@ -174,9 +174,7 @@ impl TabulatedMachine {
             drive_state_rate: None,
         };
         Ok(match &load.effect {
-            LoadEffect::Force => stateless(magnitude),
-            // w is that of one unit of resistance, −ds/dq.
-            LoadEffect::Damper => stateless(-(magnitude * w * q_dot)),
+            LoadEffect::Load(law) => stateless(law.on_response(magnitude, w, q_dot)),
             LoadEffect::Drive(drive) => {
                 let state = drive.state.map(|place| y[2 + place]);
                 let (drive_force, rate) = drive.eval(magnitude, w * q_dot, state, held.drive);

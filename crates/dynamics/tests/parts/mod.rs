@@ -70,10 +70,7 @@ pub(crate) fn gravity() -> Load {
 pub(crate) fn torsion_spring(bodies: [usize; 2]) -> Load {
     Load {
         name: "spring".into(),
-        kind: LoadKind::TorsionSpring {
-            bodies: bodies.map(BodyId),
-            free_angle: 0.3,
-        },
+        kind: LoadKind::torsion_spring(bodies.map(BodyId), 0.3),
         magnitude: Magnitude::Constant(0.4),
     }
 }
@@ -81,9 +78,7 @@ pub(crate) fn torsion_spring(bodies: [usize; 2]) -> Load {
 pub(crate) fn torsion_damper(bodies: [usize; 2]) -> Load {
     Load {
         name: "damper".into(),
-        kind: LoadKind::RotationalDamper {
-            bodies: bodies.map(BodyId),
-        },
+        kind: LoadKind::rotational_damper(bodies.map(BodyId)),
         magnitude: Magnitude::Constant(0.5),
     }
 }
@@ -234,9 +229,7 @@ pub(crate) fn wheel(magnitude: Magnitude, drives: &[Drive]) -> Machine {
     let model = Model::new(&wheel, &masses, &assembly, &[]).expect("a model");
     let couple = Load {
         name: "couple".into(),
-        kind: LoadKind::Torque {
-            bodies: [BodyId(0), BodyId(1)],
-        },
+        kind: LoadKind::couple([BodyId(0), BodyId(1)]),
         magnitude,
     };
     Machine::new(model, &[couple], vec![CoordinateMode::Free], drives).expect("a machine")

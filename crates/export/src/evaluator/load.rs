@@ -1,6 +1,6 @@
 //! What a load does at a state, with the value of its parameter or input in the scene.
 
-use crate::machine::{LoadDescription, LoadEffect};
+use crate::machine::{LoadDescription, LoadEffect, Resistance};
 use crate::real::Real;
 
 /// A load in one kind of number.
@@ -46,8 +46,11 @@ impl<R: Real> Load<R> {
     pub(crate) fn force(&self, y: &[R], along: impl Fn(R) -> R) -> R {
         let [constant, resistance, ..] = self.motor;
         match (&self.effect, self.current) {
-            (LoadEffect::Damper { .. } | LoadEffect::VariableDamper { .. }, _) => {
-                R::of(0.0) - along(self.value)
+            (LoadEffect::Damper { law, .. } | LoadEffect::VariableDamper { law, .. }, _) => {
+                match law {
+                    Resistance::Linear => R::of(0.0) - along(self.value),
+                    Resistance::Quadratic => self.value * (y[1] * y[1]).sqrt() * y[1],
+                }
             }
             (LoadEffect::Motor(_), Some(place)) => constant * y[place],
             (LoadEffect::Motor(_), None) => constant * (self.value - along(constant)) / resistance,

@@ -127,6 +127,7 @@ fn rates(members: &Members<'_>, text: &mut String) {
         inputs: "m->inputs.",
         state: "m->state.",
         zero: "0",
+        choice: crate::c::CHOICE,
     };
     *text += "static int model_rates(const model *m, double *rates)\n{\n    rates[0] = m->state.q_dot;\n";
     for (load, _, place) in members.currents() {

@@ -3,7 +3,7 @@
 use crate::describe::describe;
 use crate::export::Export;
 use crate::identifiers::comment;
-use crate::machine::{LoadEffect, PartKind};
+use crate::machine::{LoadEffect, PartKind, Resistance};
 use crate::part::{CURVE, HEAD, TERMS};
 use std::fmt::Write as _;
 
@@ -146,9 +146,14 @@ pub(super) fn rates(export: &Export, name: &str) -> String {
             LoadEffect::Conservative { .. }
             | LoadEffect::Constant { .. }
             | LoadEffect::Input { .. } => writeln!(text, "  F({number}) = {value:e};"),
-            LoadEffect::Damper { .. } | LoadEffect::VariableDamper { .. } => {
-                writeln!(text, "  F({number}) = -{value:e} * r.w({number}) * q_dot;")
-            }
+            LoadEffect::Damper { law, .. } | LoadEffect::VariableDamper { law, .. } => match law {
+                Resistance::Linear => {
+                    writeln!(text, "  F({number}) = -{value:e} * r.w({number}) * q_dot;")
+                }
+                Resistance::Quadratic => {
+                    writeln!(text, "  F({number}) = {value:e} * abs(q_dot) * q_dot;")
+                }
+            },
             LoadEffect::Motor(motor) => {
                 let constant = motor.gear_ratio * motor.torque_constant;
                 writeln!(

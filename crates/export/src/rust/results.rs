@@ -10,6 +10,7 @@ const ACCESS: Access = Access {
     inputs: "inputs.",
     state: "s.",
     zero: "0.0",
+    choice: ["(if ", " { ", " } else { ", " })"],
 };
 
 impl RustWriter<'_> {

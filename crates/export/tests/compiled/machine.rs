@@ -2,7 +2,7 @@
 
 use dwell_export::{
     Domain, Export, FitError, Function, FunctionSampler, LoadDescription, LoadEffect,
-    MachineDescription, Motor, PartKind, Precision, ReferenceSizes, Request,
+    MachineDescription, Motor, PartKind, Precision, ReferenceSizes, Request, Resistance,
 };
 use std::convert::Infallible;
 use std::f64::consts::TAU;
@@ -118,7 +118,14 @@ pub(crate) fn machine(inductance: f64) -> MachineDescription {
                 "m/s2",
             ),
             load("push", LoadEffect::Constant { magnitude: 0.5 }, "N"),
-            load("oil", LoadEffect::Damper { damping: 0.05 }, "N m s/rad"),
+            load(
+                "oil",
+                LoadEffect::Damper {
+                    damping: 0.05,
+                    law: Resistance::Linear,
+                },
+                "N m s/rad",
+            ),
             load("brake", LoadEffect::Input { initial: -0.1 }, "N m"),
             load(
                 "motor",

@@ -1,10 +1,12 @@
 //! The loads of a model: checked, and evaluated at a state of motion.
 
 use super::signal::{SignalWorkspace, compile_signals};
-use super::{AppliedWrench, CompiledSignal, Load, LoadKind, Magnitude, find_couple_points};
+use super::{
+    AppliedWrench, CompiledSignal, Direction, Load, LoadKind, Magnitude, find_couple_points,
+};
 use crate::error::{KinetostaticsError, LoadError, Result};
 use crate::mass::Mass;
-use dwell_geometry::body_states::BodyStates;
+use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{BodyId, JointId, Mechanism, Plan, PositionError, Vec2};
 use dwell_numerics::Scalar;
 
@@ -140,7 +142,7 @@ impl CompiledLoads {
         Ok(())
     }
 
-    /// The wrenches of one load alone at magnitude one; of a damper, at one unit of resistance.
+    /// The wrenches of a unit of one load alone: see [`Strength::unit`](super::Strength::unit).
     #[inline]
     pub(crate) fn unit_wrenches<T: Scalar>(
         &self,
@@ -150,21 +152,7 @@ impl CompiledLoads {
     ) -> Result<()> {
         out.wrenches.clear();
         out.gravity = Vec2::zero();
-        let (kind, sign) = match self.loads[load].kind {
-            LoadKind::RotationalDamper { bodies } => (LoadKind::Torque { bodies }, -1.0),
-            LoadKind::SlideDamper(guide) => (LoadKind::SlideForce(guide), -1.0),
-            LoadKind::Damper { bodies, points } => {
-                (LoadKind::PointToPointForce { bodies, points }, -1.0)
-            }
-            kind @ (LoadKind::Gravity { .. }
-            | LoadKind::Force { .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::Spring { .. }
-            | LoadKind::TorsionSpring { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::SlideForce(_)
-            | LoadKind::SeparatingForce(_)) => (kind, 1.0),
-        };
+        let (kind, sign) = self.loads[load].kind.unit_load();
         self.add_wrenches(load, &kind, T::from_f64(sign), states, out)
             .ok_or(KinetostaticsError::NoDirection { load })?;
         out.sum_by_body();
@@ -178,8 +166,7 @@ impl CompiledLoads {
         states: &BodyStates<T>,
     ) -> Option<T> {
         let load = self.loads.get(load)?;
-        if let LoadKind::SeparatingForce(_) = load.kind {
-            // It does no work, whatever its magnitude.
+        if !load.does_work() {
             return Some(T::from_f64(0.0));
         }
         let along =
@@ -197,31 +184,14 @@ impl CompiledLoads {
             LoadKind::Force {
                 body,
                 point,
-                direction,
-                body_fixed: false,
+                direction: Direction::Ground(direction),
             } => Some(T::from_f64(-f) * along(body, point, direction)),
-            LoadKind::Spring {
-                bodies,
-                points,
-                free_length: free,
-            } => {
-                let stretch = states.separation(bodies, points).length - T::from_f64(free);
+            LoadKind::Along(coordinate, strength) => {
+                let free = T::from_f64(strength.free()?);
+                let stretch = states.coordinate(coordinate)[0] - free;
                 Some(T::from_f64(0.5 * f) * stretch * stretch)
             }
-            LoadKind::TorsionSpring { bodies, free_angle } => {
-                let twist = states.angle(bodies)[0] - T::from_f64(free_angle);
-                Some(T::from_f64(0.5 * f) * twist * twist)
-            }
-            LoadKind::Force {
-                body_fixed: true, ..
-            }
-            | LoadKind::Torque { .. }
-            | LoadKind::Damper { .. }
-            | LoadKind::RotationalDamper { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_)
-            | LoadKind::SeparatingForce(_) => None,
+            LoadKind::Force { .. } | LoadKind::Drag { .. } | LoadKind::Special(_) => None,
         }
     }
 }
@@ -232,30 +202,25 @@ fn validate_load(mechanism: &Mechanism, load: &Load) -> Result<(), &'static str>
     // A unit vector to rounding, from any way of normalising it.
     let unit = |v: Vec2| (v.norm() - 1.0).abs() < 1e-9;
     let finite = |points: &[Vec2]| points.iter().all(|p| p.is_finite());
-    let sound = match &load.kind {
+    let is_sound = match &load.kind {
         LoadKind::Gravity { direction } => unit(*direction),
         LoadKind::Force {
             point, direction, ..
-        } => unit(*direction) && point.is_finite(),
-        LoadKind::Torque { .. } | LoadKind::RotationalDamper { .. } => true,
-        LoadKind::Spring {
-            points,
-            free_length: free,
-            ..
-        } => finite(points) && free.is_finite() && *free >= 0.0,
-        LoadKind::TorsionSpring { free_angle, .. } => free_angle.is_finite(),
-        LoadKind::Damper { points, .. } | LoadKind::PointToPointForce { points, .. } => {
-            finite(points)
+        } => unit(direction.vector()) && point.is_finite(),
+        LoadKind::Drag { point, .. } => point.is_finite(),
+        LoadKind::Along(CoordinateFunction::Angle(_), strength) => strength.is_sound(false),
+        LoadKind::Along(CoordinateFunction::Travel(guide), strength) => {
+            finite(&guide.points) && unit(guide.axis) && strength.is_sound(false)
         }
-        LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => {
-            finite(&guide.points) && unit(guide.axis)
+        LoadKind::Along(CoordinateFunction::Length { points, .. }, strength) => {
+            finite(points) && strength.is_sound(true)
         }
-        LoadKind::SeparatingForce(mesh) => mesh.is_valid(),
+        LoadKind::Special(mesh) => mesh.is_valid(),
     };
     if !load.kind.bodies().iter().all(there) {
         return Err("it acts on a body that does not exist");
     }
-    if !sound {
+    if !is_sound {
         return Err(
             "its points and free value must be finite, its direction a unit vector, its free length not negative",
         );

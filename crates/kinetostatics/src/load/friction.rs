@@ -1,12 +1,12 @@
 //! The friction of a joint, as a magnitude of a load.
 
 use super::LoadKind;
+use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Component, Joint, JointId, Mechanism, Reaction};
 
-/// Coulomb friction in a joint, which holds at zero speed or is regularised around it. The load must be a [`LoadKind::Torque`] on the bodies of
-/// a revolute joint or a [`LoadKind::SlideForce`] on those of a prismatic joint or slot; in space a
-/// [`JointTorque`](crate::space::LoadKind::JointTorque) of a revolute joint, a [`SlideForce`](crate::space::LoadKind::SlideForce) of a
-/// prismatic joint, or of a cylindrical joint one of each.
+/// Coulomb friction in a joint, which holds at zero speed or is regularised around it. The load must be a [`couple`](LoadKind::couple) on the
+/// bodies of a revolute joint or a [`slide_force`](LoadKind::slide_force) on those of a prismatic joint or slot; in space also, of a cylindrical
+/// joint, one of each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Friction {
     /// The joint.
@@ -51,12 +51,12 @@ impl Friction {
         self.validate_numbers()?;
         let bodies = joint.bodies;
         let fits = match self.contact {
-            FrictionContact::Pin { .. } => {
-                joint.kind.is_pin() && kind == LoadKind::Torque { bodies }
-            }
+            FrictionContact::Pin { .. } => joint.kind.is_pin() && kind == LoadKind::couple(bodies),
             FrictionContact::Guide { .. } => {
                 let slides = joint.kind.travel_axis().is_some();
-                slides && matches!(kind, LoadKind::SlideForce(guide) if guide.bodies == bodies)
+                let along = kind.sliding_coordinate();
+                slides
+                    && matches!(along, Some(CoordinateFunction::Travel(guide)) if guide.bodies == bodies)
             }
             FrictionContact::Bearing { .. } => false,
         };

@@ -66,7 +66,7 @@ impl PressureAngle {
         if !(self.angle > 0.0 && self.angle <= Self::MAX) {
             return Err("its pressure angle must be above 0 and at most 45°");
         }
-        match Mesh::of(joint).map(LoadKind::SeparatingForce) {
+        match Mesh::of(joint).map(LoadKind::Special) {
             Some(separating) if separating == kind => Ok(()),
             _ => Err("its joint is no gear pair or rack with these teeth"),
         }
@@ -132,7 +132,7 @@ impl Load {
     pub fn separating(joint: &Joint, id: JointId, pressure_angle: f64) -> Option<Self> {
         Some(Self {
             name: format!("{}.separating", joint.name),
-            kind: LoadKind::SeparatingForce(Mesh::of(joint)?),
+            kind: LoadKind::Special(Mesh::of(joint)?),
             magnitude: Magnitude::Separating(PressureAngle {
                 joint: id,
                 angle: pressure_angle,

@@ -1,6 +1,6 @@
 //! Forces and couples on bodies, and those of a load at its two ends.
 
-use super::{CompiledLoads, Guide, LoadKind, LoadState, Mesh};
+use super::{CompiledLoads, Direction, Guide, Line, LoadKind, LoadState, Mesh, Strength, drag};
 use crate::mass::Mass;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{ActuatorId, BodyId, Joint, JointId, JointKind, Mechanism, Plan, Vec2};
@@ -69,7 +69,6 @@ pub(crate) fn on_two_bodies<T: Scalar>(
 
 impl CompiledLoads {
     /// Adds the wrenches of the `i`th load, taken as of this kind and magnitude `f`; none where it has no direction.
-    // Long because it has one arm for each kind of load.
     #[inline]
     pub(super) fn add_wrenches<T: Scalar>(
         &self,
@@ -79,127 +78,119 @@ impl CompiledLoads {
         states: &BodyStates<T>,
         out: &mut LoadState<T>,
     ) -> Option<()> {
-        let (source, zero) = (ForceSource::Load(i), T::from_f64(0.0));
-        let moment_arms_at = |bodies: [BodyId; 2], points: [Vec2; 2]| {
-            map_array([0, 1], |i: usize| {
-                states.body(bodies[i]).moment_arm(points[i])
-            })
+        let (source, couple) = (ForceSource::Load(i), T::from_f64(0.0));
+        let at_point = |body: BodyId, point: Vec2, force: Vec2<T>| AppliedWrench {
+            source,
+            body,
+            force,
+            moment_arm: states.body(body).moment_arm(point),
+            couple,
         };
-        let forces = |bodies, moment_arms, force: Vec2<T>| {
-            on_two_bodies(source, bodies, moment_arms, [(-force, zero), (force, zero)])
-        };
-        // Between two points: equal and opposite forces along the line.
-        let along = |bodies, points, force| forces(bodies, moment_arms_at(bodies, points), force);
-        let couples = |bodies, couple: T| {
-            let actions = [(Vec2::zero(), -couple), (Vec2::zero(), couple)];
-            let moment_arms = moment_arms_at(bodies, self.couple_points[i]);
-            on_two_bodies(source, bodies, moment_arms, actions)
-        };
-        let on_both = match *kind {
+        match *kind {
             LoadKind::Gravity { direction } => {
                 let pull = direction.cast() * f;
                 out.gravity += pull;
-                let weight = |&(body, Mass { mass, center, .. }): &(BodyId, Mass)| AppliedWrench {
-                    source,
-                    body,
-                    force: pull * T::from_f64(mass),
-                    moment_arm: states.body(body).moment_arm(center),
-                    couple: zero,
+                let weight = |&(body, Mass { mass, center, .. }): &(BodyId, Mass)| {
+                    at_point(body, center, pull * T::from_f64(mass))
                 };
                 out.wrenches.extend(self.weighted_bodies.iter().map(weight));
-                return Some(());
             }
             LoadKind::Force {
                 body,
                 point,
                 direction,
-                body_fixed,
             } => {
-                let state = states.body(body);
-                let mut unit = direction.cast();
-                if body_fixed {
-                    unit = unit.rotate(state.rotation);
-                }
-                out.wrenches.push(AppliedWrench {
-                    source,
-                    body,
-                    force: unit * f,
-                    moment_arm: state.moment_arm(point),
-                    couple: zero,
-                });
-                return Some(());
-            }
-            LoadKind::Torque { bodies } => couples(bodies, f),
-            LoadKind::Spring {
-                bodies,
-                points,
-                free_length: free,
-            } => {
-                let between = states.separation(bodies, points);
-                // −k (P₂ − P₁) + k free e: the first part is smooth where the points meet.
-                let mut force = -(between.gap * f);
-                if free != 0.0 {
-                    match between.direction {
-                        Some(direction) => force += direction * (f * T::from_f64(free)),
-                        None if f.value() == 0.0 => {}
-                        None => return None,
-                    }
-                }
-                along(bodies, points, force)
-            }
-            LoadKind::TorsionSpring { bodies, free_angle } => {
-                let twist = states.angle(bodies)[0] - T::from_f64(free_angle);
-                couples(bodies, -(f * twist))
-            }
-            LoadKind::Damper { bodies, points } => {
-                let between = states.separation(bodies, points);
-                let velocity = between.velocity;
-                let still =
-                    f.value() == 0.0 || (velocity.x.value() == 0.0 && velocity.y.value() == 0.0);
-                let force = match between.direction {
-                    Some(e) => -(e * (e.dot(velocity) * f)),
-                    None if still => Vec2::zero(),
-                    None => return None,
+                let unit = match direction {
+                    Direction::Ground(unit) => unit.cast(),
+                    Direction::Body(unit) => unit.cast().rotate(states.body(body).rotation),
                 };
-                along(bodies, points, force)
+                out.wrenches.push(at_point(body, point, unit * f));
             }
-            LoadKind::RotationalDamper { bodies } => {
-                couples(bodies, -(f * states.angle(bodies)[1]))
+            LoadKind::Drag { body, point } => {
+                let force = drag(f, states.point(body, point).velocity);
+                out.wrenches.push(at_point(body, point, force));
             }
-            LoadKind::PointToPointForce { bodies, points } => {
-                let force = match states.separation(bodies, points).direction {
-                    Some(e) => e * f,
-                    None if f.value() == 0.0 => Vec2::zero(),
-                    None => return None,
-                };
-                along(bodies, points, force)
+            LoadKind::Along(coordinate, strength) => {
+                let pair = self.along(i, (coordinate, strength), f, states)?;
+                out.wrenches.extend(pair);
             }
             // On both bodies at the pitch point.
-            LoadKind::SeparatingForce(ref mesh) => {
+            LoadKind::Special(ref mesh) => {
                 let &Mesh { bodies, points, .. } = mesh;
                 let [pitch_point, away] = mesh.pitch_point(states)?;
-                let [first, second] = moment_arms_at(bodies, points);
+                let [first, second] = moment_arms(states, bodies, points);
                 let between = states.separation(bodies, points).gap + pitch_point;
-                forces(bodies, [first + between, second + pitch_point], away * f)
+                let arms = [first + between, second + pitch_point];
+                out.wrenches.extend(forces(source, bodies, arms, away * f));
             }
-            // Along the guide, on both bodies at the second body's point.
-            LoadKind::SlideForce(ref guide) | LoadKind::SlideDamper(ref guide) => {
-                let &Guide { bodies, points, .. } = guide;
-                let f = match kind {
-                    LoadKind::SlideDamper(_) => {
-                        -(f * states.coordinate(CoordinateFunction::Travel(*guide))[1])
-                    }
-                    _ => f,
-                };
-                let force = guide.axis.cast().rotate(states.body(bodies[0]).rotation) * f;
-                let [first, second] = moment_arms_at(bodies, points);
-                let gap = states.separation(bodies, points).gap;
-                forces(bodies, [first + gap, second], force)
-            }
-        };
-        out.wrenches.extend(on_both);
+        }
         Some(())
     }
+
+    /// The wrenches of the `i`th load along a coordinate; none where it has no direction.
+    #[inline]
+    fn along<T: Scalar>(
+        &self,
+        i: usize,
+        (coordinate, strength): (CoordinateFunction, Strength),
+        f: T,
+        states: &BodyStates<T>,
+    ) -> Option<[AppliedWrench<T>; 2]> {
+        let source = ForceSource::Load(i);
+        Some(match coordinate {
+            CoordinateFunction::Angle(bodies) => {
+                let angle = || states.angle(bodies);
+                let couple = strength.force(f, || angle()[0], || angle()[1]);
+                let actions = [(Vec2::zero(), -couple), (Vec2::zero(), couple)];
+                let arms = moment_arms(states, bodies, self.couple_points[i]);
+                on_two_bodies(source, bodies, arms, actions)
+            }
+            // Along the guide, on both bodies at the second body's point.
+            CoordinateFunction::Travel(guide) => {
+                let Guide { bodies, points, .. } = guide;
+                let travel = || states.coordinate(coordinate);
+                let f = strength.force(f, || travel()[0], || travel()[1]);
+                let force = guide.axis.cast().rotate(states.body(bodies[0]).rotation) * f;
+                let [first, second] = moment_arms(states, bodies, points);
+                let gap = states.separation(bodies, points).gap;
+                forces(source, bodies, [first + gap, second], force)
+            }
+            CoordinateFunction::Length { bodies, points } => {
+                let between = states.separation(bodies, points);
+                let line = Line {
+                    gap: between.gap,
+                    direction: between.direction,
+                    velocity: between.velocity,
+                };
+                let force = strength.force_along_line(f, &line)?;
+                forces(source, bodies, moment_arms(states, bodies, points), force)
+            }
+        })
+    }
+}
+
+/// From the origins of two bodies to a point on each.
+#[inline]
+fn moment_arms<T: Scalar>(
+    states: &BodyStates<T>,
+    bodies: [BodyId; 2],
+    points: [Vec2; 2],
+) -> [Vec2<T>; 2] {
+    map_array([0, 1], |k: usize| {
+        states.body(bodies[k]).moment_arm(points[k])
+    })
+}
+
+/// A force on the second of two bodies, and its opposite on the first.
+#[inline]
+fn forces<T: Scalar>(
+    source: ForceSource,
+    bodies: [BodyId; 2],
+    moment_arms: [Vec2<T>; 2],
+    force: Vec2<T>,
+) -> [AppliedWrench<T>; 2] {
+    let zero = T::from_f64(0.0);
+    on_two_bodies(source, bodies, moment_arms, [(-force, zero), (force, zero)])
 }
 
 /// The points of two bodies at which a couple between them acts: those of a joint between them, of a revolute one

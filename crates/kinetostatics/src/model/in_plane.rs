@@ -58,26 +58,6 @@ impl MachineModel for Model {
         signals.map_or(&[], Vec::as_slice)
     }
 
-    fn is_conservative(&self, load: usize) -> bool {
-        self.loads().get(load).is_some_and(Load::is_conservative)
-    }
-
-    fn work_lever(&self, kind: &LoadKind) -> f64 {
-        let size = self.mechanism().size();
-        match kind {
-            LoadKind::Gravity { .. } => size * self.total_mass(),
-            LoadKind::Force { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::SlideForce(_) => size,
-            LoadKind::Torque { .. } | LoadKind::TorsionSpring { .. } => 1.0,
-            LoadKind::Spring { .. } => size * size,
-            LoadKind::Damper { .. }
-            | LoadKind::RotationalDamper { .. }
-            | LoadKind::SlideDamper(_)
-            | LoadKind::SeparatingForce(_) => 0.0,
-        }
-    }
-
     fn frictions(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
         self.dependent_loads.iter().map(|dependent| dependent.load)
     }

@@ -4,7 +4,7 @@
 use crate::drive::Drive;
 use crate::error::{LoadError, PositionResult, Result};
 use crate::friction::FrictionState;
-use crate::load::{Friction, Load, Magnitude, Signal};
+use crate::load::{Friction, Load, LoadShape, Magnitude, Signal};
 use crate::pass::InverseDynamics;
 use crate::reducible_model::ReducibleModel;
 use dwell_laws::HeldPieces;
@@ -18,8 +18,8 @@ pub trait MachineModel: ReducibleModel + Debug + Clone + PartialEq + Send + 'sta
     type Coordinate: Debug + Copy + PartialEq + Send + Sync + 'static;
     /// The same of a compiled mechanism.
     type CoordinateFunction: Debug + Copy + PartialEq + Send + Sync + 'static;
-    /// The shape of a load.
-    type LoadKind: Debug + Copy + PartialEq + Send + Sync + 'static;
+    /// The kind of a load.
+    type LoadKind: LoadShape;
 
     /// Whether an actuator drives an angle; otherwise it drives a length.
     fn is_angle(&self, actuator: usize) -> bool;
@@ -62,10 +62,14 @@ pub trait MachineModel: ReducibleModel + Debug + Clone + PartialEq + Send + 'sta
     fn compiled_signals(&self, load: usize) -> &[Signal<Self::CoordinateFunction>];
 
     /// Whether a load has a potential energy.
-    fn is_conservative(&self, load: usize) -> bool;
+    fn is_conservative(&self, load: usize) -> bool {
+        self.loads().get(load).is_some_and(Load::is_conservative)
+    }
 
-    /// The work of a unit of a load over the size of the mechanism, or a turn of one radian; zero of a damper. m, kg m, m² or 1.
-    fn work_lever(&self, kind: &Self::LoadKind) -> f64;
+    /// The work of a unit of a load, as of [`LoadShape::work_lever`].
+    fn work_lever(&self, kind: &Self::LoadKind) -> f64 {
+        kind.work_lever(self.size(), self.total_mass())
+    }
 
     /// The loads that depend on reactions (frictions and separating forces), by their indices.
     fn frictions(&self) -> impl ExactSizeIterator<Item = usize> + '_;

@@ -1,7 +1,7 @@
 //! Internal forces of a link: the action of one part on the other at a cut across a straight line.
 
 use super::FreeBodyForces;
-use crate::load::{AppliedWrench, ForceSource, Load, LoadKind};
+use crate::load::{AppliedWrench, ForceSource, Load, LoadShape as _};
 use crate::mass::Mass;
 use crate::model::stages::EvaluatedState;
 use dwell_geometry::{BodyId, Vec2};
@@ -88,7 +88,7 @@ impl FreeBodyForces {
             bar: None,
         };
         // Weight is distributed as the mass is.
-        let is_gravity = |load: &Load| matches!(load.kind, LoadKind::Gravity { .. });
+        let is_gravity = |load: &Load| load.kind.is_gravity();
         let is_weight = |source| match source {
             ForceSource::Load(load) => model.loads().get(load).is_some_and(is_gravity),
             ForceSource::Joint(_) | ForceSource::Actuator(_) => false,

@@ -20,7 +20,7 @@ use super::model::{Axes, Component, Model, Reaction};
 use super::surface_friction::TWO_DIRECTIONS;
 use crate::error::LoadError;
 use crate::friction::{ContactLaw, DependentLoad};
-use crate::load::{Friction, FrictionContact};
+use crate::load::{Friction, FrictionContact, Strength};
 use dwell_geometry::space::{Coordinate, CoordinateFunction, JointKind, Mechanism, Plan};
 use dwell_numerics::Scalar;
 
@@ -74,18 +74,18 @@ impl FrictionLaw {
             (
                 JointKind::Revolute,
                 FrictionContact::Bearing { radius, distance },
-                LoadKind::JointTorque(of),
+                LoadKind::Along(Coordinate::Angle(of), Strength::Direct),
             ) if of == id => (Sliding::Along(function(angle)?), radius, distance),
-            (JointKind::Prismatic, FrictionContact::Guide { length }, LoadKind::SlideForce(of))
-                if of == id =>
-            {
-                (Sliding::Along(function(travel)?), 1.0, length)
-            }
+            (
+                JointKind::Prismatic,
+                FrictionContact::Guide { length },
+                LoadKind::Along(Coordinate::Travel(of), Strength::Direct),
+            ) if of == id => (Sliding::Along(function(travel)?), 1.0, length),
             // One line in a mechanism of one coordinate: see `surface_friction`.
             (
                 JointKind::Cylindrical,
                 FrictionContact::Bearing { distance, .. },
-                LoadKind::SlideForce(of),
+                LoadKind::Along(Coordinate::Travel(of), Strength::Direct),
             ) if of == id && friction.regularization_speed.is_none() => {
                 let only = only_coordinate(mechanism)?;
                 (Sliding::Along(function(only)?), 1.0, distance)
@@ -93,11 +93,11 @@ impl FrictionLaw {
             (
                 JointKind::Cylindrical,
                 FrictionContact::Bearing { radius, distance },
-                LoadKind::JointTorque(of) | LoadKind::SlideForce(of),
+                LoadKind::Along(Coordinate::Angle(of) | Coordinate::Travel(of), Strength::Direct),
             ) if of == id && friction.regularization_speed.is_some() => {
                 let (mut coordinates, mut levers) =
                     ([function(travel)?, function(angle)?], [1.0, radius]);
-                if kind == LoadKind::JointTorque(id) {
+                if kind == LoadKind::couple(id) {
                     coordinates.reverse();
                     levers.reverse();
                 }

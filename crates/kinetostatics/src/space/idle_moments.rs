@@ -66,20 +66,24 @@ impl Model {
             to_ground(idle.axis),
             to_ground(idle.point - evaluated.position),
         );
-        let (mut moment, mut scale) = (0.0, 0.0);
-        let (shape, unit) = self.loads.kinds[load].unit();
-        // Without a direction here it has one at the other poses.
-        let _ = shape.act(
-            unit,
-            (self.plan(), pose),
-            self.inner_masses(),
-            |(on, [arm, force, couple])| {
-                if on == body {
-                    moment += axis.dot((arm - point).cross(force) + couple);
-                    scale += force.norm() * self.plan().size() + couple.norm();
-                }
-            },
-        );
-        f64::abs(moment) > ROUNDING * scale
+        for (kind, unit) in self.loads.kinds[load].directions() {
+            let (mut moment, mut scale) = (0.0, 0.0);
+            // Without a direction here it has one at the other poses.
+            let _ = kind.act(
+                unit,
+                (self.plan(), pose),
+                self.inner_masses(),
+                |(on, [arm, force, couple])| {
+                    if on == body {
+                        moment += axis.dot((arm - point).cross(force) + couple);
+                        scale += force.norm() * self.plan().size() + couple.norm();
+                    }
+                },
+            );
+            if f64::abs(moment) > ROUNDING * scale {
+                return true;
+            }
+        }
+        false
     }
 }

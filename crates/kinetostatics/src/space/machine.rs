@@ -15,7 +15,7 @@ use super::model::{Model, Workspace};
 use crate::drive::Drive;
 use crate::error::{KinetostaticsError, LoadError, PositionResult, Result};
 use crate::friction::{self, FrictionState};
-use crate::load::{Friction, Magnitude, Signal};
+use crate::load::{Friction, Magnitude, Signal, Strength};
 use crate::model::{EvaluatedState, KinematicState, MachineModel};
 use crate::pass::InverseDynamics;
 use dwell_geometry::PositionError;
@@ -127,7 +127,7 @@ impl MachineModel for Model {
         self.coordinate_function(drive.coordinate)?;
         Ok(Load {
             name: drive.name.clone(),
-            kind: LoadKind::along(drive.coordinate),
+            kind: LoadKind::Along(drive.coordinate, Strength::Direct),
             magnitude: Magnitude::External(drive.kind.input().signals().to_vec()),
         })
     }
@@ -139,19 +139,6 @@ impl MachineModel for Model {
     fn compiled_signals(&self, load: usize) -> &[Signal<CoordinateFunction>] {
         let signals = self.loads.signals.get(load);
         signals.map_or(&[], Vec::as_slice)
-    }
-
-    fn is_conservative(&self, load: usize) -> bool {
-        self.loads.loads.get(load).is_some_and(|load| {
-            load.kind.is_conservative() && matches!(load.magnitude, Magnitude::Constant(_))
-        })
-    }
-
-    fn work_lever(&self, kind: &LoadKind) -> f64 {
-        let compiled = CompiledKind::new(kind, self.mechanism(), self.plan());
-        compiled.map_or(0.0, |kind| {
-            kind.work_lever(self.plan().size(), self.total_mass())
-        })
     }
 
     fn frictions(&self) -> impl ExactSizeIterator<Item = usize> + '_ {

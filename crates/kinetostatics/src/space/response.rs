@@ -4,6 +4,7 @@ use super::action::CompiledKind;
 use super::load::LoadKind;
 use super::model::{Model, Workspace};
 use crate::error::PositionResult;
+use crate::load::{LoadShape as _, Strength};
 use crate::pass::InverseDynamics;
 use dwell_geometry::space::Wrench;
 use dwell_numerics::Scalar;
@@ -22,7 +23,7 @@ impl Model {
         workspace: &mut Workspace<T>,
         result: &mut InverseDynamics<T>,
     ) -> Option<()> {
-        let (unit, magnitude) = kind.unit();
+        let (unit, magnitude) = kind.unit_load();
         self.respond_to(&[(&unit, T::from_f64(magnitude))], workspace, result)
     }
 
@@ -51,8 +52,8 @@ impl Model {
         Some(())
     }
 
-    /// The response to a load of magnitude 1 at `q` (rad or m), at rest: τ = −w and the reactions c; of a damper, to a unit of its
-    /// resistance. No numbers where the load has no direction or does not fit the mechanism.
+    /// The response to a [unit](crate::load::Strength::unit) of a load at `q` (rad or m) and unit speeds, without inertia: τ = −w and the reactions
+    /// c. No numbers where the load has no direction or does not fit the mechanism.
     ///
     /// # Errors
     /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
@@ -64,6 +65,11 @@ impl Model {
         result: &mut InverseDynamics<T>,
     ) -> PositionResult {
         self.plan().positions(q, &mut workspace.pose)?;
+        if load.strength() == Strength::Quadratic {
+            let Workspace { pose, rates, .. } = &mut *workspace;
+            rates.fill(T::from_f64(1.0));
+            self.plan().velocities(rates, pose);
+        }
         let kind = CompiledKind::new(load, self.mechanism(), self.plan()).ok();
         let responded = kind.and_then(|kind| self.respond(&kind, workspace, result));
         if responded.is_none() {

@@ -14,7 +14,7 @@ use super::action::CompiledKind;
 use super::load::LoadKind;
 use super::model::{Model, Workspace};
 use crate::error::LoadError;
-use crate::load::FrictionContact;
+use crate::load::{FrictionContact, Strength};
 use dwell_geometry::JointId;
 use dwell_geometry::space::{Coordinate, CoordinateFunction, JointKind};
 use dwell_numerics::Scalar;
@@ -49,7 +49,9 @@ impl Model {
         let mut all = Vec::new();
         for (load, one) in self.loads.loads.iter().enumerate() {
             let wrong = |what| LoadError { load, what };
-            let (Some(friction), LoadKind::SlideForce(joint)) = (one.friction(), one.kind) else {
+            let (Some(friction), LoadKind::Along(Coordinate::Travel(joint), Strength::Direct)) =
+                (one.friction(), one.kind)
+            else {
                 continue;
             };
             let FrictionContact::Bearing { radius, .. } = friction.contact else {
@@ -64,8 +66,8 @@ impl Model {
             let (mechanism, plan) = (self.mechanism(), self.plan());
             let compiled = |kind: LoadKind| CompiledKind::new(&kind, mechanism, plan);
             let parts = [
-                compiled(LoadKind::SlideForce(joint)).map_err(wrong)?,
-                compiled(LoadKind::JointTorque(joint)).map_err(wrong)?,
+                compiled(LoadKind::slide_force(joint)).map_err(wrong)?,
+                compiled(LoadKind::couple(joint)).map_err(wrong)?,
             ];
             let of = |coordinate| plan.direction_function(mechanism, coordinate);
             let coordinates = [

@@ -1,7 +1,8 @@
 //! The numbers of loads apart from their structure: points, free lengths and angles, constant magnitudes.
 
 use crate::load::{
-    CompiledLoads, CompiledSignal, Guide, Load, LoadKind, Magnitude, Signal, compile_signals,
+    CompiledLoads, CompiledSignal, Guide, Load, LoadCoordinate as _, LoadKind, LoadShape as _,
+    Magnitude, Signal, Strength, compile_signals,
 };
 use crate::mass::Mass;
 use dwell_geometry::body_states::CoordinateFunction;
@@ -20,23 +21,18 @@ fn visit_points(points: &mut [Vec2], visit: Visit<'_>) {
 /// Visits the numbers of a load that may differ between variants. Directions are none of them.
 fn visit_load(load: &mut Load, visit: Visit<'_>) {
     match &mut load.kind {
-        LoadKind::Gravity { .. } | LoadKind::Torque { .. } | LoadKind::RotationalDamper { .. } => {}
-        LoadKind::Force { point, .. } => visit_points(std::slice::from_mut(point), visit),
-        LoadKind::Spring {
-            points,
-            free_length,
-            ..
-        } => {
-            visit_points(points, visit);
-            visit(free_length);
+        LoadKind::Gravity { .. } => {}
+        LoadKind::Force { point, .. } | LoadKind::Drag { point, .. } => {
+            visit_points(std::slice::from_mut(point), visit);
         }
-        LoadKind::TorsionSpring { free_angle, .. } => visit(free_angle),
-        LoadKind::Damper { points, .. }
-        | LoadKind::PointToPointForce { points, .. }
-        | LoadKind::SlideForce(Guide { points, .. })
-        | LoadKind::SlideDamper(Guide { points, .. }) => visit_points(points, visit),
+        LoadKind::Along(coordinate, strength) => {
+            visit_coordinate(coordinate, visit);
+            if let Strength::Elastic { free } = strength {
+                visit(free);
+            }
+        }
         // Not among the loads of variants.
-        LoadKind::SeparatingForce(_) => {}
+        LoadKind::Special(_) => {}
     }
     match &mut load.magnitude {
         Magnitude::Constant(value) => visit(value),
@@ -60,12 +56,14 @@ fn visit_signal(signal: &mut Signal, visit: Visit<'_>) {
     }
 }
 
-/// Visits the points of a coordinate on which a magnitude depends.
 fn visit_compiled_signal(signal: &mut CompiledSignal, visit: Visit<'_>) {
-    let (Signal::Value(function) | Signal::Velocity(function)) = signal else {
-        return;
-    };
-    match function {
+    if let Signal::Value(function) | Signal::Velocity(function) = signal {
+        visit_coordinate(function, visit);
+    }
+}
+
+fn visit_coordinate(coordinate: &mut CoordinateFunction, visit: Visit<'_>) {
+    match coordinate {
         CoordinateFunction::Travel(Guide { points, .. })
         | CoordinateFunction::Length { points, .. } => {
             visit_points(points, visit);
@@ -100,29 +98,15 @@ pub(super) fn is_supported(load: &Load) -> bool {
         | Magnitude::Function(..) => true,
         Magnitude::Friction(_) | Magnitude::Separating(_) | Magnitude::External(_) => false,
     };
-    by_state && !matches!(load.kind, LoadKind::SeparatingForce(_))
+    by_state && load.does_work()
 }
 
 /// Whether a load with these numbers is one that a compilation takes: stiffness, damping and gravity above zero, free
 /// lengths not below. What else there is, a compilation decides.
 fn is_sound(load: &Load) -> bool {
-    let is_free_length_sound = match load.kind {
-        LoadKind::Spring { free_length, .. } => free_length >= 0.0,
-        _ => true,
-    };
-    let may_have_any_sign = match load.kind {
-        LoadKind::Force { .. }
-        | LoadKind::Torque { .. }
-        | LoadKind::PointToPointForce { .. }
-        | LoadKind::SlideForce(_)
-        | LoadKind::SeparatingForce(_) => true,
-        LoadKind::Gravity { .. }
-        | LoadKind::Spring { .. }
-        | LoadKind::TorsionSpring { .. }
-        | LoadKind::Damper { .. }
-        | LoadKind::RotationalDamper { .. }
-        | LoadKind::SlideDamper(_) => false,
-    };
+    let is_distance = matches!(load.kind, LoadKind::Along(along, _) if along.ends().is_some());
+    let is_free_length_sound = load.kind.strength().is_sound(is_distance);
+    let may_have_any_sign = load.kind.strength() == Strength::Direct && !load.kind.is_gravity();
     let is_magnitude_sound = match load.magnitude {
         Magnitude::Constant(value) => value > 0.0 || may_have_any_sign,
         _ => true,

@@ -29,10 +29,7 @@ fn pair(mechanism: &Mechanism) -> [BodyId; 2] {
 }
 
 fn torsion(mechanism: &Mechanism) -> Vec<Load> {
-    let kind = LoadKind::TorsionSpring {
-        bodies: pair(mechanism),
-        free_angle: FREE,
-    };
+    let kind = LoadKind::torsion_spring(pair(mechanism), FREE);
     vec![load("torsion", kind, STIFFNESS)]
 }
 
@@ -41,12 +38,7 @@ fn commanded(mechanism: &Mechanism) -> Vec<Load> {
     let bodies = pair(mechanism);
     let signal = Signal::Value(Coordinate::Angle(bodies));
     let couple = [STIFFNESS * FREE, -STIFFNESS];
-    vec![varied(
-        "couple",
-        LoadKind::Torque { bodies },
-        signal,
-        &couple,
-    )]
+    vec![varied("couple", LoadKind::couple(bodies), signal, &couple)]
 }
 
 fn drag_link(follower_angle: f64, loads: fn(&Mechanism) -> Vec<Load>) -> Case {
@@ -166,10 +158,10 @@ fn turns_are_counted_with_several_actuators() {
 #[test]
 fn an_angle_that_is_not_told_is_within_half_a_turn() {
     let between = |mechanism: &Mechanism| {
-        let kind = LoadKind::TorsionSpring {
-            bodies: ["coupler", "follower"].map(|name| body(mechanism, name)),
-            free_angle: 0.0,
-        };
+        let kind = LoadKind::torsion_spring(
+            ["coupler", "follower"].map(|name| body(mechanism, name)),
+            0.0,
+        );
         vec![load("torsion", kind, STIFFNESS)]
     };
     // The follower points to 3.03 rad and the coupler to -2.02, 1.24 rad before it.

@@ -3,7 +3,8 @@
 use crate::machines::{self, Machine};
 use dwell_geometry::{BodyId, Coordinate, JointKind, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::{
-    EvaluatedState, InverseDynamics, Load, LoadKind, Magnitude, Mass, Model, Signal, Workspace,
+    Direction, EvaluatedState, InverseDynamics, Load, LoadKind, Magnitude, Mass, Model, Signal,
+    Workspace,
 };
 use dwell_laws::{Expression, Law, Polynomial};
 use dwell_scene::PlaneScene;
@@ -264,8 +265,7 @@ pub(crate) fn every_kind(mechanism: &Mechanism) -> Vec<Load> {
             LoadKind::Force {
                 body: ground,
                 point: vec2(0.3, 0.2),
-                direction: vec2(0.0, 1.0),
-                body_fixed: false,
+                direction: Direction::Ground(vec2(0.0, 1.0)),
             },
             40.0,
         ),
@@ -284,17 +284,13 @@ pub(crate) fn every_kind(mechanism: &Mechanism) -> Vec<Load> {
         let force = |body_fixed| LoadKind::Force {
             body,
             point: points[0],
-            direction: Vec2::from_angle(0.7 + points[1].x),
-            body_fixed,
+            direction: match body_fixed {
+                true => Direction::Body(Vec2::from_angle(0.7 + points[1].x)),
+                false => Direction::Ground(Vec2::from_angle(0.7 + points[1].x)),
+            },
         };
-        let spring = LoadKind::Spring {
-            bodies: between,
-            points,
-            free_length: 0.13,
-        };
-        let torque = |first| LoadKind::Torque {
-            bodies: [first, body],
-        };
+        let spring = LoadKind::spring(between, points, 0.13);
+        let torque = |first| LoadKind::couple([first, body]);
         loads.extend([
             varied("force", force(false), Signal::Time, &[3.0, -2.0]),
             varied("follower", force(true), Signal::Value(angle), &[5.0, 1.0]),
@@ -315,33 +311,25 @@ pub(crate) fn every_kind(mechanism: &Mechanism) -> Vec<Load> {
             varied("stiffening", spring, Signal::Value(length), &[10.0, 4.0]),
             load(
                 "torsion",
-                LoadKind::TorsionSpring {
-                    bodies: [ground, body],
-                    free_angle: 0.2,
-                },
+                LoadKind::torsion_spring([ground, body], 0.2),
                 2.0,
             ),
-            load(
-                "damper",
-                LoadKind::Damper {
-                    bodies: [body, ground],
-                    points,
-                },
-                8.0,
-            ),
+            load("damper", LoadKind::damper([body, ground], points), 8.0),
             varied(
                 "damper²",
-                LoadKind::Damper {
-                    bodies: between,
-                    points,
-                },
+                LoadKind::damper(between, points),
                 Signal::Velocity(length),
                 &[1.0, 0.0, 3.0],
             ),
+            load("torsion damper", LoadKind::rotational_damper(between), 0.3),
+            load("rotational drag", LoadKind::rotational_drag(between), 0.2),
             load(
-                "torsion damper",
-                LoadKind::RotationalDamper { bodies: between },
-                0.3,
+                "drag",
+                LoadKind::Drag {
+                    body,
+                    point: points[0],
+                },
+                0.6,
             ),
         ]);
     }
@@ -351,11 +339,15 @@ pub(crate) fn every_kind(mechanism: &Mechanism) -> Vec<Load> {
             let push = LoadKind::Force {
                 body: joint.bodies[1],
                 point: joint.points[1],
-                direction: vec2(0.0, 1.0),
-                body_fixed: true,
+                direction: Direction::Body(vec2(0.0, 1.0)),
             };
             loads.push(varied("push", push, Signal::Value(travel), &[1.0, 20.0]));
-            loads.push(varied("drag", push, Signal::Velocity(travel), &[0.0, -6.0]));
+            loads.push(varied(
+                "resistance",
+                push,
+                Signal::Velocity(travel),
+                &[0.0, -6.0],
+            ));
         }
     }
     loads

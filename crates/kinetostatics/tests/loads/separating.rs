@@ -342,19 +342,19 @@ fn a_separating_force_belongs_to_teeth() {
         let expected = "its pressure angle must be above 0 and at most 45°";
         assert_eq!(message(wrong), expected);
     }
-    let LoadKind::SeparatingForce(mut mesh) = load.kind else {
+    let LoadKind::Special(mut mesh) = load.kind else {
         panic!("{load:?}");
     };
     mesh.points[0].x += 0.01;
     let elsewhere = Load {
-        kind: LoadKind::SeparatingForce(mesh),
+        kind: LoadKind::Special(mesh),
         ..load.clone()
     };
     let expected = "its joint is no gear pair or rack with these teeth";
     assert_eq!(message(elsewhere), expected);
     mesh.points[0].x = f64::NAN;
     let nowhere = Load {
-        kind: LoadKind::SeparatingForce(mesh),
+        kind: LoadKind::Special(mesh),
         magnitude: Magnitude::Constant(1.0),
         ..load
     };

@@ -4,10 +4,10 @@ use crate::scenes::{Case, all, body, case, load};
 use crate::statics::SLIDER_CRANK;
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Mechanism, Vec2, vec2};
-use dwell_kinetostatics::{ForceSource, LoadKind, Magnitude};
+use dwell_kinetostatics::{Direction, ForceSource, LoadKind, LoadShape as _, Magnitude, Strength};
 
-/// Over any motion a spring's power is −k (length − free) times the length's own speed, and a
-/// damper's −c times its square; the same with angles.
+/// Over any motion a spring's power is −k (length − free) times the length's own speed, a
+/// damper's −c times its square, and that of drag −c times its cube; the same with angles.
 #[test]
 fn springs_give_back_and_dampers_dissipate() {
     for case in all() {
@@ -23,32 +23,30 @@ fn springs_give_back_and_dampers_dissipate() {
             };
             for (i, load) in case.model.loads().iter().enumerate() {
                 let f = state.loads().magnitude[i];
-                let (measured, free) = match load.kind {
-                    LoadKind::Spring {
-                        bodies,
-                        points,
-                        free_length: free,
-                    } => (CoordinateFunction::Length { bodies, points }, Some(free)),
-                    LoadKind::Damper { bodies, points } => {
-                        (CoordinateFunction::Length { bodies, points }, None)
+                let (value, free, velocity) = match load.kind {
+                    LoadKind::Along(along, law) if law != Strength::Direct => {
+                        let [value, velocity, _] = states.coordinate(along);
+                        (value, law.free(), velocity)
                     }
-                    LoadKind::TorsionSpring {
-                        bodies,
-                        free_angle: free,
-                    } => (CoordinateFunction::Angle(bodies), Some(free)),
-                    LoadKind::RotationalDamper { bodies } => {
-                        (CoordinateFunction::Angle(bodies), None)
+                    LoadKind::Drag { body, point } => {
+                        (0.0, None, states.point(body, point).velocity.norm())
                     }
                     _ => continue,
                 };
-                let [value, velocity, _] = states.coordinate(measured);
+                let is_quadratic = load.kind.strength() == Strength::Quadratic;
                 let expected = match free {
                     Some(free) => -f * (value - free) * velocity,
+                    None if is_quadratic => -f * velocity.abs().powi(3),
                     None => -f * velocity * velocity,
                 };
                 // Against the two parts of a stretch, each times the speed of both ends: the parts
                 // may nearly cancel, and so may the ends.
-                let size = f.abs() * (value.abs() + free.unwrap_or(velocity).abs());
+                let quadratic = if is_quadratic {
+                    velocity * velocity
+                } else {
+                    0.0
+                };
+                let size = f.abs() * (value.abs() + free.unwrap_or(velocity).abs() + quadratic);
                 let terms = wrenches_of(i).map(|wrench| {
                     let body = states.body(wrench.body);
                     size * (body.velocity_at(wrench.moment_arm).norm()
@@ -102,8 +100,10 @@ fn force(body: &'static str, direction: Vec2, body_fixed: bool) -> impl Fn(&Mech
     move |mechanism| LoadKind::Force {
         body: crate::scenes::body(mechanism, body),
         point: vec2(0.2, 0.05),
-        direction,
-        body_fixed,
+        direction: match body_fixed {
+            true => Direction::Body(direction),
+            false => Direction::Ground(direction),
+        },
     }
 }
 
@@ -137,7 +137,7 @@ fn a_torque_between_bodies_that_turn_together_is_felt_by_their_slide_alone() {
     let unloaded = Case::of(&scene, |_| Vec::new());
     let case = Case::of(&scene, |mechanism| {
         let bodies = ["rocker", "block"].map(|name| body(mechanism, name));
-        vec![load("torque", LoadKind::Torque { bodies }, 5.0)]
+        vec![load("torque", LoadKind::couple(bodies), 5.0)]
     });
     let mut memory = case.memory();
     for (t, q, q_dot, q_ddot) in case.states() {
@@ -169,7 +169,9 @@ fn magnitudes_follow_their_signals() {
         for (t, q, q_dot, q_ddot) in case.states() {
             let state = case.evaluate(&mut memory, (t, &q, &q_dot, &q_ddot));
             for (load, &f) in case.model.loads().iter().zip(&state.loads().magnitude) {
-                let LoadKind::Torque { bodies } = load.kind else {
+                let LoadKind::Along(CoordinateFunction::Angle(bodies), Strength::Direct) =
+                    load.kind
+                else {
                     continue;
                 };
                 let [angle, velocity, _] = state.bodies().angle(bodies);

@@ -3,7 +3,8 @@
 use crate::scenes::{Case, all, body, load, varied};
 use dwell_geometry::{Coordinate, JointId, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::{
-    Friction, FrictionContact, KinetostaticsError, Load, LoadKind, Magnitude, Model, Signal,
+    Direction, Friction, FrictionContact, KinetostaticsError, Load, LoadKind, Magnitude, Model,
+    Signal,
 };
 
 const GRAVITY: LoadKind = LoadKind::Gravity {
@@ -63,8 +64,7 @@ fn a_massless_slider_crank_carries_the_piston_force() {
         let kind = LoadKind::Force {
             body: body(mechanism, "piston"),
             point: Vec2::ZERO,
-            direction: vec2(-1.0, 0.0),
-            body_fixed: false,
+            direction: Direction::Ground(vec2(-1.0, 0.0)),
         };
         vec![load("gas", kind, force)]
     };
@@ -147,11 +147,11 @@ fn conservative_loads_are_held_by_the_slope_of_their_potential() {
 /// Two points that meet when the crank lies at angle zero: a spring from (0.1, 0) to its end.
 fn meeting_spring(free: f64) -> impl FnOnce(&Mechanism) -> Vec<Load> {
     move |mechanism| {
-        let kind = LoadKind::Spring {
-            bodies: ["ground", "crank"].map(|name| body(mechanism, name)),
-            points: [vec2(0.1, 0.0); 2],
-            free_length: free,
-        };
+        let kind = LoadKind::spring(
+            ["ground", "crank"].map(|name| body(mechanism, name)),
+            [vec2(0.1, 0.0); 2],
+            free,
+        );
         vec![load("weight", GRAVITY, 9.81), load("spring", kind, 50.0)]
     }
 }
@@ -179,10 +179,10 @@ fn a_spring_of_no_length_pulls_smoothly_or_says_that_it_has_no_direction() {
 #[test]
 fn a_damper_at_rest_needs_no_direction() {
     let damper = |mechanism: &Mechanism| {
-        let kind = LoadKind::Damper {
-            bodies: ["ground", "crank"].map(|name| body(mechanism, name)),
-            points: [vec2(0.1, 0.0); 2],
-        };
+        let kind = LoadKind::damper(
+            ["ground", "crank"].map(|name| body(mechanism, name)),
+            [vec2(0.1, 0.0); 2],
+        );
         vec![load("damper", kind, 50.0)]
     };
     let case = Case::parse(SLIDER_CRANK, damper);
@@ -221,7 +221,7 @@ fn loads_that_do_not_fit_are_refused() {
         found.err().map(|e| e.to_string())
     };
     let bodies = [dwell_geometry::BodyId(0), dwell_geometry::BodyId(9)];
-    let torque = LoadKind::Torque { bodies };
+    let torque = LoadKind::couple(bodies);
     let at = |what| Some(format!("load 0: {what}"));
     assert_eq!(
         refused(load("torque", torque, 1.0)),
@@ -260,7 +260,7 @@ fn friction_has_its_reactions_whichever_are_requested() {
             load("weight", GRAVITY, 9.81),
             Load {
                 name: "friction".into(),
-                kind: LoadKind::Torque { bodies },
+                kind: LoadKind::couple(bodies),
                 magnitude: Magnitude::Friction(friction),
             },
         ]

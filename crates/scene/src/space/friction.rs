@@ -34,8 +34,8 @@ fn add_loads(
     let (friction, viscous) = form(entry, kind)?.read(id, &fields)?;
     let dry = friction.map(Magnitude::Friction);
     let viscous = viscous.map(Magnitude::Constant);
-    let (force, couple) = (LoadKind::SlideForce(id), LoadKind::JointTorque(id));
-    let [slide_damper, damper] = [LoadKind::SlideDamper(id), LoadKind::RotationalDamper(id)];
+    let (force, couple) = (LoadKind::slide_force(id), LoadKind::couple(id));
+    let [slide_damper, damper] = [LoadKind::slide_damper(id), LoadKind::rotational_damper(id)];
     let all = match kind {
         JointKind::Prismatic => vec![
             ("coefficient", "friction", force, dry),

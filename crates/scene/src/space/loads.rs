@@ -3,30 +3,29 @@
 use super::actuators::joint_with_freedom;
 use super::joints::Joints;
 use super::values::{direction, numbers};
-use crate::bodies::{Bodies, TWO_POINTS};
+use crate::bodies::Bodies;
 use crate::dimensions::Space;
 use crate::keys::kinds;
-use crate::kind::{kind_among, reject_unread_kind};
-use crate::loads::{kind_and_size, read_loads};
+use crate::kind::kind_among;
+use crate::loads::{LoadReader, read_loads};
 use crate::magnitude::Magnitudes;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
-use crate::value::{NumberRule, SignRule};
 use crate::wording::shorten;
 use dwell_geometry::BodyId;
 use dwell_geometry::space::{Coordinate, Vec3};
 use dwell_kinetostatics::Magnitude;
-use dwell_kinetostatics::space::{Direction, Load, LoadKind};
+use dwell_kinetostatics::space::{DirectedCouple, Direction, Load, LoadKind};
 use toml::de::DeValue;
 
 /// Reads loads.
-pub(super) struct LoadReader<'r> {
+pub(super) struct SpaceLoads<'r> {
     pub(super) bodies: &'r Bodies<'r, Space>,
     pub(super) joints: &'r Joints<'r>,
     pub(super) magnitudes: &'r Magnitudes<Coordinate>,
 }
 
-impl LoadReader<'_> {
+impl SpaceLoads<'_> {
     /// Every load of the section that was read well.
     pub(super) fn loads(&self, fields: &TableReader<'_>) -> Vec<Load> {
         read_loads(fields, |_, fields, k| self.kind_and_magnitude(fields, k))
@@ -43,74 +42,42 @@ impl LoadReader<'_> {
             fields.place(kind, SceneLocation::Magnitude(k));
             let gravity = numbers(entry.value, fields.name_of(entry))?;
             // Without gravity there is no direction, and no weight either.
-            let along = gravity.unit().unwrap_or(Vec3::ZERO);
+            let direction = gravity.unit().unwrap_or(Vec3::ZERO);
             let magnitude = Magnitude::Constant(gravity.norm());
-            return Some((LoadKind::Gravity(along), magnitude));
+            return Some((LoadKind::Gravity { direction }, magnitude));
         }
-        let load_kind = || self.load_kind(kind, entry, fields);
-        kind_and_size((kind, entry), (fields, k), self.magnitudes, load_kind)
+        self.kind_and_size((kind, entry), (fields, k))
+    }
+}
+
+impl LoadReader for SpaceLoads<'_> {
+    type Dimensions = Space;
+    type Along = Coordinate;
+    type Special = DirectedCouple;
+    type Coordinate = Coordinate;
+
+    fn bodies(&self) -> &Bodies<'_, Space> {
+        self.bodies
     }
 
-    fn load_kind(
-        &self,
-        kind: &str,
-        entry: &Entry<'_>,
-        fields: &TableReader<'_>,
-    ) -> Option<LoadKind> {
-        let joint = |is_angle| joint_with_freedom(is_angle, entry, fields, self.joints);
-        match kind {
-            "force" => force(entry, fields, self.bodies),
-            "torque" => torque(entry, fields, self.bodies),
-            "joint-torque" => joint(true).map(LoadKind::JointTorque),
-            "point-to-point-force" => {
-                let (bodies, points) = self.two_points(entry, fields)?;
-                Some(LoadKind::PointToPointForce { bodies, points })
-            }
-            "spring" => {
-                let both = self.two_points(entry, fields);
-                let rule = NumberRule::new(&fields.units().length, SignRule::NotNegative);
-                let help = "add `free-length = 0.1`, its length without force";
-                let free_length = fields.number("free-length", help, &rule);
-                let ((bodies, points), free_length) = (both?, free_length?);
-                Some(LoadKind::Spring {
-                    bodies,
-                    points,
-                    free_length,
-                })
-            }
-            "damper" => {
-                let (bodies, points) = self.two_points(entry, fields)?;
-                Some(LoadKind::Damper { bodies, points })
-            }
-            "torsion-spring" => {
-                let joint = joint(true);
-                let help = "add `free-angle = 0.0`, the angle at which its torque is zero";
-                let free = fields.require("free-angle", help);
-                let free_angle = free.and_then(|e| e.value.angle(fields.name_of(e)));
-                let (joint, free_angle) = (joint?, free_angle?);
-                Some(LoadKind::TorsionSpring { joint, free_angle })
-            }
-            "rotational-damper" => joint(true).map(LoadKind::RotationalDamper),
-            "slide-force" => joint(false).map(LoadKind::SlideForce),
-            "slide-damper" => joint(false).map(LoadKind::SlideDamper),
-            _ => reject_unread_kind(entry),
-        }
+    fn magnitudes(&self) -> &Magnitudes<Coordinate> {
+        self.magnitudes
     }
 
-    /// Points of two different bodies.
-    fn two_points(
-        &self,
-        entry: &Entry<'_>,
-        fields: &TableReader<'_>,
-    ) -> Option<([BodyId; 2], [Vec3; 2])> {
-        let what = fields.name_of(entry);
-        let [a, b] = self.bodies.find_two_points(entry.value, TWO_POINTS, what)?;
-        let points = [self.bodies.at(&a), self.bodies.at(&b)];
-        let message =
-            |name: &str| format!("{} acts between two points of body `{name}`", fields.what);
-        let ends = [(a.0, &a.2), (b.0, &b.2)];
-        let bodies = (self.bodies).require_different(ends, message, "name points of two bodies")?;
-        Some((bodies, points))
+    fn force(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<LoadKind> {
+        force(entry, fields, self.bodies)
+    }
+
+    fn torque(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<LoadKind> {
+        torque(entry, fields, self.bodies)
+    }
+
+    fn turn(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<Coordinate> {
+        joint_with_freedom(true, entry, fields, self.joints).map(Coordinate::Angle)
+    }
+
+    fn slide(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<Coordinate> {
+        joint_with_freedom(false, entry, fields, self.joints).map(Coordinate::Travel)
     }
 }
 
@@ -175,8 +142,5 @@ fn torque(
             (pair, Direction::Body(axis?))
         }
     };
-    Some(LoadKind::Torque {
-        bodies: pair,
-        direction,
-    })
+    Some(LoadKind::torque(pair, direction))
 }

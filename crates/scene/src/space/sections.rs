@@ -3,7 +3,7 @@
 use super::actuators::require_lengths;
 use super::friction::add_friction;
 use super::joints::Joints;
-use super::loads::LoadReader;
+use super::loads::SpaceLoads;
 use super::reactions::in_ground_axes;
 use crate::assembly::ParsedAssembly;
 use crate::bodies::Bodies;
@@ -43,7 +43,7 @@ impl Sections for Space {
         magnitudes: &Magnitudes<Coordinate>,
     ) -> Vec<Load> {
         let Parts { bodies, joints } = *parts;
-        let reader = LoadReader {
+        let reader = SpaceLoads {
             bodies,
             joints,
             magnitudes,

@@ -71,21 +71,18 @@ fn guide(length: f64) -> FrictionContact {
 /// Both joints of the pin B rub; friction without a regularization speed holds at rest.
 #[test]
 fn loads_and_friction() {
-    let torque = |bodies| LoadKind::Torque { bodies };
-    let damper = |bodies| LoadKind::RotationalDamper { bodies };
+    let torque = |bodies| LoadKind::couple(bodies);
+    let damper = |bodies| LoadKind::rotational_damper(bodies);
     let constant = Magnitude::Constant;
     let gas = Expression::parse("50*t", &["t"]).unwrap();
-    let push = LoadKind::PointToPointForce {
-        bodies: [GROUND, PISTON],
-        points: [Vec2::ZERO; 2],
-    };
+    let push = LoadKind::point_to_point_force([GROUND, PISTON], [Vec2::ZERO; 2]);
     let down = LoadKind::Gravity {
         direction: vec2(0.0, -1.0),
     };
     let expected = [
         ("weight", down, constant(9.81)),
         ("gas", push, Magnitude::Expression(gas, vec![Signal::Time])),
-        ("drag", LoadKind::SlideForce(slide()), constant(-20.0)),
+        ("drag", LoadKind::slide_force(slide()), constant(-20.0)),
         (
             "B-rod.friction",
             torque([CRANK, ROD]),
@@ -100,12 +97,12 @@ fn loads_and_friction() {
         ("B-arm.viscous", damper([CRANK, ARM]), constant(0.002)),
         (
             "slide.friction",
-            LoadKind::SlideForce(slide()),
+            LoadKind::slide_force(slide()),
             dry_friction(4, 0.15, guide(0.04), 0.002),
         ),
         (
             "groove.friction",
-            LoadKind::SlideForce(groove()),
+            LoadKind::slide_force(groove()),
             dry_friction(5, 0.05, guide(0.0), None),
         ),
         ("W.viscous", damper([GROUND, WHEEL]), constant(0.003)),
@@ -124,7 +121,7 @@ fn loads_and_friction() {
     let load = parse(&viscous).unwrap().loads[8].clone();
     assert_eq!(
         (load.kind, load.magnitude),
-        (LoadKind::SlideDamper(groove()), constant(7.0))
+        (LoadKind::slide_damper(groove()), constant(7.0))
     );
 }
 

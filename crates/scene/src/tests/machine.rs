@@ -7,7 +7,7 @@ use dwell_geometry::{
     ActuatorId, ActuatorKind, BodyId, Component, Coordinate, JointId, JointKind, Reaction, Vec2,
     vec2,
 };
-use dwell_kinetostatics::{Load, LoadKind, Magnitude, Signal};
+use dwell_kinetostatics::{Direction, Load, LoadKind, Magnitude, Signal};
 use dwell_laws::{Expression, Interpolation, Law, Polynomial, Profile, Rise, Shape, Spline};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -305,8 +305,7 @@ fn loads() {
             LoadKind::Force {
                 body: PISTON,
                 point: Vec2::ZERO,
-                direction: vec2(-1.0, 0.0),
-                body_fixed: false,
+                direction: Direction::Ground(vec2(-1.0, 0.0)),
             },
             constant(100.0),
         ),
@@ -315,56 +314,52 @@ fn loads() {
             LoadKind::Force {
                 body: ROD,
                 point: mm(60.0, 5.0),
-                direction: vec2(0.0, 1.0),
-                body_fixed: true,
+                direction: Direction::Body(vec2(0.0, 1.0)),
             },
             Magnitude::Expression(follow, vec![Signal::Value(PHI), Signal::Velocity(LIFT)]),
         ),
-        (
-            "moment",
-            LoadKind::Torque {
-                bodies: [GROUND, CRANK],
-            },
-            constant(-3.0),
-        ),
+        ("moment", LoadKind::couple([GROUND, CRANK]), constant(-3.0)),
         (
             "couple",
-            LoadKind::Torque {
-                bodies: [ROD, CRANK],
-            },
+            LoadKind::couple([ROD, CRANK]),
             Magnitude::Law(Signal::Value(PHI), Law::Spline(couple)),
         ),
         (
             "coil",
-            LoadKind::Spring {
-                bodies: [GROUND, PLATE],
-                points: [mm(90.0, 90.0), mm(20.0, 0.0)],
-                free_length: 77.85 / 1e3,
-            },
+            LoadKind::spring(
+                [GROUND, PLATE],
+                [mm(90.0, 90.0), mm(20.0, 0.0)],
+                77.85 / 1e3,
+            ),
             constant(4530.0),
         ),
         (
             "twist",
-            LoadKind::TorsionSpring {
-                bodies: [GROUND, WHEEL],
-                free_angle: deg(45.0),
-            },
+            LoadKind::torsion_spring([GROUND, WHEEL], deg(45.0)),
             Magnitude::Law(Signal::Time, Law::Spline(torsion)),
         ),
         (
             "oil",
-            LoadKind::Damper {
-                bodies: [ROD, LEVER],
-                points: [mm(60.0, 5.0), mm(0.0, 70.0)],
-            },
+            LoadKind::damper([ROD, LEVER], [mm(60.0, 5.0), mm(0.0, 70.0)]),
             constant(100.0),
         ),
         (
             "grease",
-            LoadKind::RotationalDamper {
-                bodies: [GROUND, CRANK],
-            },
+            LoadKind::rotational_damper([GROUND, CRANK]),
             Magnitude::Expression(grease, vec![Signal::Time]),
+        ),
+        (
+            "wind",
+            LoadKind::Drag {
+                body: ROD,
+                point: mm(60.0, 5.0),
+            },
+            constant(0.6),
+        ),
+        (
+            "fan",
+            LoadKind::rotational_drag([GROUND, CRANK]),
+            constant(0.002),
         ),
     ];
     assert_eq!(scene.loads.len(), expected.len());

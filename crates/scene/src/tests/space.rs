@@ -78,12 +78,17 @@ fn assembly_loads_and_requests_are_read_in_si() {
         ref other => panic!("{other:?}"),
     };
     assert!((constant(weight) - 9.81).abs() < 1e-15);
-    assert_eq!(weight.kind, LoadKind::Gravity(vec3(0.0, 0.0, -1.0)));
+    assert_eq!(
+        weight.kind,
+        LoadKind::Gravity {
+            direction: vec3(0.0, 0.0, -1.0)
+        }
+    );
     assert!(
         matches!(push.kind, LoadKind::Force { direction: Direction::Body(u), .. } if u.x == -1.0)
     );
     let of = |kind: LoadKind| match kind {
-        LoadKind::Torque { bodies, .. } => bodies,
+        LoadKind::Special(couple) => couple.bodies,
         other => panic!("{other:?}"),
     };
     assert_eq!(of(twist.kind), [BodyId(0), BodyId(1)]);
@@ -140,11 +145,11 @@ fn friction_is_read_in_si() {
     assert_eq!(
         of,
         [
-            ("A.friction", LoadKind::JointTorque(hinge)),
-            ("A.viscous", LoadKind::RotationalDamper(hinge)),
-            ("slide.friction", LoadKind::SlideForce(guide)),
-            ("tube.friction", LoadKind::SlideForce(tube)),
-            ("tube.friction-moment", LoadKind::JointTorque(tube)),
+            ("A.friction", LoadKind::couple(hinge)),
+            ("A.viscous", LoadKind::rotational_damper(hinge)),
+            ("slide.friction", LoadKind::slide_force(guide)),
+            ("tube.friction", LoadKind::slide_force(tube)),
+            ("tube.friction-moment", LoadKind::couple(tube)),
         ]
     );
 }

@@ -6,11 +6,11 @@ use crate::machines::{CoordinateOf, MachineScene};
 use crate::models::{build_machine, determinate_model, with_drive_loads};
 use dwell_dynamics::{TabulatedMachine, TabulationError};
 use dwell_export::{
-    Domain, LoadDescription, LoadEffect, MachineDescription, Motor, ReferenceSizes,
+    Domain, LoadDescription, LoadEffect, MachineDescription, Motor, ReferenceSizes, Resistance,
 };
 use dwell_geometry::{ActuatorId, Range};
 use dwell_kinetostatics::{
-    Coefficients, DriveKind, Load, LoadKind, Magnitude, Model, Signal, TableDomain,
+    Coefficients, DriveKind, Load, LoadShape, Magnitude, Model, Signal, Strength, TableDomain,
 };
 use dwell_scene::{FreeMotionSpec, PlaneScene, SceneFile, SceneLocation};
 use std::f64::consts::TAU;
@@ -209,13 +209,8 @@ fn describe(
     domain: Domain,
 ) -> MachineDescription {
     let mut left_out = left_out(scene, model);
-    let units = load_units(loaded);
-    let loads = describe_loads(
-        (scene, &units),
-        &scene.loads,
-        Load::is_conservative,
-        &mut left_out,
-    );
+    let units = load_units(loaded.loads.iter().map(|load| load.kind));
+    let loads = describe_loads((scene, &units), &scene.loads, &mut left_out);
     let mut workspace = model.workspace::<f64>();
     let mut found: Coefficients = model.coefficient_buffer();
     // A position that cannot be reached is reported when it is sampled.
@@ -280,18 +275,17 @@ pub(super) fn point_names(scene: &PlaneScene) -> Vec<String> {
 }
 
 /// The loads, and the drives behind them, by the units of all of them.
-pub(crate) fn describe_loads<S: MachineScene, K>(
+pub(crate) fn describe_loads<S: MachineScene, K: LoadShape>(
     (scene, units): (&S, &[LoadUnit]),
     loads: &[Load<K, CoordinateOf<S>>],
-    is_conservative: fn(&Load<K, CoordinateOf<S>>) -> bool,
     left_out: &mut Vec<String>,
 ) -> Vec<LoadDescription> {
     let mut all = Vec::new();
-    for (load, &(unit, is_damper)) in loads.iter().zip(units) {
+    for (load, &(unit, law)) in loads.iter().zip(units) {
         left_out.extend(varying_input("the load", &load.name, &load.magnitude));
         all.push(LoadDescription {
             name: load.name.clone(),
-            effect: magnitude_effect(&load.magnitude, is_damper, is_conservative(load)),
+            effect: magnitude_effect(load, law),
             unit,
         });
     }
@@ -348,8 +342,10 @@ pub(crate) fn reference_sizes(
     };
     let force = |(unit, _): &LoadUnit| match *unit {
         "m/s2" => mass,
-        "N m" | "N m/rad" | "N m s/rad" => 1.0 / length,
+        "N m" | "N m/rad" | "N m s/rad" | "N m s2/rad2" => 1.0 / length,
         "N/m" => length,
+        // At unit speed.
+        "N s2/m2" => length * length,
         _ => 1.0,
     };
     ReferenceSizes {
@@ -359,43 +355,30 @@ pub(crate) fn reference_sizes(
     }
 }
 
-/// The unit of a load's magnitude, and whether it resists with a speed.
-pub(crate) type LoadUnit = (&'static str, bool);
+/// The unit of a load's magnitude, and its law.
+pub(crate) type LoadUnit = (&'static str, Strength);
 
-/// Those of the loads of a scene, drives among them.
-pub(super) fn load_units(loaded: &PlaneScene) -> Vec<LoadUnit> {
-    let unit = |load: &Load| match load.kind {
-        LoadKind::Gravity { .. } => ("m/s2", false),
-        LoadKind::Force { .. }
-        | LoadKind::PointToPointForce { .. }
-        | LoadKind::SlideForce(_)
-        | LoadKind::SeparatingForce(_) => ("N", false),
-        LoadKind::Torque { .. } => ("N m", false),
-        LoadKind::Spring { .. } => ("N/m", false),
-        LoadKind::TorsionSpring { .. } => ("N m/rad", false),
-        LoadKind::Damper { .. } | LoadKind::SlideDamper(_) => ("N s/m", true),
-        LoadKind::RotationalDamper { .. } => ("N m s/rad", true),
-    };
-    loaded.loads.iter().map(unit).collect()
+/// Those of loads, drives among them.
+pub(crate) fn load_units<K: LoadShape>(kinds: impl Iterator<Item = K>) -> Vec<LoadUnit> {
+    kinds.map(|kind| (kind.unit(), kind.strength())).collect()
 }
 
-/// How a magnitude acts: as a parameter if it is a constant, else as an input.
-fn magnitude_effect<C>(
-    magnitude: &Magnitude<C>,
-    is_damper: bool,
-    is_conservative: bool,
-) -> LoadEffect {
-    let initial = value_at_start(magnitude);
-    match (magnitude, is_damper) {
-        (Magnitude::Constant(damping), true) => LoadEffect::Damper { damping: *damping },
-        (Magnitude::Constant(magnitude), false) if is_conservative => LoadEffect::Conservative {
-            magnitude: *magnitude,
-        },
-        (Magnitude::Constant(magnitude), false) => LoadEffect::Constant {
-            magnitude: *magnitude,
-        },
-        (_, true) => LoadEffect::VariableDamper { initial },
-        (_, false) => LoadEffect::Input { initial },
+/// How a load acts: by a parameter if its magnitude is a constant, else by an input.
+fn magnitude_effect<K: LoadShape, C>(load: &Load<K, C>, law: Strength) -> LoadEffect {
+    let resistance = match law {
+        Strength::Direct | Strength::Elastic { .. } => None,
+        Strength::Viscous => Some(Resistance::Linear),
+        Strength::Quadratic => Some(Resistance::Quadratic),
+    };
+    let initial = value_at_start(&load.magnitude);
+    match (&load.magnitude, resistance) {
+        (&Magnitude::Constant(damping), Some(law)) => LoadEffect::Damper { damping, law },
+        (&Magnitude::Constant(magnitude), None) if load.is_conservative() => {
+            LoadEffect::Conservative { magnitude }
+        }
+        (&Magnitude::Constant(magnitude), None) => LoadEffect::Constant { magnitude },
+        (_, Some(law)) => LoadEffect::VariableDamper { initial, law },
+        (_, None) => LoadEffect::Input { initial },
     }
 }
 

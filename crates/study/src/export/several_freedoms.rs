@@ -13,7 +13,9 @@ use dwell_export::{
     SeveralFreedomsExport, StraightLine, record_at,
 };
 use dwell_geometry::ActuatorId;
-use dwell_kinetostatics::{InverseDynamics, Load, MachineModel as _, Model};
+use dwell_kinetostatics::{
+    InverseDynamics, Load, LoadShape as _, MachineModel as _, Model, Strength,
+};
 use dwell_numerics::Scalar;
 use dwell_scene::{PlaneScene, SceneLocation};
 
@@ -38,6 +40,7 @@ pub(crate) fn several_freedoms_in_plane(
             [(SceneLocation::Actuator(ActuatorId(0)), "one of them")],
         ));
     }
+    reject_drags(scene)?;
     let (loaded, model) = with_unit_loads(scene)?;
     let machine = describe(scene, &loaded, &model);
     let explain = |error| explain_motion(&loaded, model.plan(), &error);
@@ -84,6 +87,21 @@ pub(crate) fn several_freedoms_in_plane(
     }
 }
 
+/// Refuses drags: c |v| v is not a number times a function of the coordinates where several of them move the point.
+fn reject_drags(scene: &PlaneScene) -> Result<(), StudyError> {
+    let is_drag = |load: &Load| load.kind.strength() == Strength::Quadratic;
+    let Some(load) = scene.loads.iter().position(is_drag) else {
+        return Ok(());
+    };
+    let name = &scene.loads[load].name;
+    Err(scene_error(
+        scene,
+        format!("no export: the force of the drag {name} depends on all velocities together"),
+        "leave the drag out, or put a damper in its place; machines with one degree of freedom are exported with it",
+        [(SceneLocation::Load(load), "a drag")],
+    ))
+}
+
 /// Refuses another target than C.
 pub(crate) fn only_as_c(scene: &PlaneScene) -> StudyError {
     let given = count(scene.mechanism.actuators.len(), "actuator");
@@ -107,8 +125,8 @@ fn without_operations(scene: &PlaneScene, reason: &str) -> StudyError {
 
 fn describe(scene: &PlaneScene, loaded: &PlaneScene, model: &Model) -> SeveralFreedomsDescription {
     let mut left_out = left_out(scene, model);
-    let units = (scene, &load_units(loaded)[..]);
-    let loads = describe_loads(units, &scene.loads, Load::is_conservative, &mut left_out);
+    let units = load_units(loaded.loads.iter().map(|load| load.kind));
+    let loads = describe_loads((scene, &units), &scene.loads, &mut left_out);
     let start = scene.motion_start();
     let coordinates = scene.mechanism.actuators.iter().enumerate();
     let coordinates = coordinates.map(|(k, actuator)| {

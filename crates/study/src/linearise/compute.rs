@@ -9,7 +9,7 @@ use dwell_dynamics::{
     linearise as linearise_about,
 };
 use dwell_findings::Column;
-use dwell_kinetostatics::{Drive, DriveKind};
+use dwell_kinetostatics::Drive;
 use dwell_scene::PlaneScene;
 
 /// The operating point of a linearisation.
@@ -65,13 +65,8 @@ impl StateSpaceNames {
         let scene = prepared.scene;
         let states = prepared.state_columns();
         let input = |drive: &Drive<CoordinateOf<S>>| {
-            let angle = S::is_angle(drive.coordinate);
-            let (what, unit) = match drive.kind {
-                DriveKind::AppliedForce(_) => ("applied_force", force_unit(angle)),
-                DriveKind::Motor(_) => ("voltage", "V"),
-                DriveKind::SpeedController(_) => ("set_speed", if angle { "rad/s" } else { "m/s" }),
-            };
-            Column::new(format!("{}.{what}", drive.name), unit)
+            let words = drive.kind.words(S::is_angle(drive.coordinate));
+            Column::new(format!("{}.{}", drive.name, words.input), words.input_unit)
         };
         let mut outputs = states[..2 * machine.free().len()].to_vec();
         outputs.extend(scene.reaction_columns(machine.model()));

@@ -1,23 +1,15 @@
 //! Names of what a machine has besides its mechanism: states of drives, and sources of work.
 
-use crate::number_format::coordinate_unit;
-use dwell_kinetostatics::{Drive, DriveKind, Motor};
+use dwell_kinetostatics::{Drive, Motor};
 
 /// Name, unit and meaning of each state of the drives.
 pub(crate) fn drive_states<C: Copy>(
     drives: &[Drive<C>],
     is_angle: impl Fn(C) -> bool,
 ) -> Vec<(String, &'static str, &'static str)> {
-    let state = |drive: &Drive<C>| match &drive.kind {
-        DriveKind::Motor(motor) if motor.inductance > 0.0 => {
-            Some((format!("{}.current", drive.name), "A", ""))
-        }
-        DriveKind::SpeedController(controller) if controller.integral_gain > 0.0 => {
-            let unit = coordinate_unit(is_angle(drive.coordinate));
-            let meaning = "integral of the controller error";
-            Some((format!("{}.integral", drive.name), unit, meaning))
-        }
-        DriveKind::Motor(_) | DriveKind::SpeedController(_) | DriveKind::AppliedForce(_) => None,
+    let state = |drive: &Drive<C>| {
+        let [what, unit, meaning] = drive.kind.words(is_angle(drive.coordinate)).state?;
+        Some((format!("{}.{what}", drive.name), unit, meaning))
     };
     drives.iter().filter_map(state).collect()
 }
@@ -25,14 +17,9 @@ pub(crate) fn drive_states<C: Copy>(
 /// The motor of a drive that is one, given by its circuit; none of a motor given by its torque–speed line, whose circuit is not known, or whose
 /// current makes no torque.
 pub(crate) fn motor_of<C: Copy>(drive: &Drive<C>) -> Option<&Motor<C>> {
-    match &drive.kind {
-        DriveKind::Motor(motor)
-            if motor.torque_constant * motor.gear_ratio != 0.0 && !motor.is_torque_speed_line =>
-        {
-            Some(motor)
-        }
-        DriveKind::Motor(_) | DriveKind::SpeedController(_) | DriveKind::AppliedForce(_) => None,
-    }
+    drive.kind.motor().filter(|motor| {
+        motor.torque_constant * motor.gear_ratio != 0.0 && !motor.is_torque_speed_line
+    })
 }
 
 /// Name, unit and meaning of what motors have besides their states: the current of one without inductance, the

@@ -7,9 +7,10 @@ mod tests;
 use crate::symbols::{anchor, anchors, point};
 use crate::trajectory::compute::{Quantity, TrajectoryResults};
 use contacts::{coupling_arrow, rolling_arrows, tooth_arrows};
+use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, Component, Joint, JointId, JointKind, Reaction, Vec2};
-use dwell_kinetostatics::{Guide, LoadKind};
-use dwell_page::{Anchor, Direction, ForceArrow, ForcePart};
+use dwell_kinetostatics::{Direction, Guide, LoadKind};
+use dwell_page::{Anchor, Direction as ArrowDirection, ForceArrow, ForcePart};
 use dwell_scene::PlaneScene;
 
 /// The reactions and loads among the columns of the page. A reaction is drawn on the joint's second body.
@@ -39,7 +40,7 @@ pub(crate) fn force_arrow(
     group: &str,
     name: &str,
     title: String,
-    (at, direction): (Anchor, Direction),
+    (at, direction): (Anchor, ArrowDirection),
 ) -> ForceArrow {
     ForceArrow {
         name: name.to_owned(),
@@ -93,7 +94,7 @@ impl JointForces<'_> {
     }
 
     /// The force at the second body's point of a joint that is no contact.
-    fn at_its_point(&self) -> Option<Direction> {
+    fn at_its_point(&self) -> Option<ArrowDirection> {
         if let Some(axis) = self.joint.kind.travel_axis() {
             let part = self.part(Component::Normal, axis.perp())?;
             return Some(along_body(self.joint.bodies[0], vec![part]));
@@ -105,10 +106,10 @@ impl JointForces<'_> {
         let components = [Component::X, Component::Y];
         let columns = components.into_iter().map(|c| self.component(c));
         let columns = columns.collect::<Option<_>>()?;
-        Some(Direction::Components { columns })
+        Some(ArrowDirection::Components { columns })
     }
 
-    fn on_second(&self, direction: Direction) -> ForceArrow {
+    fn on_second(&self, direction: ArrowDirection) -> ForceArrow {
         let ([from, on], name) = (self.body_names(), &self.joint.name);
         let title = format!("{name}: force of {from} on {on}");
         let at = anchor(self.joint.bodies[1], self.joint.points[1]);
@@ -122,8 +123,8 @@ impl JointForces<'_> {
 }
 
 /// Along directions of a body, at the anchor.
-fn along_body(body: BodyId, parts: Vec<ForcePart>) -> Direction {
-    Direction::Body {
+fn along_body(body: BodyId, parts: Vec<ForcePart>) -> ArrowDirection {
+    ArrowDirection::Body {
         body: body.0,
         parts,
         offset: Vec::new(),
@@ -131,9 +132,9 @@ fn along_body(body: BodyId, parts: Vec<ForcePart>) -> Direction {
 }
 
 /// On the second of two points, along the line from the first.
-fn pushing_apart(column: usize, ends: [Anchor; 2]) -> Direction {
+fn pushing_apart(column: usize, ends: [Anchor; 2]) -> ArrowDirection {
     let axis = vec![1.0, 0.0];
-    Direction::Line {
+    ArrowDirection::Line {
         ends,
         parts: vec![ForcePart { column, axis }],
         place: 1.0,
@@ -146,43 +147,39 @@ fn load_direction(
     scene: &PlaneScene,
     kind: &LoadKind,
     column: usize,
-) -> Option<(Anchor, Direction)> {
-    match kind {
+) -> Option<(Anchor, ArrowDirection)> {
+    match *kind {
         LoadKind::Force {
             body,
             point: at,
             direction,
-            body_fixed,
         } => {
-            let frame = if *body_fixed {
-                body.0
-            } else {
-                scene.mechanism.ground
+            let frame = match direction {
+                Direction::Ground(_) => BodyId(scene.mechanism.ground),
+                Direction::Body(_) => body,
             };
-            let axis = point(*direction);
-            let along = along_body(BodyId(frame), vec![ForcePart { column, axis }]);
-            Some((anchor(*body, *at), along))
+            let axis = point(direction.vector());
+            let along = along_body(frame, vec![ForcePart { column, axis }]);
+            Some((anchor(body, at), along))
         }
-        LoadKind::Spring { bodies, points, .. }
-        | LoadKind::Damper { bodies, points }
-        | LoadKind::PointToPointForce { bodies, points } => {
-            let ends = anchors(*bodies, *points);
+        LoadKind::Along(CoordinateFunction::Length { bodies, points }, _) => {
+            let ends = anchors(bodies, points);
             Some((anchor(bodies[1], points[1]), pushing_apart(column, ends)))
         }
-        LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => {
+        LoadKind::Along(CoordinateFunction::Travel(guide), _) => {
             let Guide {
                 bodies,
                 points,
                 axis,
-            } = *guide;
+            } = guide;
             let axis = point(axis);
             let along = along_body(bodies[0], vec![ForcePart { column, axis }]);
             Some((anchor(bodies[1], points[1]), along))
         }
-        LoadKind::Gravity { .. }
-        | LoadKind::Torque { .. }
-        | LoadKind::TorsionSpring { .. }
-        | LoadKind::RotationalDamper { .. }
-        | LoadKind::SeparatingForce(_) => None,
+        // The direction of a velocity is in no column.
+        LoadKind::Drag { .. }
+        | LoadKind::Gravity { .. }
+        | LoadKind::Along(CoordinateFunction::Angle(_), _)
+        | LoadKind::Special(_) => None,
     }
 }

@@ -4,9 +4,10 @@ use super::views::placed;
 use crate::contents::{ScheduledMotions, describe_actions, describe_center, describe_size};
 use crate::number_format::number;
 use dwell_findings::Record;
+use dwell_geometry::BodyId;
 use dwell_geometry::space::{Placement, Plan, Vec3};
-use dwell_geometry::{BodyId, JointId};
-use dwell_kinetostatics::space::{LoadKind, Mass};
+use dwell_kinetostatics::LoadNames;
+use dwell_kinetostatics::space::Mass;
 use dwell_scene::SpaceScene;
 
 /// Its size, masses, loads, drives, stops and motions as lines of text; the numbers go into the record.
@@ -22,7 +23,10 @@ pub(super) fn describe_contents(scene: &SpaceScene, plan: &Plan, record: &mut Re
         sweep: scene.sweep.as_ref(),
         motion: scene.motion.as_ref(),
     };
-    let described = |kind: &LoadKind| described(scene, kind);
+    let names = LoadNames {
+        bodies: scene.mechanism.bodies.iter().map(|b| &b.name[..]).collect(),
+        joints: scene.mechanism.joints.iter().map(|j| &j.name[..]).collect(),
+    };
     let mut text = String::new();
     if let Some(places) = &places {
         let joints = scene.mechanism.joints.iter();
@@ -32,7 +36,7 @@ pub(super) fn describe_contents(scene: &SpaceScene, plan: &Plan, record: &mut Re
         text += &describe_size(scene, ["x", "y", "z"], points, record);
     }
     text + &describe_masses(scene, places.as_deref(), plan.size(), record)
-        + &describe_actions(scene, (&scene.loads, &described), &motions, record)
+        + &describe_actions(scene, (&scene.loads, &names), &motions, record)
 }
 
 fn components(v: Vec3) -> [f64; 3] {
@@ -90,30 +94,4 @@ fn describe_mass(name: &str, mass: &Mass, record: &mut Record) -> String {
         number(mass.mass),
         tensor.join(", ")
     )
-}
-
-/// What a load is, and the unit of its number.
-fn described(scene: &SpaceScene, kind: &LoadKind) -> (String, &'static str) {
-    let name = |body: BodyId| scene.mechanism.bodies[body.0].name.as_str();
-    let joint = |joint: JointId| &scene.mechanism.joints[joint.0].name;
-    let between = |[a, b]: [BodyId; 2]| format!("between {} and {}", name(a), name(b));
-    match *kind {
-        LoadKind::Gravity(_) => ("gravity".to_owned(), "m/s²"),
-        LoadKind::Force { body, .. } => (format!("force on {}", name(body)), "N"),
-        LoadKind::Torque { bodies: [a, b], .. } => {
-            (format!("couple of {} on {}", name(a), name(b)), "N m")
-        }
-        LoadKind::PointToPointForce { bodies, .. } => (format!("force {}", between(bodies)), "N"),
-        LoadKind::Spring { bodies, .. } => (format!("spring {}", between(bodies)), "N/m"),
-        LoadKind::Damper { bodies, .. } => (format!("damper {}", between(bodies)), "N s/m"),
-        LoadKind::JointTorque(j) => (format!("moment about the axis of {}", joint(j)), "N m"),
-        LoadKind::TorsionSpring { joint: j, .. } => {
-            (format!("torsion spring in {}", joint(j)), "N m/rad")
-        }
-        LoadKind::RotationalDamper(j) => {
-            (format!("rotational damper in {}", joint(j)), "N m s/rad")
-        }
-        LoadKind::SlideForce(j) => (format!("force along {}", joint(j)), "N"),
-        LoadKind::SlideDamper(j) => (format!("damper along {}", joint(j)), "N s/m"),
-    }
 }

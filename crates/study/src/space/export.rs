@@ -4,7 +4,7 @@ use super::explain::explain_position;
 use super::prepared::PreparedSpaceScene;
 use crate::explain::{StudyError, actuator_labels, scene_error};
 use crate::export::description::{
-    LoadUnit, describe_loads, domain, machine_of, missing_parts, parts_of, reference_sizes,
+    describe_loads, domain, load_units, machine_of, missing_parts, parts_of, reference_sizes,
     reject_friction, reject_stops,
 };
 use crate::export::{ExportRequest, explain_fit, no_operations};
@@ -14,8 +14,8 @@ use dwell_export::{
     Domain, Export, FitError, Function, FunctionSampler, MachineDescription, PartKind,
 };
 use dwell_geometry::PositionError;
-use dwell_kinetostatics::space::{Load, LoadKind, Workspace};
-use dwell_kinetostatics::{Coefficients, InverseDynamics, ReducedModel as _};
+use dwell_kinetostatics::space::{LoadKind, Workspace};
+use dwell_kinetostatics::{Coefficients, InverseDynamics, ReducedModel as _, Strength};
 use dwell_scene::SpaceScene;
 
 /// Refuses several actuators.
@@ -61,37 +61,16 @@ pub(super) fn fit_in_space(
 /// The shapes of the loads, then of the drives.
 fn load_kinds(scene: &SpaceScene) -> Vec<LoadKind> {
     let drives = scene.drives.iter();
-    let drives = drives.map(|drive| LoadKind::along(drive.coordinate));
+    let drives = drives.map(|drive| LoadKind::Along(drive.coordinate, Strength::Direct));
     let loads = scene.loads.iter().map(|load| load.kind);
     loads.chain(drives).collect()
 }
 
-/// The unit of a load's magnitude, and whether it resists with a speed.
-fn load_unit(kind: &LoadKind) -> LoadUnit {
-    match kind {
-        LoadKind::Gravity(_) => ("m/s2", false),
-        LoadKind::Torque { .. } | LoadKind::JointTorque(_) => ("N m", false),
-        LoadKind::Force { .. } | LoadKind::PointToPointForce { .. } | LoadKind::SlideForce(_) => {
-            ("N", false)
-        }
-        LoadKind::Spring { .. } => ("N/m", false),
-        LoadKind::TorsionSpring { .. } => ("N m/rad", false),
-        LoadKind::Damper { .. } | LoadKind::SlideDamper(_) => ("N s/m", true),
-        LoadKind::RotationalDamper(_) => ("N m s/rad", true),
-    }
-}
-
 fn describe(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> MachineDescription {
     let scene = prepared.scene;
-    let units: Vec<LoadUnit> = load_kinds(scene).iter().map(load_unit).collect();
-    let is_conservative = |load: &Load| load.kind.is_conservative();
+    let units = load_units(load_kinds(scene).into_iter());
     let mut left_out = Vec::new();
-    let loads = describe_loads(
-        (scene, &units),
-        &scene.loads,
-        is_conservative,
-        &mut left_out,
-    );
+    let loads = describe_loads((scene, &units), &scene.loads, &mut left_out);
     let open = prepared.indeterminate.iter();
     let open = open.map(|&reaction| scene.reaction_name(reaction));
     left_out.extend(missing_parts(open, scene.motion.as_ref()));

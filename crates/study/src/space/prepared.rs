@@ -9,12 +9,12 @@ use crate::machines::MachineScene as _;
 use crate::output::{indeterminate_note, symbol};
 use crate::ranges::equally_spaced;
 use crate::reduce::compute::{
-    InertiaAt, ReducedLoad, ReducedScene, TabulatedScene, UnitLoadCurves,
+    InertiaAt, ReducedScene, TabulatedScene, UnitLoadCurves, reduced_loads,
 };
 use crate::trajectory::compute::{SweepLimits, one_revolution, range_to_draw};
 use dwell_geometry::space::{ActuatorKind, Placement, Plan};
 use dwell_geometry::{PositionError, Range};
-use dwell_kinetostatics::space::{Component, LoadKind, Model, Reaction};
+use dwell_kinetostatics::space::{Component, Model, Reaction};
 use dwell_kinetostatics::{
     Coefficients, ExactModel, KinetostaticsError, MachineModel as _, Magnitude, ReducedModel as _,
     TableDomain, TableError, TabulatedModel, reduction_rounding_errors,
@@ -143,23 +143,6 @@ pub(super) fn reaction_unit(reaction: &Reaction) -> &'static str {
     }
 }
 
-/// Units of w along an angle, and of c of a force and of a moment.
-fn load_units(kind: LoadKind) -> [&'static str; 3] {
-    match kind {
-        LoadKind::Gravity(_) => ["kg m", "kg", "kg m"],
-        LoadKind::Torque { .. } | LoadKind::JointTorque(_) | LoadKind::RotationalDamper(_) => {
-            ["", "1/m", ""]
-        }
-        LoadKind::TorsionSpring { .. } => ["rad", "rad/m", "rad"],
-        LoadKind::Force { .. }
-        | LoadKind::PointToPointForce { .. }
-        | LoadKind::Damper { .. }
-        | LoadKind::SlideForce(_)
-        | LoadKind::SlideDamper(_) => ["m", "", "m"],
-        LoadKind::Spring { .. } => ["m2", "m", "m2"],
-    }
-}
-
 impl TabulatedScene for PreparedSpaceScene<'_> {
     fn tabulated(
         &self,
@@ -262,23 +245,15 @@ impl ReducedScene for PreparedSpaceScene<'_> {
         let loaded = with_loads(self.scene, model.clone())?.for_unit_loads();
         let (mut workspace, mut response) = (loaded.workspace(), loaded.result_buffer());
         let mut curves = UnitLoadCurves {
-            loads: loads
-                .iter()
-                .map(|load| ReducedLoad {
-                    name: load.name.clone(),
-                    units: load_units(load.kind),
-                    does_work: true,
-                })
-                .collect(),
+            loads: reduced_loads(loads, self.is_angle()),
             rows: Vec::with_capacity(q.len()),
             potential: Vec::with_capacity(q.len()),
             conservative: (0..loads.len()).any(|k| loaded.is_conservative(k)),
-            is_angle: self.is_angle(),
         };
         for &q in q {
             let (mut row, mut potential) = (Vec::with_capacity(loads.len()), 0.0);
             let mut state = loaded
-                .kinematic_state(&[q], &[0.0], &mut workspace)
+                .kinematic_state(&[q], &[1.0], &mut workspace)
                 .map_err(|e| self.explain(&e))?;
             for load in 0..loads.len() {
                 let responded = state.unit_load_response(load, &mut response);

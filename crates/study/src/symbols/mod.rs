@@ -2,12 +2,14 @@
 //! its bodies.
 
 mod kinematic;
+mod loads;
 mod outline;
 mod parts;
 
 #[cfg(feature = "output")]
 pub(crate) use kinematic::{circle, spring_outline};
 use kinematic::{pitch_curve, rack_outline};
+pub(crate) use loads::link_of;
 use outline::{blocks_on, common_joint_name, is_cylinder, outline_of, reach};
 pub(crate) use parts::{DrawnIn, PlaneParts, anchor, anchors, point};
 

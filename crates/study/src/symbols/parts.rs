@@ -3,11 +3,10 @@
 
 use super::{
     RAIL_DISTANCE, SLOT_DISTANCE, TOOTH, TRACK_MARGIN, blocks_on, common_joint_name, is_cylinder,
-    outline_of, pitch_curve, rack_outline, reach, symbol_size, travels,
+    link_of, outline_of, pitch_curve, rack_outline, reach, symbol_size, travels,
 };
 use crate::bodies::{BodyPose, point_position};
 use dwell_geometry::{ActuatorKind, BodyId, Joint, JointKind, Vec2, vec2};
-use dwell_kinetostatics::LoadKind;
 use dwell_page::{Anchor, LinkLook, Mark, MarkLook, OutlineLook, Part};
 use dwell_scene::PlaneScene;
 
@@ -277,20 +276,10 @@ impl<'a> PlaneParts<'a> {
     /// Springs and dampers between points.
     fn loads(&mut self) {
         for load in &self.scene.loads {
-            let (look, joined) = match load.kind {
-                LoadKind::Spring { bodies, points, .. } => (LinkLook::Spring, (bodies, points)),
-                LoadKind::Damper { bodies, points } => (LinkLook::Damper, (bodies, points)),
-                LoadKind::Gravity { .. }
-                | LoadKind::Force { .. }
-                | LoadKind::Torque { .. }
-                | LoadKind::TorsionSpring { .. }
-                | LoadKind::RotationalDamper { .. }
-                | LoadKind::PointToPointForce { .. }
-                | LoadKind::SlideForce(_)
-                | LoadKind::SlideDamper(_)
-                | LoadKind::SeparatingForce(_) => continue,
-            };
-            self.link(look, joined, None, load.name.clone(), DrawnIn::Full);
+            if let Some((look, [from, to])) = link_of(&load.kind) {
+                let joined = ([from.0, to.0], [from.1, to.1]);
+                self.link(look, joined, None, load.name.clone(), DrawnIn::Full);
+            }
         }
     }
 

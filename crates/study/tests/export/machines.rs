@@ -19,7 +19,7 @@ mass = 1.0
 center = [0.05, 0]
 inertia = 0.002
 [bodies.coupler]
-points = { B = [0, 0], C = [0.35, 0] }
+points = { B = [0, 0], C = [0.35, 0], M = [0.15, 0.1] }
 mass = 0.8
 center = [0.2, 0.02]
 inertia = 0.01
@@ -42,6 +42,8 @@ rocker = 1.6
 weight = { gravity = [0, -9.81] }
 spring = { spring = ["ground.A", "coupler.C"], stiffness = 50, free-length = 0.3 }
 oil = { rotational-damper = ["ground", "rocker"], damping = 0.2 }
+wind = { drag = "coupler.M", coefficient = 3 }
+fan = { rotational-drag = ["coupler", "crank"], coefficient = 0.02 }
 [drives]
 motor = { motor = "phi", voltage = 12, torque-constant = 0.05, resistance = 1.2, inductance = 0.01, gear-ratio = 5, inertia = 1e-4 }
 [requests]

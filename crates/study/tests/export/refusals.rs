@@ -2,7 +2,7 @@
 
 use super::toolchain::{case, request};
 use dwell_export::Precision;
-use dwell_study::{ExportRequest, compute_export};
+use dwell_study::{ExportRequest, compute_export, compute_export_of_several_freedoms};
 
 fn message(name: &str, asked: &ExportRequest) -> String {
     let error = compute_export(&case(name), asked).unwrap_err();
@@ -16,6 +16,23 @@ fn several_freedoms_and_dry_friction_are_refused_by_name() {
     assert!(found.contains("one"), "{found}");
     let found = message("slider-crank-friction", &asked);
     assert!(found.contains("dry friction"), "{found}");
+}
+
+#[test]
+fn drags_of_several_freedoms_are_refused_by_name() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../validation/five-bar/scene.toml"
+    );
+    let text = std::fs::read_to_string(path).expect("the file");
+    let text = text.replace(
+        "[loads]",
+        "[loads]\nwind = { drag = \"left.B\", coefficient = 1 }",
+    );
+    let scene = dwell_scene::PlaneScene::parse("five-bar.toml", &text).expect("a scene");
+    let asked = request(1e-6, Precision::Double);
+    let error = compute_export_of_several_freedoms(&scene, &asked).expect_err("a refusal");
+    assert!(error.to_string().contains("the drag wind"), "{error}");
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Arrows of pages by the laws of mechanics: the forces that are drawn on a body at rest balance each other.
 
+use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, JointKind, Vec2, vec2};
-use dwell_kinetostatics::{LoadKind, Magnitude};
+use dwell_kinetostatics::{LoadKind, Magnitude, Strength};
 use dwell_page::{Anchor, Direction, Drawing, ForceArrow, ForcePart, Page};
 use dwell_scene::PlaneScene;
 use dwell_study::{Analysis, no_progress, trajectory_page};
@@ -143,7 +144,7 @@ fn resultants(scene: &PlaneScene, row: &Row<'_>) -> Vec<(Vec2, f64)> {
                     );
                 }
             }
-            LoadKind::Spring { bodies, .. } => {
+            LoadKind::Along(CoordinateFunction::Length { bodies, .. }, _) => {
                 let (at, force) = row.force(find(&load.name).unwrap());
                 add(bodies[1], at, force);
                 add(bodies[0], at, -force);
@@ -168,7 +169,7 @@ fn resultants(scene: &PlaneScene, row: &Row<'_>) -> Vec<(Vec2, f64)> {
         }
     }
     for load in &scene.loads {
-        if let LoadKind::Torque { bodies } = load.kind {
+        if let LoadKind::Along(CoordinateFunction::Angle(bodies), Strength::Direct) = load.kind {
             let couple = row.column(&format!("{}.load_moment", load.name));
             sums[bodies[1].0].1 += couple;
             sums[bodies[0].0].1 -= couple;

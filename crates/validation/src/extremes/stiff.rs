@@ -28,11 +28,7 @@ fn options() -> Options {
 
 /// Free at zero travel of the slider, from a point 2 m behind it.
 fn spring(stiffness: f64) -> Load {
-    let kind = LoadKind::Spring {
-        bodies: BODIES,
-        points: [vec2(-2.0, 0.0), Vec2::ZERO],
-        free_length: 2.0,
-    };
+    let kind = LoadKind::spring(BODIES, [vec2(-2.0, 0.0), Vec2::ZERO], 2.0);
     load(kind, stiffness)
 }
 
@@ -77,10 +73,7 @@ fn stiffness() -> ParameterSeries {
 
 fn damping() -> ParameterSeries {
     let run = |c: f64| -> RunResult {
-        let damper = LoadKind::Damper {
-            bodies: BODIES,
-            points: [vec2(-2.0, 0.0), Vec2::ZERO],
-        };
+        let damper = LoadKind::damper(BODIES, [vec2(-2.0, 0.0), Vec2::ZERO]);
         let machine = machine(&slider(1.0), &[spring(c), load(damper, c)])?;
         let runs = loaded_motion(&machine, [1.0, 0.0], 1.0, &options())?;
         // q̈ + c q̇ + c q = 0: the slow root by the product of both.
@@ -114,8 +107,8 @@ fn damping() -> ParameterSeries {
 fn small_rotor() -> ParameterSeries {
     let run = |inertia: f64| -> RunResult {
         let loads = [
-            load(LoadKind::Torque { bodies: BODIES }, 1.0),
-            load(LoadKind::RotationalDamper { bodies: BODIES }, 1.0),
+            load(LoadKind::couple(BODIES), 1.0),
+            load(LoadKind::rotational_damper(BODIES), 1.0),
         ];
         let machine = machine(&rotor(&mass(0.0, [0.0; 2], inertia)), &loads)?;
         let runs = loaded_motion(&machine, [0.0, 0.0], 1.0, &options())?;

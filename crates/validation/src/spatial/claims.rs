@@ -1,12 +1,13 @@
 //! What a model in space says of itself, evaluated in any kind of number, for the checks of states.
 
 use dwell_geometry::space::{
-    BodyMotion, Frame, Joint, JointKind, Placement, Pose, Rotation, Vec3, vec3,
+    BodyMotion, Coordinate, Frame, Joint, JointKind, Placement, Pose, Rotation, Vec3, Wrench, vec3,
 };
 use dwell_geometry::{JointId, PositionError};
 use dwell_kinetostatics::space::{Axes, Component, Load, LoadKind, Model, Reaction};
 use dwell_kinetostatics::{
     Friction, FrictionContact, KinematicState, KinetostaticsError, MachineModel as _, Magnitude,
+    Strength,
 };
 use dwell_numerics::Scalar;
 use dwell_scene::SpaceScene;
@@ -90,19 +91,14 @@ impl<'a> SpaceClaims<'a> {
     /// resistance.
     pub fn unit_loads(&self) -> Vec<(LoadKind, f64)> {
         let unit = |kind: LoadKind| match kind {
-            LoadKind::Damper { bodies, points } => {
-                (LoadKind::PointToPointForce { bodies, points }, -1.0)
+            LoadKind::Along(along, Strength::Viscous) => {
+                (LoadKind::Along(along, Strength::Direct), -1.0)
             }
-            LoadKind::RotationalDamper(joint) => (LoadKind::JointTorque(joint), -1.0),
-            LoadKind::SlideDamper(joint) => (LoadKind::SlideForce(joint), -1.0),
-            LoadKind::Gravity(_)
+            LoadKind::Along(..)
+            | LoadKind::Gravity { .. }
             | LoadKind::Force { .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::Spring { .. }
-            | LoadKind::JointTorque(_)
-            | LoadKind::TorsionSpring { .. }
-            | LoadKind::SlideForce(_) => (kind, 1.0),
+            | LoadKind::Drag { .. }
+            | LoadKind::Special(_) => (kind, 1.0),
         };
         self.model.loads().iter().map(|l| unit(l.kind)).collect()
     }
@@ -237,7 +233,9 @@ impl<'a> SpaceClaims<'a> {
 
     /// A friction of a cylindrical joint that holds: one force along the velocity of the surface of a pin of this radius, m.
     fn surface_friction(&self, load: &Load) -> Option<(Friction, f64)> {
-        let (friction, LoadKind::SlideForce(joint)) = (load.friction()?, load.kind) else {
+        let (friction, LoadKind::Along(Coordinate::Travel(joint), Strength::Direct)) =
+            (load.friction()?, load.kind)
+        else {
             return None;
         };
         let FrictionContact::Bearing { radius, .. } = friction.contact else {
@@ -261,9 +259,9 @@ impl<'a> SpaceClaims<'a> {
         let [along, turn] = self.dense_pose(&placements)?.sliding(&[1.0], &friction);
         let length = along.hypot(radius * turn);
         Ok(vec![
-            (LoadKind::SlideForce(friction.joint), along / length),
+            (LoadKind::slide_force(friction.joint), along / length),
             (
-                LoadKind::JointTorque(friction.joint),
+                LoadKind::couple(friction.joint),
                 radius * radius * turn / length,
             ),
         ])
@@ -283,7 +281,7 @@ impl<'a> SpaceClaims<'a> {
             frictions.push(load.friction());
             // What holds in a cylindrical joint is one load, and two here.
             if let Some((friction, _)) = self.surface_friction(load) {
-                loads.push((LoadKind::JointTorque(friction.joint), 0.0));
+                loads.push((LoadKind::couple(friction.joint), 0.0));
                 frictions.push(Some(friction));
             }
         }

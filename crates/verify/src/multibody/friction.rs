@@ -12,9 +12,12 @@ use super::{MultibodyError, MultibodySystem, Result};
 use crate::body_motion::slide_axis;
 use crate::friction::{Bearings, Contact, bearings, coefficient_at, contact_forces};
 use crate::loads::reaction_row;
+use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::space::{Vec3, Wrench, vec3};
 use dwell_geometry::{Component, JointKind};
-use dwell_kinetostatics::{Friction, FrictionContact, Load, LoadKind, Magnitude, PressureAngle};
+use dwell_kinetostatics::{
+    Friction, FrictionContact, Load, LoadKind, Magnitude, PressureAngle, Strength,
+};
 
 /// Whether a load answers to the reactions of its joint.
 pub(super) fn depends_on_reactions(magnitude: &Magnitude) -> bool {
@@ -33,14 +36,17 @@ impl MultibodySystem {
         let Some(joint) = self.mechanism.joints.get(friction.joint.0) else {
             return false;
         };
-        let on_pin = matches!(kind, LoadKind::Torque { bodies } if *bodies == joint.bodies);
-        let on_slide = matches!(kind, LoadKind::SlideForce(guide) if guide.bodies == joint.bodies);
+        let on_pin = *kind == LoadKind::couple(joint.bodies);
+        let on_slide = matches!(
+            kind,
+            LoadKind::Along(CoordinateFunction::Travel(guide), Strength::Direct) if guide.bodies == joint.bodies
+        );
         on_pin && joint.kind == JointKind::Revolute || on_slide && slide_axis(joint.kind).is_some()
     }
 
     /// Whether a separating force is that of the teeth of its joint.
     pub(super) fn check_teeth(&self, kind: &LoadKind, teeth: &PressureAngle) -> bool {
-        let LoadKind::SeparatingForce(mesh) = kind else {
+        let LoadKind::Special(mesh) = kind else {
             return false;
         };
         let joint = self.mechanism.joints.get(teeth.joint.0);
@@ -63,25 +69,20 @@ impl MultibodySystem {
             return Some(-teeth.angle.tan());
         }
         let friction = load.friction()?;
-        let (lever, [_, speed]) = match load.kind {
-            LoadKind::SlideForce(guide) => (
+        let LoadKind::Along(along, Strength::Direct) = load.kind else {
+            return None;
+        };
+        let (lever, [_, speed]) = match along {
+            CoordinateFunction::Travel(guide) => (
                 1.0,
                 at.motion().travel(guide.bodies, guide.points, guide.axis)?,
             ),
-            LoadKind::Torque { bodies } => match friction.contact {
+            CoordinateFunction::Angle(bodies) => match friction.contact {
                 FrictionContact::Pin { radius } => (radius, at.motion().angle(bodies)?),
                 // Of a guide, or of a joint in space.
                 FrictionContact::Guide { .. } | FrictionContact::Bearing { .. } => return None,
             },
-            LoadKind::Gravity { .. }
-            | LoadKind::Force { .. }
-            | LoadKind::Spring { .. }
-            | LoadKind::TorsionSpring { .. }
-            | LoadKind::Damper { .. }
-            | LoadKind::RotationalDamper { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::SlideDamper(_)
-            | LoadKind::SeparatingForce(_) => return None,
+            CoordinateFunction::Length { .. } => return None,
         };
         Some(coefficient_at(&friction, speed) * lever)
     }

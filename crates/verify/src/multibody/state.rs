@@ -2,7 +2,7 @@
 
 use super::{MultibodyError, MultibodySystem, Result};
 use crate::body_motion::BodyMotion;
-use crate::loads::load_wrenches;
+use crate::loads::{load_wrenches, placed};
 use crate::pose::{Pose, Twist};
 use crate::wrenches::BodyWrench;
 use dwell_geometry::{BodyId, Vec2};
@@ -131,47 +131,13 @@ impl MultibodySystem {
         [kinetic, (0..self.loads.len()).map(potential).sum()]
     }
 
-    /// ½ F s² of a spring, −F · displacement of weight and of a force that keeps its direction: where
-    /// F is constant.
+    /// The potential of a load, if it has one.
     pub(super) fn potential(&self, load: usize, at: &MultibodyState) -> Option<f64> {
         let load = &self.loads[load];
         let Magnitude::Constant(size) = load.magnitude else {
             return None;
         };
-        let spring = |stretch: f64| Some(0.5 * size * stretch * stretch);
-        match load.kind {
-            LoadKind::Gravity { direction } => {
-                let mut sum = 0.0;
-                for (b, mass) in self.masses.iter().enumerate() {
-                    let height = at.motion().point(BodyId(b), mass.center)?.dot(direction);
-                    sum -= mass.mass * size * height;
-                }
-                Some(sum)
-            }
-            LoadKind::Force {
-                body,
-                point,
-                direction,
-                body_fixed: false,
-            } => Some(-size * at.motion().point(body, point)?.dot(direction)),
-            LoadKind::Spring {
-                bodies,
-                points,
-                free_length,
-            } => spring(at.motion().length(bodies, points)?[0] - free_length),
-            LoadKind::TorsionSpring { bodies, free_angle } => {
-                spring(at.motion().angle(bodies)?[0] - free_angle)
-            }
-            LoadKind::Force {
-                body_fixed: true, ..
-            }
-            | LoadKind::Torque { .. }
-            | LoadKind::Damper { .. }
-            | LoadKind::RotationalDamper { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_)
-            | LoadKind::SeparatingForce(_) => None,
-        }
+        let weights = (self.mechanism.ground, &self.masses[..]);
+        placed(&load.kind, weights, at.motion())?.potential(size)
     }
 }

@@ -4,6 +4,7 @@ use super::DensePose;
 use crate::error::Result;
 use crate::friction::{Contact, bearings, coefficient_at, contact_forces};
 use dwell_geometry::space::{BodyMotion, Joint, JointKind, Placement, Vec3, Wrench};
+use dwell_kinetostatics::LoadShape as _;
 use dwell_kinetostatics::space::{LoadKind, Mass};
 use dwell_kinetostatics::{Friction, FrictionContact};
 
@@ -105,7 +106,7 @@ impl Law<'_> {
             FrictionContact::Bearing { radius, .. } => radius,
             FrictionContact::Guide { .. } | FrictionContact::Pin { .. } => 1.0,
         };
-        let is_couple = matches!(kind, LoadKind::JointTorque(_));
+        let is_couple = kind.is_couple();
         let coefficient = |speed| coefficient_at(self.friction, speed);
         if self.joint.kind == JointKind::Cylindrical {
             let surface = [travel, radius * turn];

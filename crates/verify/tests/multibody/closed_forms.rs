@@ -168,7 +168,7 @@ fn val_slider_with_friction_on_an_incline() {
     };
     plant.load(
         "friction",
-        LoadKind::SlideForce(along),
+        LoadKind::slide_force(along),
         Magnitude::Friction(friction),
     );
     plant.free([GROUND, block], ActuatorKind::Travel(guide), [0.0, 0.0]);

@@ -4,7 +4,7 @@ use crate::plant::{DOWN, GROUND, Plant, close};
 use dwell_findings::{Finding, all_pass};
 use dwell_geometry::{ActuatorKind, BodyId, Coordinate, JointKind, vec2};
 use dwell_kinetostatics::{
-    DriveKind, Friction, FrictionContact, Guide, LoadKind, Magnitude, Motor, Signal,
+    Direction, DriveKind, Friction, FrictionContact, Guide, LoadKind, Magnitude, Motor, Signal,
     SpeedController,
 };
 use dwell_laws::{Expression, Law, Sinusoid};
@@ -60,34 +60,18 @@ fn four_bar() -> Plant {
     plant.constant("weight", DOWN, G);
     let points = [vec2(0.2, 0.9), vec2(0.3, 0.1)];
     let bodies = [GROUND, rocker];
-    plant.constant(
-        "spring",
-        LoadKind::Spring {
-            bodies,
-            points,
-            free_length: 0.3,
-        },
-        60.0,
-    );
-    plant.constant("damper", LoadKind::Damper { bodies, points }, 0.8);
+    plant.constant("spring", LoadKind::spring(bodies, points, 0.3), 60.0);
+    plant.constant("damper", LoadKind::damper(bodies, points), 0.8);
     let bodies = [coupler, rocker];
-    plant.constant("turning", LoadKind::RotationalDamper { bodies }, 0.05);
-    plant.constant(
-        "spiral",
-        LoadKind::TorsionSpring {
-            bodies,
-            free_angle: 0.2,
-        },
-        0.7,
-    );
+    plant.constant("turning", LoadKind::rotational_damper(bodies), 0.05);
+    plant.constant("spiral", LoadKind::torsion_spring(bodies, 0.2), 0.7);
     let push = Expression::parse("3*sin(5*t) - 0.4*w", &["t", "w"]).unwrap();
     plant.load(
         "push",
         LoadKind::Force {
             body: coupler,
             point: vec2(0.4, 0.2),
-            direction: vec2(0.6, 0.8),
-            body_fixed: true,
+            direction: Direction::Body(vec2(0.6, 0.8)),
         },
         Magnitude::Expression(
             push,
@@ -152,9 +136,9 @@ fn slider_crank() -> Plant {
         })
     };
     let bodies = [crank, rod];
-    plant.load("B rubs", LoadKind::Torque { bodies }, friction(b, pin, 1.5));
+    plant.load("B rubs", LoadKind::couple(bodies), friction(b, pin, 1.5));
     let bodies = [rod, slider];
-    plant.load("C rubs", LoadKind::Torque { bodies }, friction(c, pin, 1.5));
+    plant.load("C rubs", LoadKind::couple(bodies), friction(c, pin, 1.5));
     let along = Guide {
         bodies: [GROUND, slider],
         points,
@@ -162,10 +146,10 @@ fn slider_crank() -> Plant {
     };
     plant.load(
         "guide rubs",
-        LoadKind::SlideForce(along),
+        LoadKind::slide_force(along),
         friction(guide, FrictionContact::Guide { length: 0.08 }, 0.3),
     );
-    plant.constant("oil", LoadKind::SlideDamper(along), 0.5);
+    plant.constant("oil", LoadKind::slide_damper(along), 0.5);
     let phi = plant.free([GROUND, crank], ActuatorKind::Angle, [0.5, 6.0]);
     let motor = Motor {
         voltage: Magnitude::Constant(9.0),
@@ -219,15 +203,7 @@ fn five_bar() -> (Plant, BodyId, BodyId) {
     plant.constant("weight", DOWN, G);
     let bodies = [GROUND, near];
     let points = [vec2(0.2, 1.0), vec2(0.5, 0.0)];
-    plant.constant(
-        "spring",
-        LoadKind::Spring {
-            bodies,
-            points,
-            free_length: 0.2,
-        },
-        25.0,
-    );
+    plant.constant("spring", LoadKind::spring(bodies, points, 0.2), 25.0);
     (plant, left, right)
 }
 
@@ -355,11 +331,11 @@ fn andrews() -> Plant {
     plant.drive(phi, DriveKind::AppliedForce(Magnitude::Constant(0.033)));
     plant.constant(
         "spring",
-        LoadKind::Spring {
-            bodies: [GROUND, k3],
-            points: [vec2(0.014, 0.072), vec2(0.02, -0.018)],
-            free_length: 0.07785,
-        },
+        LoadKind::spring(
+            [GROUND, k3],
+            [vec2(0.014, 0.072), vec2(0.02, -0.018)],
+            0.07785,
+        ),
         4530.0,
     );
     plant

@@ -49,23 +49,12 @@ fn val_turns_are_counted() {
     plant.pin("C", (coupler, [0.6, 0.0]), (follower, [0.6, 0.0]));
     plant.pin("D", (GROUND, [0.1, 0.0]), (follower, [0.0, 0.0]));
     let bodies = [GROUND, follower];
-    plant.constant(
-        "spiral",
-        LoadKind::TorsionSpring {
-            bodies,
-            free_angle: 0.0,
-        },
-        0.2,
-    );
+    plant.constant("spiral", LoadKind::torsion_spring(bodies, 0.0), 0.2);
     let law = Law::Polynomial(Polynomial {
         coefficients: vec![0.5, 0.3],
     });
     let angle = Signal::Value(Coordinate::Angle(bodies));
-    plant.load(
-        "law",
-        LoadKind::Torque { bodies },
-        Magnitude::Law(angle, law),
-    );
+    plant.load("law", LoadKind::couple(bodies), Magnitude::Law(angle, law));
     plant.free([GROUND, crank], ActuatorKind::Angle, [0.4, 9.0]);
     assert!(plant.model_motion(1.0, 1)[1].poses[1][2] > 9.0);
     check(&plant, 1.0, 5);
@@ -105,13 +94,13 @@ fn val_a_slot_that_rubs() {
     };
     plant.load(
         "slot rubs",
-        LoadKind::SlideForce(along),
+        LoadKind::slide_force(along),
         friction(slot, FrictionContact::Guide { length: 0.0 }),
     );
     let bodies = [lever, GROUND];
     plant.load(
         "L rubs",
-        LoadKind::Torque { bodies },
+        LoadKind::couple(bodies),
         friction(l, FrictionContact::Pin { radius: 0.03 }),
     );
     let law = Law::Polynomial(Polynomial::motion(0.4, 5.0, 2.0));

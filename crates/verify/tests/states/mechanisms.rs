@@ -5,7 +5,7 @@ use dwell_geometry::{
     Actuator, ActuatorKind, Body, BodyId, Coordinate, Coupling, Joint, JointId, JointKind,
     Mechanism, Vec2, vec2,
 };
-use dwell_kinetostatics::{LoadKind, Mass};
+use dwell_kinetostatics::{Direction, LoadKind, Mass};
 use dwell_laws::{Law, Polynomial};
 
 pub(crate) fn all() -> Vec<Setup> {
@@ -96,28 +96,9 @@ fn five_bar() -> Setup {
         ],
         loads: vec![
             weight(),
-            (
-                LoadKind::Spring {
-                    bodies: on([1, 3]),
-                    points,
-                    free_length: 0.6,
-                },
-                40.0,
-            ),
-            (
-                LoadKind::Damper {
-                    bodies: on([0, 2]),
-                    points,
-                },
-                7.0,
-            ),
-            (
-                LoadKind::TorsionSpring {
-                    bodies: on([2, 3]),
-                    free_angle: 0.5,
-                },
-                5.0,
-            ),
+            (LoadKind::spring(on([1, 3]), points, 0.6), 40.0),
+            (LoadKind::damper(on([0, 2]), points), 7.0),
+            (LoadKind::torsion_spring(on([2, 3]), 0.5), 5.0),
         ],
         motions: motions(
             &[crank1, crank2 - (c - b).angle()],
@@ -189,12 +170,11 @@ fn boom() -> Setup {
                 LoadKind::Force {
                     body: BodyId(5),
                     point: vec2(0.3, -0.4),
-                    direction: Vec2::from_angle(2.0),
-                    body_fixed: true,
+                    direction: Direction::Body(Vec2::from_angle(2.0)),
                 },
                 30.0,
             ),
-            (LoadKind::RotationalDamper { bodies: on([1, 4]) }, 3.0),
+            (LoadKind::rotational_damper(on([1, 4])), 3.0),
         ],
         motions: motions(
             &[travel, length],
@@ -275,8 +255,8 @@ fn epicyclic() -> Setup {
         ],
         loads: vec![
             weight(),
-            (LoadKind::Torque { bodies: on([2, 3]) }, 4.0),
-            (LoadKind::RotationalDamper { bodies: on([0, 2]) }, 0.6),
+            (LoadKind::couple(on([2, 3])), 4.0),
+            (LoadKind::rotational_damper(on([0, 2])), 0.6),
         ],
         // More than a revolution on, so that the planet's and the ring's revolutions are counted.
         motions: motions(&[arm_angle], &[&[1.0], &[-2.0], &[9.0], &[0.0]]),
@@ -337,11 +317,7 @@ fn wedge() -> Setup {
         loads: vec![
             weight(),
             (
-                LoadKind::Spring {
-                    bodies: on([0, 1]),
-                    points: [vec2(-1.0, 0.5), vec2(0.1, 0.1)],
-                    free_length: 0.0,
-                },
+                LoadKind::spring(on([0, 1]), [vec2(-1.0, 0.5), vec2(0.1, 0.1)], 0.0),
                 20.0,
             ),
         ],
@@ -428,20 +404,8 @@ fn cam() -> Setup {
         assembly_poses: vec![[0.0; 3], crank, slide_pose, lever, pose(hub, f, flagged)],
         loads: vec![
             weight(),
-            (
-                LoadKind::Damper {
-                    bodies: on([4, 2]),
-                    points: ends,
-                },
-                5.0,
-            ),
-            (
-                LoadKind::TorsionSpring {
-                    bodies: on([0, 4]),
-                    free_angle: 0.2,
-                },
-                3.0,
-            ),
+            (LoadKind::damper(on([4, 2]), ends), 5.0),
+            (LoadKind::torsion_spring(on([0, 4]), 0.2), 3.0),
         ],
         motions: motions(&[crank_angle], &[&[0.2], &[0.5], &[-0.3], &[0.0]]),
     }

@@ -1,6 +1,7 @@
 //! A mechanism ready to be checked, and the states and results of a plain solution for it.
 
 use super::plain;
+use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{ActuatorKind, BodyId, Coordinate, Mechanism, Vec2};
 use dwell_kinetostatics::{LoadKind, Mass};
 use dwell_verify::{
@@ -88,9 +89,7 @@ impl Setup {
             }
         }
         for (load, _) in &mut self.loads {
-            if let LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } =
-                load
-            {
+            if let LoadKind::Along(CoordinateFunction::Length { bodies, points }, _) = load {
                 shift(*bodies, points);
             }
         }

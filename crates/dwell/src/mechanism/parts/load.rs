@@ -253,6 +253,25 @@ impl Load {
         Self::new(keys, "damping", damping)
     }
 
+    /// The drag of a point in a fluid at rest, −c |v| v, by its coefficient c, N·s²/m².
+    ///
+    /// ```
+    /// let sail = dwell::Load::drag("vane.P", 0.6);
+    /// ```
+    pub fn drag(point: &str, coefficient: impl Into<Magnitude>) -> Self {
+        Self::new(Keys::new("drag", point), "coefficient", coefficient)
+    }
+
+    /// The drag of a fan between the angles of two bodies, −c |ω| ω, by its coefficient c, N·m·s²/rad².
+    ///
+    /// ```
+    /// let fan = dwell::Load::rotational_drag("ground", "rotor", 0.002);
+    /// ```
+    pub fn rotational_drag(first: &str, second: &str, coefficient: impl Into<Magnitude>) -> Self {
+        let keys = Keys::new("rotational-drag", [first, second]);
+        Self::new(keys, "coefficient", coefficient)
+    }
+
     /// Sets another key of its kind.
     ///
     /// ```

@@ -2,7 +2,7 @@
 
 use crate::models::motor_of;
 use dwell_dynamics::{Machine, MachineState, MovingModel};
-use dwell_kinetostatics::{Drive, DriveKind};
+use dwell_kinetostatics::Drive;
 
 /// By motor among the drives of a machine, in the order of [`motor_columns`](crate::models::motor_columns): the current, A, of one without
 /// inductance, whose current is no state; the electrical power, W; the efficiency. At the state `y` of the machine.
@@ -19,11 +19,7 @@ pub(crate) fn motor_values<M: MovingModel>(
     state.derivative(&mut rates);
     let mut states = machine.drive_states();
     for (d, drive) in drives.iter().enumerate() {
-        let has_state = match &drive.kind {
-            DriveKind::Motor(motor) => motor.inductance > 0.0,
-            DriveKind::SpeedController(controller) => controller.integral_gain > 0.0,
-            DriveKind::AppliedForce(_) => false,
-        };
+        let has_state = drive.kind.words(true).state.is_some();
         let rate = if has_state { states.next() } else { None };
         let Some(motor) = motor_of(drive) else {
             continue;

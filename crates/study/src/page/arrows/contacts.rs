@@ -135,7 +135,7 @@ pub(super) fn axes_of(mesh: Mesh) -> (Direction, [Vec2; 2]) {
 fn separating_column(of: &JointForces<'_>) -> Option<usize> {
     let mut loads = of.scene.loads.iter();
     let k = loads.position(|load| match (&load.kind, &load.magnitude) {
-        (LoadKind::SeparatingForce(_), Magnitude::Separating(teeth)) => teeth.joint == of.id,
+        (LoadKind::Special(_), Magnitude::Separating(teeth)) => teeth.joint == of.id,
         _ => false,
     })?;
     of.results.written_index(Quantity::LoadForce(k))

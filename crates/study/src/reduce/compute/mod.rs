@@ -15,5 +15,5 @@ pub(crate) use curves::{coefficient_units, inertia_units};
 pub(crate) use peak::{Peak, fast_turns, peak_between_rows};
 pub use reduced_scene::{InertiaAt, ReducedScene, TabulatedScene};
 pub use table::{TableRequest, Tabulation, tabulate};
-pub(crate) use unit_load_curves::ReducedLoad;
 pub use unit_load_curves::UnitLoadCurves;
+pub(crate) use unit_load_curves::reduced_loads;

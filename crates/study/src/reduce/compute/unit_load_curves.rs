@@ -4,7 +4,7 @@
 //! m q̈ + ½m′ q̇² = Σ w_ℓ F_ℓ,    R_k = a_k q̈ + b_k q̇² + Σ c_kℓ F_ℓ
 //! ```
 //!
-//! F is the magnitude that the scene gives; for a damper, friction or a separating force, the force or moment itself. A
+//! F is the magnitude that the scene gives, of a drag times |q̇| q̇; for a damper, friction or a separating force, the force or moment itself. A
 //! separating force is |tooth force| tan α of the sum itself, so that it belongs to one state: its column c is the
 //! response to one newton of it. Its w is zero and has no column.
 
@@ -12,7 +12,7 @@ use crate::explain::{StudyError, explain_motion};
 use crate::models::{PreparedScene, loaded_determinate_model};
 use crate::reduce::compute::ReducedScene;
 use dwell_findings::Column;
-use dwell_kinetostatics::{KinetostaticsError, LoadKind};
+use dwell_kinetostatics::{KinetostaticsError, Load, LoadShape};
 
 /// The unit-load response of every load over the range.
 pub struct UnitLoadCurves {
@@ -22,50 +22,34 @@ pub struct UnitLoadCurves {
     /// By position: the potential of all conservative loads, J.
     pub(crate) potential: Vec<f64>,
     pub(crate) conservative: bool,
-    pub(crate) is_angle: bool,
 }
 
 /// A load, by what its columns say of it.
 pub(crate) struct ReducedLoad {
     pub(crate) name: String,
-    /// Units of w along an angle, and of c of a force and of a moment.
+    /// Units of w, and of c of a force and of a moment.
     pub(crate) units: [&'static str; 3],
     /// Whether it has a w.
     pub(crate) does_work: bool,
 }
 
-/// Unit of w and of c (of a force and of a moment) for a load; w is along an angle or a length.
-fn units([w, force, moment]: [&'static str; 3], is_angle: bool) -> [&'static str; 3] {
-    let per_length = match w {
-        "kg m" => "kg",
-        "m2" => "m",
-        "rad" => "rad/m",
-        "" => "1/m",
-        _ => "",
-    };
-    [if is_angle { w } else { per_length }, force, moment]
-}
-
-/// The same along an angle.
-fn units_of_angle(kind: LoadKind) -> [&'static str; 3] {
-    match kind {
-        LoadKind::Gravity { .. } => ["kg m", "kg", "kg m"],
-        LoadKind::Spring { .. } => ["m2", "m", "m2"],
-        LoadKind::TorsionSpring { .. } => ["rad", "rad/m", "rad"],
-        LoadKind::Torque { .. } | LoadKind::RotationalDamper { .. } => ["", "1/m", ""],
-        LoadKind::Force { .. }
-        | LoadKind::Damper { .. }
-        | LoadKind::PointToPointForce { .. }
-        | LoadKind::SlideForce(_)
-        | LoadKind::SlideDamper(_)
-        | LoadKind::SeparatingForce(_) => ["m", "", "m"],
-    }
+/// Loads along an angle or a length.
+pub(crate) fn reduced_loads<K: LoadShape, C>(
+    loads: &[Load<K, C>],
+    is_angle: bool,
+) -> Vec<ReducedLoad> {
+    let loads = loads.iter().map(|load| ReducedLoad {
+        name: load.name.clone(),
+        units: load.kind.response_units(is_angle),
+        does_work: load.does_work(),
+    });
+    loads.collect()
 }
 
 impl UnitLoadCurves {
     /// The unit of w of a load.
     pub fn unit(&self, load: usize) -> &'static str {
-        units(self.loads[load].units, self.is_angle)[0]
+        self.loads[load].units[0]
     }
 
     /// The indices of the loads that have a w.
@@ -85,20 +69,13 @@ impl UnitLoadCurves {
         let (mut workspace, mut results) = (model.workspace(), model.result_buffer());
         let loads = 0..scene.loads.len();
         let mut curves = Self {
-            loads: (scene.loads.iter())
-                .map(|load| ReducedLoad {
-                    name: load.name.clone(),
-                    units: units_of_angle(load.kind),
-                    does_work: load.does_work(),
-                })
-                .collect(),
+            loads: reduced_loads(&scene.loads, prepared.is_angle()),
             rows: Vec::with_capacity(q.len()),
             potential: Vec::with_capacity(q.len()),
             conservative: loads.clone().any(|l| {
                 let load = &scene.loads[l];
                 load.does_work() && load.is_conservative()
             }),
-            is_angle: prepared.is_angle(),
         };
         for &q in q {
             let state = model.kinematic_state(&[q], &[1.0], &mut workspace);
@@ -129,12 +106,12 @@ impl UnitLoadCurves {
         }
         let value = |load: usize, k: usize| self.rows.iter().map(|row| row[load][k]).collect();
         for (l, load) in self.working().map(|l| (l, &self.loads[l])) {
-            let [unit, ..] = units(load.units, self.is_angle);
+            let [unit, ..] = load.units;
             all.push((Column::new(format!("{}.w", load.name), unit), value(l, 0)));
         }
         for (k, (name, of)) in prepared.reaction_units().into_iter().enumerate() {
             for (l, load) in self.loads.iter().enumerate() {
-                let [_, force, moment] = units(load.units, self.is_angle);
+                let [_, force, moment] = load.units;
                 let unit = if of == "N" { force } else { moment };
                 let name = format!("{name}.c.{}", load.name);
                 all.push((Column::new(name, unit), value(l, k + 1)));

@@ -17,7 +17,7 @@ use dwell_geometry::JointId;
 use dwell_geometry::space::{
     Actuator, ActuatorKind, Condition, Coordinate, CoordinateFunction, Placement, Plan, Pose,
 };
-use dwell_kinetostatics::space::{LoadKind, Model};
+use dwell_kinetostatics::space::Model;
 use dwell_kinetostatics::{MachineModel as _, Signal};
 use dwell_scene::{EventTrigger, SpaceScene};
 use std::borrow::Cow;
@@ -337,10 +337,11 @@ impl SpaceMotionProblem<'_> {
             Signal::Value(coordinate) => Some(*coordinate),
             Signal::Time | Signal::Velocity(_) => None,
         }));
-        all.extend(scene.loads.iter().filter_map(|load| match load.kind {
-            LoadKind::TorsionSpring { joint, .. } => Some(Coordinate::Angle(joint)),
-            _ => None,
-        }));
+        let by_kind = scene
+            .loads
+            .iter()
+            .filter_map(|load| load.kind.angle_joint());
+        all.extend(by_kind.map(Coordinate::Angle));
         all.extend(self.spec.events.iter().filter_map(|e| match e.trigger {
             EventTrigger::Reaches(of, _) | EventTrigger::Reversal(of) => Some(of),
             EventTrigger::Revolution(of) => Some(of),

@@ -1,11 +1,12 @@
 //! The columns of scenes in space that differ from those in the plane: of actuators, joints and loads.
 
-use super::load_forces::{LoadForce, described_drive, described_load};
+use super::load_forces::LoadForce;
 use super::reactions::SpaceRows;
 use crate::trajectory::compute::{ColumnList, Quantity};
 use dwell_geometry::JointId;
 use dwell_geometry::space::{ActuatorKind, Plan};
-use dwell_kinetostatics::space::{Axes, Component};
+use dwell_kinetostatics::space::{Axes, Component, LoadKind};
+use dwell_kinetostatics::{LoadShape as _, Strength};
 use dwell_scene::SpaceScene;
 
 /// The meanings of an actuator's coordinate and of its force.
@@ -72,12 +73,15 @@ pub(super) fn add_joint_columns(scene: &SpaceScene, rows: &SpaceRows, list: &mut
 pub(super) fn add_load_columns(scene: &SpaceScene, plan: &Plan, list: &mut ColumnList) {
     let forces = LoadForce::of_all(scene, plan);
     let loads = scene.loads.iter();
-    let loads = loads.map(|load| (&load.name, described_load(load), false));
-    let drives = scene.drives.iter();
-    let drives = drives.map(|drive| (&drive.name, described_drive(drive), true));
+    let loads = loads.map(|load| (&load.name, load.kind, false));
+    let drives = scene.drives.iter().map(|drive| {
+        let kind = LoadKind::Along(drive.coordinate, Strength::Direct);
+        (&drive.name, kind, true)
+    });
     let all = loads.chain(drives).zip(forces).enumerate();
-    for (k, ((name, described, is_drive), force)) in all {
-        let described = force.map(|_| described);
+    for (k, ((name, kind, is_drive), force)) in all {
+        let meaning = force.and(kind.meaning());
+        let described = meaning.map(|meaning| (kind.force_unit(), meaning));
         list.add_load(k, name, described, is_drive);
     }
 }

@@ -1,7 +1,8 @@
 //! The forces of loads in the tables: what a load exerts, of a spring and a damper by their length or angle and its rate.
 
-use dwell_geometry::space::{Coordinate, CoordinateFunction, Plan, Pose};
-use dwell_kinetostatics::Drive;
+use dwell_geometry::BodyId;
+use dwell_geometry::space::{CoordinateFunction, Plan, Pose, Vec3};
+use dwell_kinetostatics::Strength;
 use dwell_kinetostatics::space::{Load, LoadKind};
 use dwell_scene::SpaceScene;
 
@@ -10,10 +11,10 @@ use dwell_scene::SpaceScene;
 pub(super) enum LoadForce {
     /// It is the magnitude.
     Magnitude,
-    /// Stiffness × (free length or angle − the present one).
-    Spring(CoordinateFunction, f64),
-    /// −damping × the rate of the length or the angle.
-    Damper(CoordinateFunction),
+    /// By a law, from a coordinate and its rate.
+    Along(CoordinateFunction, Strength),
+    /// Against the velocity of a point of a body, in its frame.
+    Drag(BodyId, Vec3),
 }
 
 impl LoadForce {
@@ -25,33 +26,16 @@ impl LoadForce {
     }
 
     fn of(scene: &SpaceScene, plan: &Plan, load: &Load) -> Option<Self> {
-        let along = |coordinate| plan.coordinate_function(&scene.mechanism, coordinate).ok();
         match load.kind {
-            LoadKind::Gravity(_) => None,
+            LoadKind::Gravity { .. } => None,
             LoadKind::Force { .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::JointTorque(_)
-            | LoadKind::SlideForce(_) => Some(Self::Magnitude),
-            LoadKind::Spring {
-                bodies,
-                points,
-                free_length,
-            } => Some(Self::Spring(
-                along(Coordinate::Distance { bodies, points })?,
-                free_length,
-            )),
-            LoadKind::TorsionSpring { joint, free_angle } => {
-                Some(Self::Spring(along(Coordinate::Angle(joint))?, free_angle))
+            | LoadKind::Special(_)
+            | LoadKind::Along(_, Strength::Direct) => Some(Self::Magnitude),
+            LoadKind::Along(along, law) => {
+                let function = plan.coordinate_function(&scene.mechanism, along).ok()?;
+                Some(Self::Along(function, law))
             }
-            LoadKind::Damper { bodies, points } => {
-                let distance = along(Coordinate::Distance { bodies, points })?;
-                Some(Self::Damper(distance))
-            }
-            LoadKind::RotationalDamper(joint) => {
-                Some(Self::Damper(along(Coordinate::Angle(joint))?))
-            }
-            LoadKind::SlideDamper(joint) => Some(Self::Damper(along(Coordinate::Travel(joint))?)),
+            LoadKind::Drag { body, point } => Some(Self::Drag(body, point)),
         }
     }
 
@@ -59,42 +43,20 @@ impl LoadForce {
     pub(super) fn at(self, plan: &Plan, pose: &Pose, magnitude: f64) -> f64 {
         match self {
             Self::Magnitude => magnitude,
-            Self::Spring(of, free) => {
-                let [value, ..] = plan.coordinate(pose, of);
-                magnitude * (free - value)
+            Self::Along(along, law) => {
+                let [value, rate, _] = plan.coordinate(pose, along);
+                match law {
+                    // Not −0 without stretch.
+                    Strength::Elastic { free } => magnitude * (free - value),
+                    law => law.force(magnitude, || value, || rate),
+                }
             }
-            Self::Damper(of) => {
-                let [_, rate, _] = plan.coordinate(pose, of);
-                -magnitude * rate
+            Self::Drag(body, point) => {
+                let placement = plan.placement(pose, body.0);
+                let motion = plan.body_motion(pose, body.0);
+                let velocity = motion.point_velocity(placement.rotation.apply(point));
+                Strength::Quadratic.force(magnitude, || 0.0, || velocity.norm())
             }
         }
-    }
-}
-
-/// Unit and meaning of the force of a load.
-pub(super) fn described_load(load: &Load) -> (&'static str, &'static str) {
-    match load.kind {
-        LoadKind::Gravity(_) | LoadKind::Force { .. } => ("N", "force along its direction"),
-        LoadKind::Torque { .. } => ("N m", "moment about its axis on the second body"),
-        LoadKind::Spring { .. } | LoadKind::Damper { .. } | LoadKind::PointToPointForce { .. } => {
-            ("N", BETWEEN_POINTS)
-        }
-        LoadKind::JointTorque(_)
-        | LoadKind::TorsionSpring { .. }
-        | LoadKind::RotationalDamper(_) => ("N m", ABOUT_AXIS),
-        LoadKind::SlideForce(_) | LoadKind::SlideDamper(_) => ("N", ALONG_AXIS),
-    }
-}
-
-const BETWEEN_POINTS: &str = "force between the points; positive pushes them apart";
-const ABOUT_AXIS: &str = "moment about the axis, of the first body on the second";
-const ALONG_AXIS: &str = "force along the axis, of the first body on the second";
-
-/// The same of a drive.
-pub(super) fn described_drive(drive: &Drive<Coordinate>) -> (&'static str, &'static str) {
-    match drive.coordinate {
-        Coordinate::Angle(_) => ("N m", ABOUT_AXIS),
-        Coordinate::Travel(_) => ("N", ALONG_AXIS),
-        Coordinate::Distance { .. } => ("N", BETWEEN_POINTS),
     }
 }

@@ -110,17 +110,8 @@ impl Totals {
     fn weight(&self, scene: &SpaceScene) -> Vec3 {
         let loads = scene.loads.iter().zip(&self.magnitudes);
         loads.fold(Vec3::ZERO, |sum, (load, &magnitude)| match load.kind {
-            LoadKind::Gravity(direction) => sum + direction.scaled(magnitude),
-            LoadKind::Force { .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::Spring { .. }
-            | LoadKind::Damper { .. }
-            | LoadKind::JointTorque(_)
-            | LoadKind::TorsionSpring { .. }
-            | LoadKind::RotationalDamper(_)
-            | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_) => sum,
+            LoadKind::Gravity { direction } => sum + direction.scaled(magnitude),
+            _ => sum,
         })
     }
 }
@@ -145,16 +136,13 @@ fn outer_force(kind: &LoadKind, bodies: &[(Placement, BodyMotion)]) -> Option<[V
             let at = placement.position + placement.rotation.apply(point);
             Some([at, turned(direction, placement)])
         }
+        LoadKind::Drag { body, point } => {
+            let (placement, motion) = &bodies[body.0];
+            let arm = placement.rotation.apply(point);
+            let velocity = motion.point_velocity(arm);
+            Some([placement.position + arm, velocity.scaled(-velocity.norm())])
+        }
         // Between two bodies: the ground feels its own part.
-        LoadKind::Gravity(_)
-        | LoadKind::Torque { .. }
-        | LoadKind::PointToPointForce { .. }
-        | LoadKind::Spring { .. }
-        | LoadKind::Damper { .. }
-        | LoadKind::JointTorque(_)
-        | LoadKind::TorsionSpring { .. }
-        | LoadKind::RotationalDamper(_)
-        | LoadKind::SlideForce(_)
-        | LoadKind::SlideDamper(_) => None,
+        LoadKind::Gravity { .. } | LoadKind::Along(..) | LoadKind::Special(_) => None,
     }
 }

@@ -6,7 +6,6 @@ mod direction;
 mod drawing;
 #[cfg(feature = "output")]
 mod joints;
-mod loads;
 mod page;
 mod parts;
 #[cfg(feature = "output")]

@@ -1,8 +1,8 @@
 //! What is drawn of a mechanism in space, as parts that are fixed to its bodies: pictures draw it from some sides, and a page turns it.
 
 use super::arrangement::{GUIDE_MARGIN, SpaceDrawing};
-use super::loads::link_of;
 use super::segments::{line_of, nearest_of_segment};
+use crate::symbols::link_of;
 use dwell_geometry::space::{ActuatorKind, Joint, JointKind, Vec3};
 use dwell_geometry::{BodyId, JointId};
 use dwell_page::{Anchor, LinkLook, Mark, MarkLook, OutlineLook, Part};

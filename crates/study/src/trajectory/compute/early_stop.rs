@@ -9,7 +9,7 @@ use crate::number_format::digits;
 use crate::trajectory::compute::{Trajectory, TrajectorySample};
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{BodyId, Coordinate, JointId, Plan, PositionError, RangeLimit};
-use dwell_kinetostatics::{KinetostaticsError, LoadKind};
+use dwell_kinetostatics::{KinetostaticsError, LoadShape as _};
 use dwell_scene::{PlaneScene, SceneLocation};
 use std::f64::consts::TAU;
 
@@ -330,10 +330,8 @@ fn explain_load(scene: &PlaneScene, error: KinetostaticsError, when: &str) -> St
     let (message, help, place) = match error {
         KinetostaticsError::NoDirection { .. } => (
             format!("load `{name}` has no direction {when}: its two points coincide"),
-            match scene.loads.get(load).map(|l| l.kind) {
-                Some(LoadKind::Spring { .. }) => {
-                    "a spring of free length 0 needs none; or keep the points apart"
-                }
+            match scene.loads.get(load).map(|l| l.kind.strength().free()) {
+                Some(Some(_)) => "a spring of free length 0 needs none; or keep the points apart",
                 _ => "it acts along the line of its points: keep them apart",
             },
             (SceneLocation::Load(load), "between two points"),

@@ -10,7 +10,7 @@ use dwell_geometry::body_states::{BodyState, BodyStates, CoordinateFunction};
 use dwell_geometry::{BodyId, Plan, Pose, Vec2};
 use dwell_kinetostatics::{
     AppliedWrench, EvaluatedState, ForceSource, FreeBodyForces, InverseDynamics, LinkForces,
-    LoadKind, Model, PowerBalance, Workspace, Wrench,
+    LoadKind, Model, PowerBalance, Strength, Workspace, Wrench,
 };
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_scene::PlaneScene;
@@ -87,19 +87,16 @@ impl<'a> PositionForces<'a> {
     }
 }
 
-/// The second body of a load whose force follows from the motion of two.
+/// The body on which the force of a load is read that follows from the motion, the second of two.
 fn second_body(load: &LoadKind) -> Option<BodyId> {
-    match load {
-        LoadKind::Spring { bodies, .. }
-        | LoadKind::Damper { bodies, .. }
-        | LoadKind::TorsionSpring { bodies, .. }
-        | LoadKind::RotationalDamper { bodies } => Some(bodies[1]),
-        LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => Some(guide.bodies[1]),
-        LoadKind::Gravity { .. }
-        | LoadKind::Force { .. }
-        | LoadKind::Torque { .. }
-        | LoadKind::PointToPointForce { .. }
-        | LoadKind::SeparatingForce(_) => None,
+    match *load {
+        LoadKind::Along(CoordinateFunction::Travel(guide), _) => Some(guide.bodies[1]),
+        LoadKind::Along(
+            CoordinateFunction::Angle(bodies) | CoordinateFunction::Length { bodies, .. },
+            law,
+        ) => (law != Strength::Direct).then_some(bodies[1]),
+        LoadKind::Drag { body, .. } => Some(body),
+        LoadKind::Gravity { .. } | LoadKind::Force { .. } | LoadKind::Special(_) => None,
     }
 }
 
@@ -210,23 +207,25 @@ impl<'a> PositionEvaluator<'a> {
         let on_second =
             self.position.on_second_bodies[k].map(|place| self.position.wrenches[place]);
         match self.scene.loads[k].kind {
-            LoadKind::Gravity { .. }
-            | LoadKind::Force { .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::SeparatingForce(_) => self.position.magnitudes[k],
-            LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } => {
+            LoadKind::Along(CoordinateFunction::Travel(guide), _) => {
+                let axis = guide.axis.rotate(states.body(guide.bodies[0]).rotation);
+                on_second.map_or(0.0, |wrench| wrench.force.dot(axis))
+            }
+            LoadKind::Along(CoordinateFunction::Length { bodies, points }, law)
+                if law != Strength::Direct =>
+            {
                 let line = states.separation(bodies, points).direction;
                 let force_and_line = on_second.zip(line);
                 force_and_line.map_or(0.0, |(wrench, line)| wrench.force.dot(line))
             }
-            LoadKind::TorsionSpring { .. } | LoadKind::RotationalDamper { .. } => {
+            LoadKind::Along(CoordinateFunction::Angle(_), law) if law != Strength::Direct => {
                 on_second.map_or(0.0, |wrench| wrench.couple)
             }
-            LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => {
-                let axis = guide.axis.rotate(states.body(guide.bodies[0]).rotation);
-                on_second.map_or(0.0, |wrench| wrench.force.dot(axis))
-            }
+            LoadKind::Drag { .. } => on_second.map_or(0.0, |wrench| -wrench.force.norm()),
+            LoadKind::Gravity { .. }
+            | LoadKind::Force { .. }
+            | LoadKind::Along(..)
+            | LoadKind::Special(_) => self.position.magnitudes[k],
         }
     }
 

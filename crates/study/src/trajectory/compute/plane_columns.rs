@@ -2,7 +2,7 @@
 
 use crate::trajectory::compute::{ColumnList, Quantity, dyads};
 use dwell_geometry::{ActuatorKind, BodyId, Component, JointId, JointKind, Plan, Reaction};
-use dwell_kinetostatics::{Load, LoadKind};
+use dwell_kinetostatics::{Load, LoadShape as _};
 use dwell_scene::PlaneScene;
 
 /// The meanings of an actuator's coordinate and of its force.
@@ -184,25 +184,12 @@ impl PlaneColumns<'_> {
     pub(super) fn loads(&mut self) {
         let scene = self.scene;
         for (k, load) in scene.loads.iter().enumerate() {
-            let description = match load.kind {
-                // It has its column beside the tooth force, and does no work.
-                LoadKind::SeparatingForce(_) => continue,
-                LoadKind::Gravity { .. } => None,
-                LoadKind::Force { .. } => Some(("N", "force along its direction")),
-                LoadKind::Torque { .. } => Some(("N m", "moment on the second body")),
-                LoadKind::Spring { .. }
-                | LoadKind::Damper { .. }
-                | LoadKind::PointToPointForce { .. } => {
-                    Some(("N", "force between the points; positive pushes them apart"))
-                }
-                LoadKind::TorsionSpring { .. } | LoadKind::RotationalDamper { .. } => {
-                    Some(("N m", "moment of the first body on the second"))
-                }
-                LoadKind::SlideForce(_) | LoadKind::SlideDamper(_) => Some((
-                    "N",
-                    "force along the slide, of the first body on the second",
-                )),
-            };
+            // It has its column beside the tooth force, and does no work.
+            if !load.does_work() {
+                continue;
+            }
+            let meaning = load.kind.meaning();
+            let description = meaning.map(|meaning| (load.kind.force_unit(), meaning));
             let is_drive = scene.drives.iter().any(|drive| drive.name == load.name);
             self.list.add_load(k, &load.name, description, is_drive);
         }

@@ -1,0 +1,294 @@
+//! Strength laws: what the magnitude F of a load means, in the plane and in space.
+//!
+//! A load along a coordinate s, or against the velocity of a point, is a shape (where it acts) times a strength law:
+//!
+//! | law | force along s | F is |
+//! |---|---|---|
+//! | direct | F | the force or couple |
+//! | elastic | −F (s − free) | the stiffness |
+//! | viscous | −F ṡ | the damping |
+//! | quadratic | −F \|ṡ\| ṡ | the coefficient of drag |
+//!
+//! A new law is a variant here, with an arm in each function of this file.
+
+use dwell_geometry::Vec2;
+use dwell_geometry::space::Vec3;
+use dwell_numerics::Scalar;
+use std::ops::{Add, Neg};
+
+/// What the magnitude F of a load means.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Strength {
+    /// F is the force, N, or the couple, N·m.
+    Direct,
+    /// F is a stiffness, N/m or N·m/rad.
+    Elastic {
+        /// The length, travel (m) or angle (rad) without force; an angle with its whole revolutions.
+        free: f64,
+    },
+    /// F is a damping, N·s/m or N·m·s/rad.
+    Viscous,
+    /// F is a coefficient of drag, N·s²/m² or N·m·s²/rad².
+    Quadratic,
+}
+
+/// How a law is named and written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StrengthWords {
+    /// What its magnitude is called.
+    pub magnitude: &'static str,
+    /// The units of the magnitude, of a force and of a couple.
+    pub units: [&'static str; 2],
+    /// What a load of this law is called that is a force, and one that is a couple.
+    pub load: [&'static str; 2],
+    /// Why its magnitude must not be negative; none where it may.
+    pub not_negative: Option<&'static str>,
+}
+
+/// What is drawn between the two ends of a load.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LoadSymbol {
+    /// A spring.
+    Spring,
+    /// A damper.
+    Damper,
+}
+
+impl Strength {
+    /// Its names and units.
+    pub fn words(self) -> StrengthWords {
+        match self {
+            Self::Direct => StrengthWords {
+                magnitude: "magnitude",
+                units: ["N", "N m"],
+                load: ["force", "couple"],
+                not_negative: None,
+            },
+            Self::Elastic { .. } => StrengthWords {
+                magnitude: "stiffness",
+                units: ["N/m", "N m/rad"],
+                load: ["spring", "torsion spring"],
+                not_negative: Some("a negative stiffness would push away from the free position"),
+            },
+            Self::Viscous => StrengthWords {
+                magnitude: "damping",
+                units: ["N s/m", "N m s/rad"],
+                load: ["damper", "rotational damper"],
+                not_negative: Some("negative damping would accelerate the motion"),
+            },
+            Self::Quadratic => StrengthWords {
+                magnitude: "coefficient",
+                units: ["N s2/m2", "N m s2/rad2"],
+                load: ["drag", "rotational drag"],
+                not_negative: Some("negative drag would accelerate the motion"),
+            },
+        }
+    }
+
+    /// The units of the generalised force and of a reaction force and moment of a unit of the load, by whether it is a couple and whether the
+    /// coordinate of the mechanism is an angle.
+    pub(super) fn response_units(self, is_couple: bool, is_angle: bool) -> [&'static str; 3] {
+        let [along_angle, along_length, force, moment] = match (self, is_couple) {
+            (Self::Direct | Self::Viscous, false) => ["m", "", "", "m"],
+            (Self::Direct | Self::Viscous, true) => ["", "1/m", "1/m", ""],
+            (Self::Elastic { .. }, false) => ["m2", "m", "m", "m2"],
+            (Self::Elastic { .. }, true) => ["rad", "rad/m", "rad/m", "rad"],
+            // At unit speed of the coordinate.
+            (Self::Quadratic, false) if is_angle => ["m3", "", "m2", "m3"],
+            (Self::Quadratic, false) => ["", "", "", "m"],
+            (Self::Quadratic, true) if is_angle => ["", "", "1/m", ""],
+            (Self::Quadratic, true) => ["", "1/m3", "1/m3", "1/m2"],
+        };
+        let work = if is_angle { along_angle } else { along_length };
+        [work, force, moment]
+    }
+
+    /// Whether it acts against a velocity.
+    pub fn resists(self) -> bool {
+        match self {
+            Self::Direct | Self::Elastic { .. } => false,
+            Self::Viscous | Self::Quadratic => true,
+        }
+    }
+
+    /// The law and the magnitude of a unit of the load, whose response tables hold: of a damper, a unit of its resistance, which does not
+    /// depend on the velocity; of a drag, that of coefficient 1 at the velocities of the state, since c |v| v has no direction at rest.
+    pub fn unit(self) -> (Self, f64) {
+        match self {
+            Self::Direct | Self::Elastic { .. } | Self::Quadratic => (self, 1.0),
+            Self::Viscous => (Self::Direct, -1.0),
+        }
+    }
+
+    /// What multiplies w, the generalised force of a [unit](Self::unit), at the speed q̇ of a mechanism of one coordinate.
+    #[inline]
+    pub fn on_response<T: Scalar>(self, f: T, w: T, q_dot: T) -> T {
+        match self {
+            Self::Direct | Self::Elastic { .. } => f,
+            // w is −ds/dq.
+            Self::Viscous => -(f * w * q_dot),
+            Self::Quadratic => f * absolute(q_dot * q_dot) * q_dot,
+        }
+    }
+
+    /// Its length or angle without force, if it has one.
+    pub fn free(self) -> Option<f64> {
+        match self {
+            Self::Elastic { free } => Some(free),
+            Self::Direct | Self::Viscous | Self::Quadratic => None,
+        }
+    }
+
+    /// Whether its number is usable: finite, and of a distance not negative.
+    pub(crate) fn is_sound(self, is_distance: bool) -> bool {
+        self.free()
+            .is_none_or(|free| free.is_finite() && (free >= 0.0 || !is_distance))
+    }
+
+    /// The power of the size of a mechanism with which the work of a unit of a force grows; none where it resists.
+    pub(crate) fn work_lever(self, length: f64) -> f64 {
+        match self {
+            Self::Direct => length,
+            Self::Elastic { .. } => length * length,
+            Self::Viscous | Self::Quadratic => 0.0,
+        }
+    }
+
+    /// What is drawn between its ends.
+    pub fn symbol(self) -> Option<LoadSymbol> {
+        match self {
+            Self::Direct => None,
+            Self::Elastic { .. } => Some(LoadSymbol::Spring),
+            Self::Viscous | Self::Quadratic => Some(LoadSymbol::Damper),
+        }
+    }
+
+    /// The force or couple along a coordinate, from its magnitude, and from the value (rad or m) and the rate of the coordinate.
+    #[inline]
+    pub fn force<T: Scalar>(self, f: T, value: impl FnOnce() -> T, rate: impl FnOnce() -> T) -> T {
+        match self {
+            Self::Direct => f,
+            Self::Elastic { free } => -(f * (value() - T::from_f64(free))),
+            Self::Viscous => -(f * rate()),
+            Self::Quadratic => {
+                let rate = rate();
+                -(f * absolute(rate * rate) * rate)
+            }
+        }
+    }
+
+    /// The force on the second of two points, along the line from the first; none where they coincide and it needs a direction.
+    #[inline]
+    pub(crate) fn force_along_line<T: Scalar, V: LoadVector<T>>(
+        self,
+        f: T,
+        line: &Line<V>,
+    ) -> Option<V> {
+        let Line {
+            gap,
+            direction,
+            velocity,
+        } = *line;
+        let Some(e) = direction else {
+            let is_still = self.resists() && velocity.is_zero();
+            return match self {
+                Self::Elastic { free: 0.0 } => Some(-gap.times(f)),
+                _ => (is_still || f.value() == 0.0).then(V::zero),
+            };
+        };
+        Some(match self {
+            Self::Direct => e.times(f),
+            // −k d + k free e: the first part is smooth where the points meet.
+            Self::Elastic { free: 0.0 } => -gap.times(f),
+            Self::Elastic { free } => -gap.times(f) + e.times(f * T::from_f64(free)),
+            Self::Viscous => -e.times(e.dot(velocity) * f),
+            Self::Quadratic => {
+                let rate = e.dot(velocity);
+                -e.times(absolute(rate * rate) * rate * f)
+            }
+        })
+    }
+}
+
+/// The force −F |v| v on a point of this velocity.
+#[inline]
+pub(crate) fn drag<T: Scalar, V: LoadVector<T>>(f: T, velocity: V) -> V {
+    -velocity.times(f * absolute(velocity.dot(velocity)))
+}
+
+/// The square root, with the derivative zero at zero: of the square of a velocity that is multiplied by the velocity.
+#[inline]
+fn absolute<T: Scalar>(square: T) -> T {
+    match T::LANES == 1 && square.value() == 0.0 {
+        true => T::from_f64(0.0),
+        false => square.sqrt(),
+    }
+}
+
+/// The line between two points.
+pub(crate) struct Line<V> {
+    /// From the first to the second, m.
+    pub(crate) gap: V,
+    /// Its unit vector; none where they coincide.
+    pub(crate) direction: Option<V>,
+    /// The rate of the gap, m/s.
+    pub(crate) velocity: V,
+}
+
+/// A vector in which a force along a line is computed.
+pub(crate) trait LoadVector<T>: Copy + Neg<Output = Self> + Add<Output = Self> {
+    /// The zero vector.
+    fn zero() -> Self;
+    /// Scalar product.
+    fn dot(self, other: Self) -> T;
+    /// The vector times a number.
+    fn times(self, by: T) -> Self;
+    /// Whether all its components are zero.
+    fn is_zero(self) -> bool;
+}
+
+impl<T: Scalar> LoadVector<T> for Vec2<T> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::zero()
+    }
+
+    #[inline(always)]
+    #[track_caller]
+    fn dot(self, other: Self) -> T {
+        self.dot(other)
+    }
+
+    #[inline(always)]
+    #[track_caller]
+    fn times(self, by: T) -> Self {
+        self * by
+    }
+
+    fn is_zero(self) -> bool {
+        self.x.value() == 0.0 && self.y.value() == 0.0
+    }
+}
+
+impl<T: Scalar> LoadVector<T> for Vec3<T> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::zero()
+    }
+
+    #[inline(always)]
+    #[track_caller]
+    fn dot(self, other: Self) -> T {
+        self.dot(other)
+    }
+
+    #[inline(always)]
+    #[track_caller]
+    fn times(self, by: T) -> Self {
+        self.scaled(by)
+    }
+
+    fn is_zero(self) -> bool {
+        self.dot(self).value() == 0.0
+    }
+}
