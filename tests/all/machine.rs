@@ -5,8 +5,8 @@ use dwell_dynamics::{
     StepControl, integrate,
 };
 use dwell_kinetostatics::{
-    Drive, DriveKind, Friction, FrictionContact, Guide, Load, LoadKind, LoadShape as _, MachineModel as _,
-    Magnitude, Model, Motor, SpeedController, Strength,
+    Drive, DriveKind, Friction, FrictionContact, Guide, Load, LoadKind, LoadShape as _,
+    MachineModel as _, Magnitude, Model, Motor, SpeedController, Strength,
 };
 use dwell_scene::PlaneScene;
 use dwell_tests::cases::CASES;
