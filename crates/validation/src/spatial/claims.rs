@@ -1,7 +1,7 @@
 //! What a model in space says of itself, evaluated in any kind of number, for the checks of states.
 
 use dwell_geometry::space::{
-    BodyMotion, Coordinate, Frame, Joint, JointKind, Placement, Pose, Rotation, Vec3, Wrench, vec3,
+    BodyMotion, Coordinate, Frame, Joint, JointKind, Placement, Pose, Rotation, Vec3, vec3,
 };
 use dwell_geometry::{JointId, PositionError};
 use dwell_kinetostatics::space::{Axes, Component, Load, LoadKind, Model, Reaction};
