@@ -50,7 +50,14 @@ pub(crate) fn insets(drawings: &[Drawing], cell: &Rect) -> Insets {
         right: axes::right_room(),
         bottom: 0.6 * SIDES,
     };
-    let frame = fitted(bounds(drawings), cell.inset(guess));
+    let first = labels_room(drawings, cell, guess);
+    // In a plot of that size there may be more ticks, with wider labels.
+    first.max(labels_room(drawings, cell, first))
+}
+
+/// Widths of the strips that the labels need beside a plot that is so far from the sides of the cell.
+fn labels_room(drawings: &[Drawing], cell: &Rect, insets: Insets) -> Insets {
+    let frame = fitted(bounds(drawings), cell.inset(insets));
     let x_ticks = axes::horizontal_ticks(&frame.x, frame.plot.width());
     let y_ticks = axes::vertical_ticks(&frame.y, frame.plot.height());
     let needed = |drawing: &Drawing| {
@@ -58,18 +65,18 @@ pub(crate) fn insets(drawings: &[Drawing], cell: &Rect) -> Insets {
             Insets {
                 left: 0.0,
                 bottom: 0.0,
-                ..guess
+                ..insets
             }
         } else {
             Insets {
                 left: axes::side_room(&drawing.y, &y_ticks, frame.plot.height()),
                 bottom: axes::bottom_room(Some(&drawing.x), &x_ticks, cell),
-                ..guess
+                ..insets
             }
         }
     };
     let all = drawings.iter().map(needed).reduce(Insets::max);
-    all.unwrap_or(guess)
+    all.unwrap_or(insets)
 }
 
 impl DrawingLayout {

@@ -44,7 +44,7 @@ pub enum AnyLoadKind<V, C, S> {
     },
     /// A force or couple along a coordinate, positive in the direction in which the coordinate grows.
     Along(C, Strength),
-    /// The drag of a point of a body at rest in a fluid that rests: F is its coefficient, N·s²/m²; the force −F |v| v.
+    /// The drag of a point of a body in a fluid at rest: F is its coefficient, N·s²/m²; the force −F |v| v.
     Drag {
         /// The body.
         body: BodyId,

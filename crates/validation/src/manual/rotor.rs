@@ -252,9 +252,9 @@ fn zero_of(value: &dyn Fn(f64) -> f64, step: f64) -> f64 {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         if value(middle) * sign > 0.0 {
-            low = middle
+            low = middle;
         } else {
-            high = middle
+            high = middle;
         }
     }
     0.5 * (low + high)
