@@ -199,7 +199,7 @@ impl Mutation {
             }
             (Self::HalfStiffness, LoadKind::Along(_, Elastic { .. }))
             | (Self::HalfDamper, LoadKind::Along(_, Viscous | Quadratic) | LoadKind::Drag { .. }) => {
-                *f *= 0.5
+                *f *= 0.5;
             }
             (Self::NoFreeLength, LoadKind::Along(_, Elastic { free })) => *free = 0.0,
             (
