@@ -198,7 +198,8 @@ impl Mutation {
                 *f = -*f;
             }
             (Self::HalfStiffness, LoadKind::Along(_, Elastic { .. }))
-            | (Self::HalfDamper, LoadKind::Along(_, Viscous | Quadratic) | LoadKind::Drag { .. }) => {
+            | (Self::HalfDamper, LoadKind::Along(_, Viscous | Quadratic) | LoadKind::Drag { .. }) =>
+            {
                 *f *= 0.5;
             }
             (Self::NoFreeLength, LoadKind::Along(_, Elastic { free })) => *free = 0.0,
