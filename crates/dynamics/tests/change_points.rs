@@ -137,7 +137,8 @@ fn a_flywheel_counts_on_a_fit() {
         let energy = machine.energy(0.0, &moving, &mut machine.workspace());
         let m = 2.0 * energy.expect("a pose")[0];
         let ratio = acceleration(machine) / acceleration(&heavier);
-        assert!((ratio / (1.0 + J / m) - 1.0).abs() < 1e-10, "{q}: {ratio}");
+        // Seen: 3.3e-15.
+        assert!((ratio / (1.0 + J / m) - 1.0).abs() < 2e-13, "{q}: {ratio}");
     }
 }
 
