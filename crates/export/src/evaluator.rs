@@ -8,7 +8,7 @@ mod pieces;
 pub(crate) use load::Load;
 pub use motion::{Evaluator, MotionTerms, ReactionTerms, State};
 
-use crate::real::Real;
+use dwell_numerics::Real;
 
 /// Why exported code has no value. Its outputs are zero then, and a state stays as it was.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

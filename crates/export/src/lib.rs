@@ -1,7 +1,7 @@
 //! Out of the workbench: the reduced model of a machine of one degree of freedom as source text that needs nothing.
 //!
 //! Plain data and a sampler of exact functions come in; [`Export::new`] fits cells of uneven width and measures what they are
-//! worth, or [`Export::exact`] takes the operations of the exact functions, [recorded](record) once; each target then makes
+//! worth, or [`Export::exact`] takes the operations of the exact functions, [recorded](dwell_numerics::record) once; each target then makes
 //! texts or bytes of them: [`c_files`], [`rust_files`], [`fmu_files`], [`matlab_files`]. The
 //! [`Evaluator`] is the exported code in Rust, operation by operation. A machine of several degrees of freedom has its equations of
 //! motion in C, by [`SeveralFreedomsExport`].
@@ -52,6 +52,7 @@
 
 mod balance;
 mod c;
+mod counted;
 mod describe;
 mod error;
 mod evaluator;
@@ -62,12 +63,9 @@ mod identifiers;
 mod machine;
 mod matlab;
 mod part;
-mod real;
-mod recording;
 mod rust;
 mod several_freedoms;
 mod slopes;
-mod straight_line;
 mod template;
 mod writer;
 
@@ -83,11 +81,8 @@ pub use machine::{
 };
 pub use matlab::matlab_files;
 pub use part::{Column, Part, Precision};
-pub use real::Real;
-pub use recording::{RecordedNumber, RecordingError, record, record_at};
 pub use rust::rust_files;
 pub use several_freedoms::{
     FreeCoordinate, SampledState, SeveralFreedomsDescription, SeveralFreedomsErrors,
     SeveralFreedomsEvaluator, SeveralFreedomsExport, c_files_of_several_freedoms,
 };
-pub use straight_line::{Operand, Operation, OperationKind, StraightLine};

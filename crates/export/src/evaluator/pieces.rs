@@ -3,8 +3,8 @@
 use super::Status;
 use crate::machine::Domain;
 use crate::part::{CURVE, Column, HEAD, Part, Precision, TERMS, Wrapping};
-use crate::real::Real;
-use crate::straight_line::StraightLine;
+use dwell_numerics::Real;
+use dwell_numerics::StraightLine;
 
 /// Where the functions of a part come from. Their values are value and half slope of each curve, the columns, then the slopes
 /// of the columns of motion: of one that moves no rotor, zero.

@@ -4,8 +4,8 @@
 //! Decisions are made by values, as everywhere; they are not written down. Code that was recorded at one coordinate is
 //! therefore that of another one only where all decisions are the same: [`record`] compares recordings at several.
 
+use crate::scalar::Scalar;
 use crate::straight_line::{Operand, Operation, OperationKind as Kind, StraightLine};
-use dwell_numerics::Scalar;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
