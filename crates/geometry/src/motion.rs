@@ -11,7 +11,7 @@ use crate::plane::{Vec2, vec2};
 use crate::rates::Rates;
 use crate::structure::coupling::CouplingEquation;
 use crate::structure::groups::Unknown;
-use dwell_numerics::Scalar;
+use dwell_numerics::{Constant, Scalar};
 pub use multipliers::ForceBalance;
 
 /// Velocities and accelerations at a pose.
@@ -33,7 +33,7 @@ impl Motion<f64> {
     }
 }
 
-impl Plan {
+impl<C: Constant> Plan<C> {
     /// A motion with the right sizes.
     pub fn motion<T: Scalar>(&self) -> Motion<T> {
         let zero = T::from_f64(0.0);
@@ -79,7 +79,7 @@ impl Plan {
     #[inline(always)]
     pub(crate) fn group_velocities<T: Scalar>(
         &self,
-        (assur, inverse): (&AssurGroup, T),
+        (assur, inverse): (&AssurGroup<C>, T),
         pose: &Pose<T>,
         q_dot: &[T],
         motion: &mut Motion<T>,
@@ -145,7 +145,7 @@ impl Plan {
     #[inline(never)]
     fn factored_velocities<T: Scalar>(
         &self,
-        assur: &AssurGroup,
+        assur: &AssurGroup<C>,
         factored_group: &FactoredGroup,
         pose: &Pose<T>,
         q_dot: &[T],
@@ -172,7 +172,7 @@ impl Plan {
     #[inline(never)]
     fn factored_accelerations<T: Scalar>(
         &self,
-        assur: &AssurGroup,
+        assur: &AssurGroup<C>,
         factored_group: &FactoredGroup,
         pose: &Pose<T>,
         q_ddot: &[T],
@@ -202,7 +202,7 @@ impl Plan {
     #[inline(always)]
     fn fill_rates<T: Scalar>(
         &self,
-        assur: &AssurGroup,
+        assur: &AssurGroup<C>,
         loop_rate: impl Fn(usize) -> Vec2<T>,
         coupling_rate: impl Fn(&CouplingEquation) -> T,
         rates: &mut [T],
@@ -225,7 +225,7 @@ impl Plan {
     }
 
     /// Sets the rates of a group's unknowns to zero, so that a gap's rate is that of the known frames alone.
-    fn start_rates<T: Scalar>(&self, assur: &AssurGroup, rate: &[T], rates: &mut Rates<T>) {
+    fn start_rates<T: Scalar>(&self, assur: &AssurGroup<C>, rate: &[T], rates: &mut Rates<T>) {
         for &unknown in &assur.group.unknowns {
             match unknown {
                 Unknown::ClassAngle(c) => rates.angular[self.class_frame(c)] = T::from_f64(0.0),
@@ -235,7 +235,12 @@ impl Plan {
         propagate_actuated(&assur.actuated_frames, rate, &mut rates.angular);
     }
 
-    fn store_solution<T: Scalar>(&self, assur: &AssurGroup, solution: &[T], rates: &mut Rates<T>) {
+    fn store_solution<T: Scalar>(
+        &self,
+        assur: &AssurGroup<C>,
+        solution: &[T],
+        rates: &mut Rates<T>,
+    ) {
         for (&unknown, &value) in assur.group.unknowns.iter().zip(solution) {
             match unknown {
                 Unknown::ClassAngle(c) => rates.angular[self.class_frame(c)] = value,
@@ -315,7 +320,11 @@ fn vector_velocity_and_acceleration<T: Scalar>(
 }
 
 /// L̇ = Σ ω ẑ×vector + Σ (speed · direction + ω ẑ×travel).
-fn gap_velocity<T: Scalar>(closure: &LoopClosure, pose: &Pose<T>, motion: &Motion<T>) -> Vec2<T> {
+fn gap_velocity<C, T: Scalar>(
+    closure: &LoopClosure<C>,
+    pose: &Pose<T>,
+    motion: &Motion<T>,
+) -> Vec2<T> {
     let mut sum = vector_velocity(&closure.vectors, pose, motion);
     for &(s, vector, frame) in &closure.slides {
         let along = pose.vector[vector];
@@ -326,8 +335,8 @@ fn gap_velocity<T: Scalar>(closure: &LoopClosure, pose: &Pose<T>, motion: &Motio
 }
 
 /// L̇ and L̈, the latter with the centripetal and Coriolis terms.
-fn gap_velocity_and_acceleration<T: Scalar>(
-    closure: &LoopClosure,
+fn gap_velocity_and_acceleration<C, T: Scalar>(
+    closure: &LoopClosure<C>,
     pose: &Pose<T>,
     motion: &Motion<T>,
 ) -> (Vec2<T>, Vec2<T>) {

@@ -19,7 +19,7 @@ use crate::structure::frames::Frames;
 use crate::structure::groups::Group;
 use crate::structure::lower::{KinematicPair, Lowered, LoweredCoordinate};
 use crate::structure::tree::{FrameVector, Tree};
-use dwell_numerics::Scalar;
+use dwell_numerics::{Constant, Lift, Scalar};
 use std::collections::HashMap;
 
 /// At which coordinates and in which assembly mode the mechanism is assembled.
@@ -37,18 +37,18 @@ pub struct AssemblyConfiguration {
 
 /// A mechanism compiled for evaluation.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
-    pub(crate) lowered: Lowered,
+pub struct Plan<C = f64> {
+    pub(crate) lowered: Lowered<C>,
     pub(crate) frames: Frames,
-    pub(crate) tree: Tree,
-    pub(crate) frame_vectors: Vec<FrameVector>,
+    pub(crate) tree: Tree<C>,
+    pub(crate) frame_vectors: Vec<FrameVector<C>>,
     pub(crate) moving_bodies: Vec<MovingBody>,
     /// The loops.
-    pub loop_closures: Vec<LoopClosure>,
+    pub loop_closures: Vec<LoopClosure<C>>,
     /// The couplings between angles and travels.
     pub couplings: Vec<CouplingEquation>,
-    pub(crate) groups: Vec<AssurGroup>,
-    pub(crate) steps: Vec<Step>,
+    pub(crate) groups: Vec<AssurGroup<C>>,
+    pub(crate) steps: Vec<Step<C>>,
     /// By kinematic pair: whether it is in the tree or closes a loop.
     pub pair_roles: Vec<PairRole>,
     /// By group: the step that solves it.
@@ -141,11 +141,11 @@ pub(crate) struct ActuatedFrame {
 
 /// A loop with its vectors in the plan's table: L = P₂ − P₁ = fixed + Σ vectors + Σ travel · direction.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LoopClosure {
+pub struct LoopClosure<C = f64> {
     /// The pair that closes the loop.
     pub pair: usize,
     /// The part of the loop on the ground, m.
-    pub fixed: Vec2,
+    pub fixed: Vec2<C>,
     /// The vectors it sums, as (vector, frame).
     pub vectors: Vec<(usize, usize)>,
     /// The slides it passes, as (slide, direction vector, frame).
@@ -156,9 +156,9 @@ pub struct LoopClosure {
 
 /// A group with what its method of solution needs.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct AssurGroup {
+pub(crate) struct AssurGroup<C = f64> {
     pub(crate) group: Group,
-    pub(crate) kind: GroupKind,
+    pub(crate) kind: GroupKind<C>,
     /// The actuated frames of its classes, each after the one it is turned from.
     pub(crate) actuated_frames: Vec<ActuatedFrame>,
     /// The loops of the group, each with the parts that earlier groups or actuators move.
@@ -179,7 +179,7 @@ pub(crate) struct AssurGroup {
     pub(crate) pruned: bool,
 }
 
-impl AssurGroup {
+impl<C> AssurGroup<C> {
     /// What the row of a coupling is multiplied by: one between angles is compared with loops by the size of its group.
     pub(crate) fn coupling_weight<T: Scalar>(&self, coupling: &CouplingEquation) -> T {
         T::from_f64(if coupling.angular { self.scale } else { 1.0 })
@@ -201,13 +201,13 @@ pub(crate) struct KnownTerms {
 
 /// How a group is solved.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum GroupKind {
-    RrrDyad(RrrDyad),
-    GuidedPoint(GuidedPoint),
+pub(crate) enum GroupKind<C = f64> {
+    RrrDyad(RrrDyad<C>),
+    GuidedPoint(GuidedPoint<C>),
     Factored(FactoredGroup),
 }
 
-impl GroupKind {
+impl<C> GroupKind<C> {
     /// How a group is placed that is not a closed form throughout.
     pub(crate) fn placement_method(&self) -> Option<PlacementMethod> {
         match self {
@@ -228,7 +228,7 @@ impl GroupKind {
 
 /// Two bodies pinned to each other and to known points: a triangle.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct RrrDyad {
+pub(crate) struct RrrDyad<C = f64> {
     pub(crate) closure: usize,
     /// The two vectors that turn, and their frames.
     pub(crate) vectors: [usize; 2],
@@ -240,7 +240,7 @@ pub(crate) struct RrrDyad {
     pub(crate) difference_squared: f64,
     pub(crate) square_difference: f64,
     /// The other vectors of the loop: those on the ground, and those that move.
-    pub(crate) fixed: Vec2,
+    pub(crate) fixed: Vec2<C>,
     pub(crate) known: Vec<(usize, usize)>,
     /// Sign of vector₁ × vector₂: the assembly branch.
     pub(crate) branch: f64,
@@ -248,7 +248,7 @@ pub(crate) struct RrrDyad {
 
 /// A body turned until a point of its loop lies on a line.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct GuidedPoint {
+pub(crate) struct GuidedPoint<C = f64> {
     pub(crate) closure: usize,
     pub(crate) frame: usize,
     /// The rotated axis of the line, with its frame.
@@ -260,11 +260,13 @@ pub(crate) struct GuidedPoint {
     /// The vectors of the loop that move.
     pub(crate) vectors: Vec<(usize, usize)>,
     /// The vector of the loop in the turning frame.
-    pub(crate) local: Vec2,
+    pub(crate) local: Vec2<C>,
+    /// Its length, m.
+    pub(crate) length: f64,
     /// The unit vector that is found: the line's normal, or the vector's direction.
     pub(crate) unit: Vec2,
     /// The other vectors of the loop: those on the ground, and those that move.
-    pub(crate) fixed: Vec2,
+    pub(crate) fixed: Vec2<C>,
     pub(crate) known: Vec<(usize, usize)>,
     /// Sign of −∂(normal distance)/∂angle: the assembly branch.
     pub(crate) branch: f64,
@@ -313,7 +315,7 @@ pub(crate) enum PlacementMethod {
 
 /// One step of the computation of positions.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Step {
+pub(crate) enum Step<C = f64> {
     /// Rotate a frame by an actuator's coordinate.
     RotateFrame(ActuatedFrame),
     /// Set a slide to an actuator's coordinate: (slide, actuator).
@@ -321,10 +323,10 @@ pub(crate) enum Step {
     /// Solve a group.
     SolveGroup(usize),
     /// Rotate a vector whose frame has become known.
-    RotateVector(usize, FrameVector),
+    RotateVector(usize, FrameVector<C>),
 }
 
-impl Plan {
+impl<C: Constant> Plan<C> {
     /// Number of independent coordinates.
     pub fn actuators(&self) -> usize {
         self.angular.len()
@@ -383,12 +385,12 @@ impl Plan {
     }
 
     /// The spanning tree of joints.
-    pub fn tree(&self) -> &Tree {
+    pub fn tree(&self) -> &Tree<C> {
         &self.tree
     }
 
     /// The kinematic pairs (pins, slides and welds) that the mechanism is lowered to; those of joints come first.
-    pub fn pairs(&self) -> &[KinematicPair] {
+    pub fn pairs(&self) -> &[KinematicPair<C>] {
         &self.lowered.pairs
     }
 
@@ -411,7 +413,7 @@ impl Plan {
     }
 
     /// The derivative of a coupling with the angle of each body it names.
-    pub fn coupling_angle_derivatives<T: Scalar>(
+    pub fn coupling_angle_derivatives<T: Lift<C>>(
         &self,
         coupling: usize,
         pose: &Pose<T>,

@@ -4,7 +4,7 @@
 //! Operators report their caller's source line (`#[track_caller]`): a number type that records its operations (the
 //! mutation tests) then sees the term that uses them.
 
-use dwell_numerics::Scalar;
+use dwell_numerics::{Constant, Lift, Scalar};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
 /// A vector of the plane, or a rotation as (cos θ, sin θ).
@@ -48,16 +48,23 @@ impl Vec2<f64> {
     pub fn is_finite(self) -> bool {
         self.x.is_finite() && self.y.is_finite()
     }
+}
 
+impl<C: Constant> Vec2<C> {
     /// The same constants as another number type.
     #[inline(always)]
     #[track_caller]
-    pub fn cast<T: Scalar>(self) -> Vec2<T> {
-        vec2(T::from_f64(self.x), T::from_f64(self.y))
+    pub fn cast<T: Lift<C>>(self) -> Vec2<T> {
+        vec2(T::lift(self.x), T::lift(self.y))
     }
 }
 
 impl<T: Scalar> Vec2<T> {
+    /// The values of its components, without derivatives.
+    pub fn values(self) -> Vec2 {
+        vec2(self.x.value(), self.y.value())
+    }
+
     /// Zero, as any number type.
     #[inline(always)]
     #[track_caller]

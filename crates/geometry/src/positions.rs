@@ -13,7 +13,7 @@ use crate::structure::lower::Owner;
 use crate::structure::tree::FrameVector;
 pub(crate) use closed_forms::is_plain;
 use closed_forms::{guided_point_positions, rrr_dyad_positions};
-use dwell_numerics::{Scalar, lu};
+use dwell_numerics::{Constant, Lift, Scalar, lu};
 use std::f64::consts::TAU;
 
 /// Steps per revolution of an actuator where a branch is followed. A group's pose changes little over 3°,
@@ -33,13 +33,13 @@ pub(crate) enum InitialIterate {
     CurrentPose,
 }
 
-impl Plan {
+impl<C: Constant> Plan<C> {
     /// Computes the positions at the coordinates `q` (rad or m). The pose depends on `q` alone.
     ///
     /// # Errors
     /// [`PositionError`] when a group cannot close there, is singular, or `q` is out of range.
     #[inline(always)]
-    pub fn positions<T: Scalar>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PositionError> {
+    pub fn positions<T: Lift<C>>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PositionError> {
         if T::LANES > 1 && !self.supports_lanes() {
             return Err(PositionError::LanesDiverge { q: q[0].value() });
         }
@@ -85,7 +85,7 @@ impl Plan {
     /// Follows the straight path from the assembly to `q`: with several actuators there are no stored poses to start
     /// from.
     #[inline(never)]
-    fn positions_continued<T: Scalar>(
+    fn positions_continued<T: Lift<C>>(
         &self,
         q: &[T],
         pose: &mut Pose<T>,
@@ -131,7 +131,7 @@ impl Plan {
     }
 
     #[inline(always)]
-    pub(crate) fn positions_from<T: Scalar>(
+    pub(crate) fn positions_from<T: Lift<C>>(
         &self,
         q: &[T],
         pose: &mut Pose<T>,
@@ -141,35 +141,8 @@ impl Plan {
         self.run_steps(&self.steps, pose, initial_iterate)
     }
 
-    /// The positions at a coordinate of a plan of closed forms, and its velocities at unit velocity there, group by group: of a
-    /// large plan each group is read from memory once. `each` is called after each group, and ends all where it is false.
-    ///
-    /// # Errors
-    /// [`PositionError`] where a group cannot close.
-    pub(crate) fn unit_motion_by_groups(
-        &self,
-        q: f64,
-        pose: &mut Pose<f64>,
-        motion: &mut Motion<f64>,
-        mut each: impl FnMut(usize, &Pose<f64>, &Motion<f64>) -> bool,
-    ) -> Result<bool, PositionError> {
-        take_coordinates(&[q], pose)?;
-        self.set_actuated(&[1.0], &mut motion.velocity);
-        for (g, assur) in self.groups.iter().enumerate() {
-            self.group_positions(g, pose)?;
-            let inverse = pose.inverse_determinant[g];
-            self.group_velocities((assur, inverse), pose, &[1.0], motion);
-            if !each(g, pose, motion) {
-                return Ok(false);
-            }
-        }
-        let rest = &self.steps[self.first_step(self.groups.len())..];
-        self.run_steps(rest, pose, InitialIterate::CurrentPose)?;
-        Ok(true)
-    }
-
     /// The positions at the coordinates `q` of a group and all before it.
-    pub(crate) fn positions_up_to<T: Scalar>(
+    pub(crate) fn positions_up_to<T: Lift<C>>(
         &self,
         group: usize,
         q: &[T],
@@ -180,27 +153,6 @@ impl Plan {
         self.run_steps(steps, pose, InitialIterate::CurrentPose)
     }
 
-    /// Runs the steps after the group before, this group's solution included: at assembly, when all groups before it are
-    /// solved.
-    pub(crate) fn group_positions(
-        &self,
-        group: usize,
-        pose: &mut Pose<f64>,
-    ) -> Result<(), PositionError> {
-        let steps = &self.steps[self.first_step(group)..=self.solve_steps[group]];
-        self.run_steps(steps, pose, InitialIterate::CurrentPose)
-    }
-
-    /// Runs the steps between the group before and this one.
-    pub(crate) fn positions_before(
-        &self,
-        group: usize,
-        pose: &mut Pose<f64>,
-    ) -> Result<(), PositionError> {
-        let steps = &self.steps[self.first_step(group)..self.solve_steps[group]];
-        self.run_steps(steps, pose, InitialIterate::CurrentPose)
-    }
-
     /// The step after the group before.
     fn first_step(&self, group: usize) -> usize {
         let before = group.checked_sub(1);
@@ -208,9 +160,9 @@ impl Plan {
     }
 
     #[inline(always)]
-    fn run_steps<T: Scalar>(
+    fn run_steps<T: Lift<C>>(
         &self,
-        steps: &[Step],
+        steps: &[Step<C>],
         pose: &mut Pose<T>,
         initial_iterate: InitialIterate,
     ) -> Result<(), PositionError> {
@@ -226,7 +178,9 @@ impl Plan {
                         GroupKind::RrrDyad(dyad) => {
                             rrr_dyad_positions(dyad, &self.frame_vectors, *g, pose)?;
                         }
-                        GroupKind::GuidedPoint(guided) => guided_point_positions(guided, *g, pose)?,
+                        GroupKind::GuidedPoint(guided) => {
+                            guided_point_positions(guided, &self.frame_vectors, *g, pose)?;
+                        }
                         GroupKind::Factored(factored_group) => {
                             self.factored_positions(*g, factored_group, pose, initial_iterate)?;
                         }
@@ -309,7 +263,7 @@ impl Plan {
     /// Sets a pose from the coordinates, the angles of all frames (rad) and the travels of all slides
     /// (m), from any source. It holds no factors: states of bodies can be taken from it, but no velocities
     /// or multipliers.
-    pub fn set_coordinates<T: Scalar>(
+    pub fn set_coordinates<T: Lift<C>>(
         &self,
         q: &[T],
         angles: &[T],
@@ -336,7 +290,7 @@ impl Plan {
     }
 
     /// The joint origin of each moving body in ground axes, in their order, m.
-    pub fn joint_origins<T: Scalar>(&self, pose: &Pose<T>, joint_origins: &mut Vec<Vec2<T>>) {
+    pub fn joint_origins<T: Lift<C>>(&self, pose: &Pose<T>, joint_origins: &mut Vec<Vec2<T>>) {
         joint_origins.clear();
         for (moving_body, tree_joint) in self.moving_bodies.iter().zip(&self.tree.joints) {
             let mut joint_origin = match moving_body.parent {
@@ -352,6 +306,56 @@ impl Plan {
             }
             joint_origins.push(joint_origin);
         }
+    }
+}
+
+impl Plan {
+    /// The positions at a coordinate of a plan of closed forms, and its velocities at unit velocity there, group by group: of a
+    /// large plan each group is read from memory once. `each` is called after each group, and ends all where it is false.
+    ///
+    /// # Errors
+    /// [`PositionError`] where a group cannot close.
+    pub(crate) fn unit_motion_by_groups(
+        &self,
+        q: f64,
+        pose: &mut Pose<f64>,
+        motion: &mut Motion<f64>,
+        mut each: impl FnMut(usize, &Pose<f64>, &Motion<f64>) -> bool,
+    ) -> Result<bool, PositionError> {
+        take_coordinates(&[q], pose)?;
+        self.set_actuated(&[1.0], &mut motion.velocity);
+        for (g, assur) in self.groups.iter().enumerate() {
+            self.group_positions(g, pose)?;
+            let inverse = pose.inverse_determinant[g];
+            self.group_velocities((assur, inverse), pose, &[1.0], motion);
+            if !each(g, pose, motion) {
+                return Ok(false);
+            }
+        }
+        let rest = &self.steps[self.first_step(self.groups.len())..];
+        self.run_steps(rest, pose, InitialIterate::CurrentPose)?;
+        Ok(true)
+    }
+
+    /// Runs the steps after the group before, this group's solution included: at assembly, when all groups before it are
+    /// solved.
+    pub(crate) fn group_positions(
+        &self,
+        group: usize,
+        pose: &mut Pose<f64>,
+    ) -> Result<(), PositionError> {
+        let steps = &self.steps[self.first_step(group)..=self.solve_steps[group]];
+        self.run_steps(steps, pose, InitialIterate::CurrentPose)
+    }
+
+    /// Runs the steps between the group before and this one.
+    pub(crate) fn positions_before(
+        &self,
+        group: usize,
+        pose: &mut Pose<f64>,
+    ) -> Result<(), PositionError> {
+        let steps = &self.steps[self.first_step(group)..self.solve_steps[group]];
+        self.run_steps(steps, pose, InitialIterate::CurrentPose)
     }
 }
 

@@ -6,5 +6,6 @@
 
 mod branch;
 mod dimensions;
+mod lifted;
 
 pub use branch::ModeGuess;

@@ -4,13 +4,13 @@ use dwell_geometry::{Vec2, vec2};
 
 /// Mass properties of one body, SI. A massless link has all of them zero.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Mass {
+pub struct Mass<C = f64> {
     /// Mass, kg.
-    pub mass: f64,
+    pub mass: C,
     /// Centre of mass in the body's frame, m.
-    pub center: Vec2,
+    pub center: Vec2<C>,
     /// Moment of inertia about the centre of mass, kg m².
-    pub inertia: f64,
+    pub inertia: C,
 }
 
 impl Mass {

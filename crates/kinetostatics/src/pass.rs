@@ -18,21 +18,22 @@ pub(crate) use sources::ReactionSources;
 
 use crate::mass::Mass;
 use crate::varying_inertia::FrameInertia;
-use dwell_geometry::{Mechanism, Plan};
+use dwell_geometry::{Mechanism, Plan, Vec2};
+use dwell_numerics::{Constant, Lift, Scalar};
 use replaced_vectors::{replace_vector, vector_to};
 
 /// What a pass reads of a model: the plan, the inertia of the bodies, and where the reactions come from.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct PassModel {
-    pub(crate) plan: Plan,
-    pub(crate) inertial_bodies: Vec<InertialBody>,
+pub(crate) struct PassModel<C = f64> {
+    pub(crate) plan: Plan<C>,
+    pub(crate) inertial_bodies: Vec<InertialBody<C>>,
     /// The bodies whose origins move and that carry mass, each after the one that carries it.
-    pub(crate) accelerated_bodies: Vec<AcceleratedBody>,
+    pub(crate) accelerated_bodies: Vec<AcceleratedBody<C>>,
     /// By frame: moment of inertia of its bodies about their origins, kg m².
-    frame_inertia: Vec<f64>,
+    frame_inertia: Vec<C>,
     /// The bodies whose moment of inertia is a function of their angle; in most mechanisms none.
     pub(crate) varying_inertias: Vec<FrameInertia>,
-    pub(crate) reaction_sources: ReactionSources,
+    pub(crate) reaction_sources: ReactionSources<C>,
 }
 
 impl PassModel {
@@ -54,12 +55,46 @@ impl PassModel {
         }
     }
 
+    /// The same with dimensions (m) and masses (kg) in another type: constants of it, until
+    /// [`set_masses`](PassModel::set_masses) makes them what an evaluation depends on.
+    pub(crate) fn lifted<C: Constant + Lift<f64>>(&self) -> PassModel<C> {
+        let inertial = |body: &InertialBody| InertialBody {
+            moving_body: body.moving_body,
+            body: body.body,
+            frame: body.frame,
+            mass: C::lift(body.mass),
+            inertia: C::lift(body.inertia),
+            inertia_about_joint: C::lift(body.inertia_about_joint),
+            first_moment: body.first_moment.map(Vec2::cast),
+            fixed_origin: body.fixed_origin,
+        };
+        let accelerated = |body: &AcceleratedBody| AcceleratedBody {
+            moving_body: body.moving_body,
+            frame: body.frame,
+            parent: body.parent,
+            joint_vector: body.joint_vector,
+            slide: body.slide,
+            mass: C::lift(body.mass),
+            first_moment: body.first_moment.map(Vec2::cast),
+        };
+        PassModel {
+            plan: self.plan.lifted(),
+            inertial_bodies: self.inertial_bodies.iter().map(inertial).collect(),
+            accelerated_bodies: self.accelerated_bodies.iter().map(accelerated).collect(),
+            frame_inertia: self.frame_inertia.iter().map(|&i| C::lift(i)).collect(),
+            varying_inertias: self.varying_inertias.clone(),
+            reaction_sources: self.reaction_sources.lifted(),
+        }
+    }
+}
+
+impl<C: Constant + Scalar> PassModel<C> {
     /// Takes other masses, and the dimensions that its plan has by now; false where the structure has no place for them:
     /// for the mass of a body that had none, or for a centre of mass beside an origin.
-    pub(crate) fn set_masses(&mut self, masses: &[Mass]) -> bool {
+    pub(crate) fn set_masses(&mut self, masses: &[Mass<C>]) -> bool {
         let mut fits = true;
         let mut with_mass = 0;
-        self.frame_inertia.fill(0.0);
+        self.frame_inertia.fill(C::from_f64(0.0));
         let mut accelerated = self.accelerated_bodies.iter_mut().peekable();
         for body in &mut self.inertial_bodies {
             let Mass {
@@ -67,10 +102,10 @@ impl PassModel {
                 center,
                 inertia,
             } = masses[body.body];
-            with_mass += usize::from(mass > 0.0 || inertia > 0.0);
+            with_mass += usize::from(mass.value() > 0.0 || inertia.value() > 0.0);
             let to_center = vector_to(&self.plan, body.body, center);
             // Its inertia force has to have a place where its origin moves.
-            let mut has_place = mass == 0.0 || body.fixed_origin;
+            let mut has_place = mass.value() == 0.0 || body.fixed_origin;
             fits &= replace_vector(&mut body.first_moment, to_center * mass);
             (body.mass, body.inertia) = (mass, inertia);
             body.inertia_about_joint = inertia + mass * to_center.dot(to_center);
@@ -84,7 +119,9 @@ impl PassModel {
             }
             fits &= has_place;
         }
-        let given = masses.iter().filter(|m| m.mass > 0.0 || m.inertia > 0.0);
+        let given = masses
+            .iter()
+            .filter(|m| m.mass.value() > 0.0 || m.inertia.value() > 0.0);
         fits && given.count() == with_mass
     }
 }

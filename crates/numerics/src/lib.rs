@@ -49,5 +49,5 @@ pub use piecewise_quintic::{Checked, PiecewiseQuintic};
 pub use real::Real;
 pub use recording::{RecordedNumber, RecordingError, record, record_at};
 pub use sampled_curve::{SamplePositions, SampledCurve};
-pub use scalar::{Scalar, map_array, uniform};
+pub use scalar::{Constant, Lift, Scalar, map_array, uniform};
 pub use straight_line::{Operand, Operation, OperationKind, StraightLine};

@@ -4,7 +4,7 @@
 //! Decisions are made by values, as everywhere; they are not written down. Code that was recorded at one coordinate is
 //! therefore that of another one only where all decisions are the same: [`record`] compares recordings at several.
 
-use crate::scalar::Scalar;
+use crate::scalar::{Constant, Lift, Scalar};
 use crate::straight_line::{Operand, Operation, OperationKind as Kind, StraightLine};
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -101,7 +101,7 @@ pub fn record_at<E>(
 }
 
 /// A number of which each operation is recorded.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RecordedNumber {
     value: f64,
     operand: Operand,
@@ -150,6 +150,16 @@ fn key(operand: Operand) -> OperandKey {
         Operand::Constant(value) => (0, value.to_bits()),
         Operand::Coordinate(k) => (1, k as u64),
         Operand::Result(k) => (2, k as u64),
+    }
+}
+
+impl Constant for RecordedNumber {
+    const IS_PREPARED: bool = false;
+}
+
+impl Lift<Self> for RecordedNumber {
+    fn lift(constant: Self) -> Self {
+        constant
     }
 }
 

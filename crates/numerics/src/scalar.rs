@@ -81,3 +81,28 @@ pub fn uniform<T: Scalar>(test: impl Fn(usize) -> bool) -> Option<bool> {
         .all(|lane| test(lane) == first)
         .then_some(first)
 }
+
+/// A number that constants of an evaluation may be: the dimensions of a mechanism, its masses.
+pub trait Constant: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
+    /// Whether what follows from constants alone, such as the square of a length, is computed once and kept. It is not where
+    /// an evaluation is to depend on the constants themselves.
+    const IS_PREPARED: bool;
+}
+
+impl Constant for f64 {
+    const IS_PREPARED: bool = true;
+}
+
+/// A number type in which constants of type `C` take part: `f64` in any, recorded numbers in recorded ones.
+pub trait Lift<C: Constant>: Scalar {
+    /// The constant in this type.
+    fn lift(constant: C) -> Self;
+}
+
+impl<T: Scalar> Lift<f64> for T {
+    #[inline(always)]
+    #[track_caller]
+    fn lift(constant: f64) -> Self {
+        Self::from_f64(constant)
+    }
+}

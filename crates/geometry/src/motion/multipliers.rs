@@ -3,7 +3,7 @@
 use crate::plan::{AssurGroup, FactoredGroup, GroupKind, KnownTerms, Plan, Pose};
 use crate::plane::{Vec2, vec2};
 use crate::structure::groups::Unknown;
-use dwell_numerics::{Scalar, map_array};
+use dwell_numerics::{Constant, Scalar, map_array};
 
 /// Moments and forces that the loops must balance, and the multipliers that do, for `N` load cases side by side.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +21,7 @@ pub struct ForceBalance<T, const N: usize> {
     workspace: Vec<T>,
 }
 
-impl Plan {
+impl<C: Constant> Plan<C> {
     /// A balance with the right sizes.
     pub fn force_balance<T: Scalar, const N: usize>(&self) -> ForceBalance<T, N> {
         let zero = [T::from_f64(0.0); N];
@@ -78,7 +78,7 @@ impl Plan {
     #[inline(never)]
     fn factored_multipliers<T: Scalar, const N: usize>(
         &self,
-        assur: &AssurGroup,
+        assur: &AssurGroup<C>,
         factored_group: &FactoredGroup,
         pose: &Pose<T>,
         balance: &mut ForceBalance<T, N>,
@@ -116,7 +116,7 @@ impl Plan {
     #[inline(never)]
     fn apply_coupling_multiplier<T: Scalar, const N: usize>(
         &self,
-        assur: &AssurGroup,
+        assur: &AssurGroup<C>,
         coupling: usize,
         pose: &Pose<T>,
         balance: &mut ForceBalance<T, N>,
@@ -153,8 +153,8 @@ impl Plan {
 
 /// The moment on a whole class of a group: on its first frame and those driven from it.
 #[inline(always)]
-fn class_moment<T: Scalar, const N: usize>(
-    assur: &AssurGroup,
+fn class_moment<C, T: Scalar, const N: usize>(
+    assur: &AssurGroup<C>,
     class_frame: usize,
     moment: &[[T; N]],
 ) -> [T; N] {

@@ -2,10 +2,12 @@
 
 use crate::plan::{GuidedPoint, RrrDyad};
 use crate::plane::Vec2;
+use dwell_numerics::{Constant, Scalar};
 
-impl RrrDyad {
+impl<C: Constant + Scalar> RrrDyad<C> {
     /// Derives the constants from the two vectors that turn and from the loop's part on the ground, m.
-    pub(crate) fn set_lengths(&mut self, local: [Vec2; 2], fixed: Vec2) {
+    pub(crate) fn set_lengths(&mut self, local: [Vec2<C>; 2], fixed: Vec2<C>) {
+        let local = local.map(Vec2::values);
         let [one, two] = local.map(Vec2::norm);
         self.per_square = [
             local[0] * (1.0 / (one * one)),
@@ -18,11 +20,13 @@ impl RrrDyad {
     }
 }
 
-impl GuidedPoint {
+impl<C: Constant + Scalar> GuidedPoint<C> {
     /// Derives the constants from the direction of the line and the loop's vector in the turning frame and from the
     /// loop's part on the ground, m.
-    pub(crate) fn set_lengths(&mut self, axis: Vec2, local: Vec2, fixed: Vec2) {
+    pub(crate) fn set_lengths(&mut self, axis: Vec2<C>, local: Vec2<C>, fixed: Vec2<C>) {
         self.local = local;
+        let (axis, local) = (axis.values(), local.values());
+        self.length = local.norm();
         self.unit = if self.line_rotates {
             axis.perp()
         } else {

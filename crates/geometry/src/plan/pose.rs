@@ -2,7 +2,7 @@
 
 use crate::plan::{FactoredGroup, GroupKind, Plan};
 use crate::plane::Vec2;
-use dwell_numerics::Scalar;
+use dwell_numerics::{Constant, Lift, Scalar};
 
 /// What the computation of positions gives: the orientation of every frame and every rotated vector.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,9 +46,9 @@ impl<T: Scalar> Pose<T> {
     }
 }
 
-impl Plan {
+impl<C: Constant> Plan<C> {
     /// A pose with the right sizes, to be filled by [`Plan::positions`].
-    pub fn pose<T: Scalar>(&self) -> Pose<T> {
+    pub fn pose<T: Lift<C>>(&self) -> Pose<T> {
         let factored_group = || {
             self.groups.iter().filter_map(|g| match &g.kind {
                 GroupKind::Factored(factored_group) => Some(factored_group),

@@ -5,7 +5,7 @@ use crate::error::PositionError;
 use crate::plan::{GuidedPoint, LoopClosure, Pose, RrrDyad};
 use crate::plane::Vec2;
 use crate::structure::tree::FrameVector;
-use dwell_numerics::{Scalar, map_array};
+use dwell_numerics::{Constant, Lift, Scalar, map_array};
 
 /// Below this determinant, relative to the lengths that make it, no digit of the result is significant.
 const SINGULAR: f64 = 1e-14;
@@ -20,6 +20,12 @@ pub(crate) const fn is_finer_than_f64<T: Scalar>() -> bool {
     T::EPSILON < f64::EPSILON
 }
 
+/// Whether what follows from constants alone is computed in each evaluation: in finer numbers, and from constants that an
+/// evaluation is to depend on.
+const fn derives_constants<C: Constant, T: Scalar>() -> bool {
+    !C::IS_PREPARED || is_finer_than_f64::<T>()
+}
+
 /// Whether numbers have neither derivatives nor more digits than `f64`.
 pub(crate) const fn is_plain<T: Scalar>() -> bool {
     !T::HAS_DERIVATIVES && !is_finer_than_f64::<T>()
@@ -27,7 +33,11 @@ pub(crate) const fn is_plain<T: Scalar>() -> bool {
 
 /// A constant vector and some rotated vectors, summed.
 #[inline(always)]
-fn vector_sum<T: Scalar>(fixed: Vec2, vectors: &[(usize, usize)], vector: &[Vec2<T>]) -> Vec2<T> {
+fn vector_sum<C: Constant, T: Lift<C>>(
+    fixed: Vec2<C>,
+    vectors: &[(usize, usize)],
+    vector: &[Vec2<T>],
+) -> Vec2<T> {
     let mut sum = fixed.cast();
     for &(a, _) in vectors {
         sum += vector[a];
@@ -37,7 +47,11 @@ fn vector_sum<T: Scalar>(fixed: Vec2, vectors: &[(usize, usize)], vector: &[Vec2
 
 /// L = P₂ − P₁, the sum of the vectors and slides of a loop, m.
 #[inline]
-pub(crate) fn gap<T: Scalar>(closure: &LoopClosure, vector: &[Vec2<T>], slide: &[T]) -> Vec2<T> {
+pub(crate) fn gap<C: Constant, T: Lift<C>>(
+    closure: &LoopClosure<C>,
+    vector: &[Vec2<T>],
+    slide: &[T],
+) -> Vec2<T> {
     let mut sum = vector_sum(closure.fixed, &closure.vectors, vector);
     for &(s, a, _) in &closure.slides {
         sum += vector[a] * slide[s];
@@ -47,9 +61,9 @@ pub(crate) fn gap<T: Scalar>(closure: &LoopClosure, vector: &[Vec2<T>], slide: &
 
 /// Two vectors of known length that close a triangle with the known part D of the loop.
 #[inline(always)]
-pub(super) fn rrr_dyad_positions<T: Scalar>(
-    dyad: &RrrDyad,
-    vectors: &[FrameVector],
+pub(super) fn rrr_dyad_positions<C: Constant, T: Lift<C>>(
+    dyad: &RrrDyad<C>,
+    vectors: &[FrameVector<C>],
     group: usize,
     pose: &mut Pose<T>,
 ) -> Result<(), PositionError> {
@@ -83,11 +97,11 @@ pub(super) fn rrr_dyad_positions<T: Scalar>(
 
 /// The vectors over their squares, and (l₁ + l₂)², (l₁ − l₂)², l₂² − l₁² of their lengths.
 #[inline(always)]
-fn triangle_constants<T: Scalar>(
-    dyad: &RrrDyad,
-    vectors: &[FrameVector],
+fn triangle_constants<C: Constant, T: Lift<C>>(
+    dyad: &RrrDyad<C>,
+    vectors: &[FrameVector<C>],
 ) -> ([Vec2<T>; 2], [T; 3]) {
-    if !is_finer_than_f64::<T>() {
+    if !derives_constants::<C, T>() {
         let lengths = [
             dyad.sum_squared,
             dyad.difference_squared,
@@ -110,23 +124,35 @@ fn triangle_constants<T: Scalar>(
 #[inline(always)]
 pub(crate) fn unit<T: Scalar>(vector: Vec2<T>) -> Vec2<T> {
     if is_finer_than_f64::<T>() {
-        vector * (T::from_f64(1.0) / vector.dot(vector).sqrt())
+        normalised(vector)
     } else {
         vector
     }
 }
 
+/// The unit vector of a direction.
+#[inline(always)]
+fn normalised<T: Scalar>(vector: Vec2<T>) -> Vec2<T> {
+    vector * (T::from_f64(1.0) / vector.dot(vector).sqrt())
+}
+
 /// A unit vector e that turns — the line's normal, or the vector's direction — so that n·L = 0.
 #[inline(always)]
-pub(super) fn guided_point_positions<T: Scalar>(
-    guided: &GuidedPoint,
+pub(super) fn guided_point_positions<C: Constant, T: Lift<C>>(
+    guided: &GuidedPoint<C>,
+    vectors: &[FrameVector<C>],
     group: usize,
     pose: &mut Pose<T>,
 ) -> Result<(), PositionError> {
     let known = vector_sum(guided.fixed, &guided.known, &pose.vector);
     let branch = T::from_f64(guided.branch);
     let q = pose.first_coordinate();
-    let (constant_direction, local) = (unit(guided.unit.cast::<T>()), guided.local.cast::<T>());
+    let local = guided.local.cast::<T>();
+    let constant_direction = match (C::IS_PREPARED, guided.line_rotates) {
+        (true, _) => unit(guided.unit.cast::<T>()),
+        (false, true) => normalised(vectors[guided.axis.0].local.cast::<T>().perp()),
+        (false, false) => normalised(local),
+    };
     let (direction, slope) = if guided.line_rotates {
         // n·D = −n₀·w with n₀, w constant in the turning frame.
         let kappa = -constant_direction.dot(local);
@@ -144,10 +170,10 @@ pub(super) fn guided_point_positions<T: Scalar>(
         // n·(e |w|) = −n·D with n known.
         let along = pose.vector[guided.axis.0];
         let normal = along.perp();
-        let length = if is_finer_than_f64::<T>() {
+        let length = if derives_constants::<C, T>() {
             local.dot(local).sqrt()
         } else {
-            T::from_f64(guided.local.norm())
+            T::from_f64(guided.length)
         };
         let kappa = -normal.dot(known);
         let square = length * length;

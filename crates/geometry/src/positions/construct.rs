@@ -6,13 +6,13 @@ use crate::error::PositionError;
 use crate::plan::{FactoredGroup, LoopClosure, PlacementMethod, Plan, Pose};
 use crate::plane::Vec2;
 use crate::structure::groups::{Group, Unknown};
-use dwell_numerics::{FactorOutcome, Scalar};
+use dwell_numerics::{Constant, FactorOutcome, Lift, Scalar};
 
-impl Plan {
+impl<C: Constant> Plan<C> {
     /// The positions of a dyad of one loop in closed form.
     //
     // Long: one construction for each placement method, all from the same known part of the loop.
-    pub(crate) fn construct<T: Scalar>(
+    pub(crate) fn construct<T: Lift<C>>(
         &self,
         group: usize,
         factored_group: &FactoredGroup,
@@ -110,7 +110,7 @@ impl Plan {
 
     /// The positions of gears, from equations in which each line of centres turns with its carrier; leaves
     /// the factors of the real Jacobian in the pose.
-    pub(crate) fn gear_train_positions<T: Scalar>(
+    pub(crate) fn gear_train_positions<T: Lift<C>>(
         &self,
         group: usize,
         factored_group: &FactoredGroup,
@@ -157,8 +157,8 @@ impl Plan {
 }
 
 /// The part of a loop whose frames are picked: its vectors and its slides.
-fn partial_gap<T: Scalar>(
-    closure: &LoopClosure,
+fn partial_gap<C, T: Scalar>(
+    closure: &LoopClosure<C>,
     pose: &Pose<T>,
     pick: impl Fn(usize) -> bool,
 ) -> Vec2<T> {

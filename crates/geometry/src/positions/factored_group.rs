@@ -7,7 +7,7 @@ use crate::plan::{FactoredGroup, GroupKind, LoopClosure, PlacementMethod, Plan, 
 use crate::plane::{Vec2, vec2};
 use crate::structure::coupling::LinearForm;
 use crate::structure::groups::{Group, Unknown};
-use dwell_numerics::{FactorOutcome, Scalar, lu, qr};
+use dwell_numerics::{Constant, FactorOutcome, Lift, Scalar, lu, qr};
 use std::ops::Range;
 
 /// Newton's correction (rad, or relative to the group's size) after which its square is rounding.
@@ -109,10 +109,10 @@ impl FactoredGroup {
     }
 }
 
-impl Plan {
+impl<C: Constant> Plan<C> {
     /// Not inlined: the closed forms need few of the registers that this uses.
     #[inline(never)]
-    pub(crate) fn factored_positions<T: Scalar>(
+    pub(crate) fn factored_positions<T: Lift<C>>(
         &self,
         group: usize,
         factored_group: &FactoredGroup,
@@ -221,7 +221,7 @@ impl Plan {
     }
 
     /// Newton's method; leaves the factors of the Jacobian where it ends.
-    fn solve_by_newton<T: Scalar>(
+    fn solve_by_newton<T: Lift<C>>(
         &self,
         group: usize,
         factored_group: &FactoredGroup,
@@ -260,7 +260,7 @@ impl Plan {
     }
 
     /// Checks that redundant equations agree with the others: where they do not, the group is not closed.
-    pub(crate) fn check_redundant<T: Scalar>(
+    pub(crate) fn check_redundant<T: Lift<C>>(
         &self,
         group: usize,
         factored_group: &FactoredGroup,
@@ -282,7 +282,7 @@ impl Plan {
     }
 
     /// One step from zero, for equations that are linear in the unknowns.
-    fn solve_linear<T: Scalar>(
+    fn solve_linear<T: Lift<C>>(
         &self,
         group: usize,
         factored_group: &FactoredGroup,
@@ -307,7 +307,7 @@ impl Plan {
     }
 
     /// Newton's correction from the residual in the work space: the largest change, rad or relative.
-    pub(crate) fn apply_newton_step<T: Scalar>(
+    pub(crate) fn apply_newton_step<T: Lift<C>>(
         &self,
         group: usize,
         factored_group: &FactoredGroup,
@@ -344,7 +344,7 @@ impl Plan {
     }
 
     /// Turns a group's actuated frames and rotates the vectors of its loops, after its unknowns changed.
-    pub(crate) fn rotate_group<T: Scalar>(&self, group: usize, pose: &mut Pose<T>) {
+    pub(crate) fn rotate_group<T: Lift<C>>(&self, group: usize, pose: &mut Pose<T>) {
         let assur = &self.groups[group];
         for actuated in &assur.actuated_frames {
             rotate_frame(actuated, pose);
@@ -371,7 +371,7 @@ impl Plan {
     }
 
     /// Writes a group's residual into the work space; its largest component, m.
-    pub(crate) fn residual<T: Scalar>(&self, group: usize, pose: &mut Pose<T>) -> f64 {
+    pub(crate) fn residual<T: Lift<C>>(&self, group: usize, pose: &mut Pose<T>) -> f64 {
         let mut row = 0;
         let Group {
             loops, couplings, ..
@@ -401,7 +401,7 @@ impl Plan {
     }
 
     /// Assembles and factors a group's Jacobian at the pose.
-    pub(crate) fn factor_jacobian<T: Scalar>(
+    pub(crate) fn factor_jacobian<T: Lift<C>>(
         &self,
         group: usize,
         factored_group: &FactoredGroup,
@@ -411,7 +411,7 @@ impl Plan {
         factored_group.factor(group, pose)
     }
 
-    pub(crate) fn assemble_jacobian<T: Scalar>(
+    pub(crate) fn assemble_jacobian<T: Lift<C>>(
         &self,
         group: usize,
         factored_group: &FactoredGroup,
@@ -464,9 +464,9 @@ impl Plan {
     }
 
     /// ∂L/∂unknown of a loop L = P₂ − P₁.
-    fn gap_derivative<T: Scalar>(
+    fn gap_derivative<T: Lift<C>>(
         &self,
-        closure: &LoopClosure,
+        closure: &LoopClosure<C>,
         unknown: Unknown,
         pose: &Pose<T>,
     ) -> Vec2<T> {

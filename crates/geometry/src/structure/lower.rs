@@ -20,13 +20,13 @@ pub enum Owner {
 
 /// A pin, a slide or a weld between two bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct KinematicPair {
+pub struct KinematicPair<C = f64> {
     /// What it comes from.
     pub owner: Owner,
     /// The two bodies; an index beyond the mechanism's bodies is an added, massless one.
     pub bodies: [usize; 2],
     /// Its point on each body, in that body's frame, m.
-    pub points: [Vec2; 2],
+    pub points: [Vec2<C>; 2],
     /// Its kind.
     pub kind: PairKind,
 }
@@ -100,13 +100,13 @@ pub(crate) enum ActuatedCoordinate {
 
 /// A mechanism in pins, slides, welds and couplings.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Lowered {
+pub(crate) struct Lowered<C = f64> {
     /// Number of bodies: the mechanism's, then the added ones.
     pub(crate) bodies: usize,
     /// Number of the mechanism's bodies.
     pub(crate) mechanism_bodies: usize,
     pub(crate) ground: usize,
-    pub(crate) pairs: Vec<KinematicPair>,
+    pub(crate) pairs: Vec<KinematicPair<C>>,
     pub(crate) couplings: Vec<LoweredCoupling>,
     /// By actuator.
     pub(crate) actuated_coordinates: Vec<ActuatedCoordinate>,
@@ -126,9 +126,9 @@ impl PairKind {
     }
 }
 
-impl KinematicPair {
+impl<C: Copy> KinematicPair<C> {
     /// Its point on one of its bodies, in that body's frame, m.
-    pub(crate) fn point_on(&self, body: usize) -> Vec2 {
+    pub(crate) fn point_on(&self, body: usize) -> Vec2<C> {
         self.points[usize::from(self.bodies[0] != body)]
     }
 }

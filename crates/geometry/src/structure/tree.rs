@@ -10,21 +10,22 @@ use crate::error::StructureError;
 use crate::plane::Vec2;
 use crate::structure::frames::Frames;
 use crate::structure::lower::{ActuatedCoordinate, Lowered, PairKind};
+use dwell_numerics::{Constant, Lift, Scalar};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// A constant vector in a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FrameVector {
+pub struct FrameVector<C = f64> {
     /// The frame it turns with.
     pub frame: usize,
     /// Its components in that frame, m (or a unit direction).
-    pub local: Vec2,
+    pub local: Vec2<C>,
 }
 
 /// How a body is carried from an earlier one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TreeJoint {
+pub struct TreeJoint<C = f64> {
     /// The body; an index beyond the mechanism's bodies is an added, massless one.
     pub body: usize,
     /// The body that carries it.
@@ -32,7 +33,7 @@ pub struct TreeJoint {
     /// The pair that carries it.
     pub pair: usize,
     /// From the parent's root to the pair's point on the parent.
-    pub joint_vector: FrameVector,
+    pub joint_vector: FrameVector<C>,
     /// The slide, if the pair is one: its index and the direction, in the frame of both
     /// bodies, along which the body moves away from the parent.
     pub slide: Option<(usize, Vec2)>,
@@ -40,13 +41,13 @@ pub struct TreeJoint {
 
 /// The tree.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tree {
+pub struct Tree<C = f64> {
     /// The moving bodies, each after the one that carries it.
-    pub joints: Vec<TreeJoint>,
+    pub joints: Vec<TreeJoint<C>>,
     /// By body: its place in `carries`; none for the ground.
     pub joint_of_body: Vec<Option<usize>>,
     /// By body: its root, in its own frame, m.
-    pub joint_origins: Vec<Vec2>,
+    pub joint_origins: Vec<Vec2<C>>,
     /// The pairs outside the tree.
     pub loop_joints: Vec<usize>,
     /// By slide: its pair.
@@ -160,11 +161,6 @@ impl Tree {
         self.slide_pairs.iter().position(|&b| b == pair)
     }
 
-    /// The vector from a body's root to one of its points.
-    pub fn vector_to(&self, frames: &Frames, body: usize, point: Vec2) -> FrameVector {
-        vector_between(frames, body, self.joint_origins[body], point)
-    }
-
     /// The loop that a loop joint closes.
     pub(crate) fn loop_joint(
         &self,
@@ -225,6 +221,13 @@ impl Tree {
     }
 }
 
+impl<C: Constant + Lift<f64>> Tree<C> {
+    /// The vector from a body's root to one of its points.
+    pub fn vector_to(&self, frames: &Frames, body: usize, point: Vec2<C>) -> FrameVector<C> {
+        vector_between(frames, body, self.joint_origins[body], point)
+    }
+}
+
 /// By pair: 0 where an actuator drives it or its travel is measured, 1 a pin or a weld, 2 a slide.
 fn priorities(lowered: &Lowered) -> Vec<u8> {
     let mut pairs: Vec<[usize; 2]> = lowered
@@ -252,20 +255,26 @@ fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
 /// The vector from one point of a body to another, in its frame. What is left of two points that
 /// coincide to the rounding of their coordinates is nothing: a mechanism drawn far from the origin
 /// has the structure of the same one drawn near it.
-fn vector_between(frames: &Frames, body: usize, from: Vec2, to: Vec2) -> FrameVector {
+fn vector_between<C: Constant + Lift<f64>>(
+    frames: &Frames,
+    body: usize,
+    from: Vec2<C>,
+    to: Vec2<C>,
+) -> FrameVector<C> {
     let orientation = frames.orientations[body];
     FrameVector {
         frame: orientation.frame,
-        local: rounded_sum(to, -from).rotate(orientation.offset),
+        local: rounded_sum(to, -from).rotate(orientation.offset.cast()),
     }
 }
 
 /// A sum; nothing where it is no more than the rounding of its parts.
-fn rounded_sum(a: Vec2, b: Vec2) -> Vec2 {
+fn rounded_sum<C: Scalar>(a: Vec2<C>, b: Vec2<C>) -> Vec2<C> {
     let sum = a + b;
-    let rounding = 4.0 * f64::EPSILON * (a.norm() + b.norm());
-    if sum.norm() <= rounding {
-        Vec2::ZERO
+    let length = |vector: Vec2<C>| vector.values().norm();
+    let rounding = 4.0 * f64::EPSILON * (length(a) + length(b));
+    if length(sum) <= rounding {
+        Vec2::zero()
     } else {
         sum
     }

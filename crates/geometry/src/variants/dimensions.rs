@@ -6,6 +6,7 @@ use crate::plane::{Vec2, vec2};
 use crate::structure::frames::Frames;
 use crate::structure::lower::Lowered;
 use crate::structure::tree::{LoopJoint, Tree};
+use dwell_numerics::{Constant, Scalar};
 
 /// Vectors that are one in the structure may differ by this part of their lengths in the dimensions of a variant: by the
 /// rounding of sums.
@@ -113,13 +114,15 @@ impl Plan {
         let vectors = self.frame_vectors.len() + self.loop_closures.len() + self.tree.joints.len();
         2 * (vectors + self.tree.joint_origins.len() + 2 * self.lowered.pairs.len())
     }
+}
 
+impl<C: Constant + Scalar> Plan<C> {
     /// Takes the dimensions of another mechanism of this structure, as [`Plan::dimensions`] gives them. What the compiler
     /// found on the poses of the mechanism it compiled (range, limits, near branches, the assembly and stored poses)
     /// stays as it was.
-    pub fn set_dimensions(&mut self, dimensions: &[f64]) {
+    pub fn set_dimensions(&mut self, dimensions: &[C]) {
         let mut next = dimensions.chunks_exact(2).map(|v| vec2(v[0], v[1]));
-        let mut fill = |to: &mut Vec2| *to = next.next().unwrap_or(*to);
+        let mut fill = |to: &mut Vec2<C>| *to = next.next().unwrap_or(*to);
         for vector in &mut self.frame_vectors {
             fill(&mut vector.local);
         }
@@ -148,7 +151,7 @@ impl Plan {
                 GroupKind::GuidedPoint(guided) => {
                     let mut vectors = guided.vectors.iter();
                     let rotating = vectors.find(|(_, frame)| *frame == guided.frame);
-                    let vector = rotating.map_or(Vec2::ZERO, |&(vector, _)| local(vector));
+                    let vector = rotating.map_or(Vec2::zero(), |&(vector, _)| local(vector));
                     let fixed = self.loop_closures[guided.closure].fixed;
                     guided.set_lengths(local(guided.axis.0), vector, fixed);
                 }

@@ -7,23 +7,23 @@ use dwell_geometry::{Plan, Vec2};
 
 /// A moving body that has inertia.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct InertialBody {
+pub(crate) struct InertialBody<C = f64> {
     pub(crate) moving_body: usize,
     pub(crate) body: usize,
     pub(crate) frame: usize,
-    pub(crate) mass: f64,
+    pub(crate) mass: C,
     /// About the centre of mass, and about the body's origin, kg m².
-    pub(crate) inertia: f64,
-    pub(crate) inertia_about_joint: f64,
+    pub(crate) inertia: C,
+    pub(crate) inertia_about_joint: C,
     /// Mass times the vector from the body's origin to its centre of mass, in its frame, kg m; none if zero.
-    pub(crate) first_moment: Option<Vec2>,
+    pub(crate) first_moment: Option<Vec2<C>>,
     /// Whether its origin is fixed to the ground.
     pub(crate) fixed_origin: bool,
 }
 
 /// A body whose origin moves, with what its inertia force depends on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct AcceleratedBody {
+pub(crate) struct AcceleratedBody<C = f64> {
     pub(crate) moving_body: usize,
     pub(crate) frame: usize,
     /// The accelerated body that carries it; none where the origin of its carrier is fixed.
@@ -33,9 +33,9 @@ pub(crate) struct AcceleratedBody {
     /// The slide that carries it, and the index of its direction.
     pub(crate) slide: Option<(usize, usize)>,
     /// Of the body alone, kg.
-    pub(crate) mass: f64,
+    pub(crate) mass: C,
     /// First moment of the body about its origin, in its frame, kg m; none if zero.
-    pub(crate) first_moment: Option<Vec2>,
+    pub(crate) first_moment: Option<Vec2<C>>,
 }
 
 /// By moving body: whether its origin moves.

@@ -5,7 +5,7 @@ use super::PassModel;
 use super::acceleration::AccelerationInput;
 use crate::load::LoadState;
 use dwell_geometry::{ForceBalance, Pose, Vec2};
-use dwell_numerics::{Scalar, map_array};
+use dwell_numerics::{Constant, Lift, Scalar, map_array};
 
 /// The results of `N` passes, and their working memory.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,7 +38,7 @@ fn subtract<V: std::ops::SubAssign + Copy, const N: usize>(sum: &mut [V; N], les
 }
 
 impl<T: Scalar, const N: usize> RecursivePass<T, N> {
-    pub(crate) fn new(model: &PassModel) -> Self {
+    pub(crate) fn new<C: Constant>(model: &PassModel<C>) -> Self {
         let bodies = model.plan.moving_bodies().len();
         let accelerated = model.accelerated_bodies.len();
         let vector = [Vec2::zero(); N];
@@ -54,26 +54,30 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
     /// [`RecursivePass::evaluate`] with the loads' forces and moments on every body.
     // Not inlined, so that an evaluation without loads does not contain it.
     #[inline(never)]
-    pub(crate) fn evaluate_loaded(
+    pub(crate) fn evaluate_loaded<C: Constant>(
         &mut self,
-        model: &PassModel,
+        model: &PassModel<C>,
         pose: &Pose<T>,
         accelerations: impl AccelerationInput<T, N>,
         loads: &mut LoadState<T>,
-    ) {
+    ) where
+        T: Lift<C>,
+    {
         self.evaluate(model, pose, accelerations, Some(loads));
     }
 
     /// Inertia forces, then multipliers, then (where requested reactions need them) the forces and moments in the
     /// joints of the tree.
     #[inline(always)]
-    pub(crate) fn evaluate(
+    pub(crate) fn evaluate<C: Constant>(
         &mut self,
-        model: &PassModel,
+        model: &PassModel<C>,
         pose: &Pose<T>,
         accelerations: impl AccelerationInput<T, N>,
         mut loads: Option<&mut LoadState<T>>,
-    ) {
+    ) where
+        T: Lift<C>,
+    {
         self.forward_pass(model, pose, accelerations);
         if model.reaction_sources.needs_joint_forces {
             self.store_inertia_forces(model, pose, accelerations);
@@ -104,16 +108,18 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
     /// Accelerations of the origins, and each body's own inertia force and its moment about its
     /// origin: Σ m r×a = I α + (Σ m r)×(the origin's acceleration).
     #[inline(always)]
-    fn forward_pass(
+    fn forward_pass<C: Constant>(
         &mut self,
-        model: &PassModel,
+        model: &PassModel<C>,
         pose: &Pose<T>,
         accelerations: impl AccelerationInput<T, N>,
-    ) {
+    ) where
+        T: Lift<C>,
+    {
         let moments = self.balance.moment.iter_mut().zip(&model.frame_inertia);
         for (frame, (moment, &inertia)) in moments.enumerate() {
             let rates = accelerations.angular_acceleration(frame);
-            *moment = map_array(rates, |rate| rate * T::from_f64(inertia));
+            *moment = map_array(rates, |rate| rate * T::lift(inertia));
         }
         if !model.varying_inertias.is_empty() {
             self.add_varying_inertias(model, pose, accelerations);
@@ -133,7 +139,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
                     .vector_acceleration(accelerated.frame, along * pose.slide_travel[slide]);
                 add(&mut acceleration, more);
             }
-            let mut force = map_array(acceleration, |a| a * T::from_f64(accelerated.mass));
+            let mut force = map_array(acceleration, |a| a * T::lift(accelerated.mass));
             if let Some(first_moment) = accelerated.first_moment {
                 let first_moment = first_moment.cast().rotate(pose.rotation[accelerated.frame]);
                 let more = accelerations.vector_acceleration(accelerated.frame, first_moment);
@@ -149,9 +155,9 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
     /// Adds I α + ½ I′ ω² of the bodies whose inertia varies with their angle.
     // Not inlined, so that an evaluation without such bodies does not contain it.
     #[inline(never)]
-    fn add_varying_inertias(
+    fn add_varying_inertias<C: Constant>(
         &mut self,
-        model: &PassModel,
+        model: &PassModel<C>,
         pose: &Pose<T>,
         accelerations: impl AccelerationInput<T, N>,
     ) {
@@ -167,7 +173,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
 
     /// Carries the inertia forces down the tree: moments on the frames, forces along the slides.
     #[inline(always)]
-    fn backward_pass(&mut self, model: &PassModel, pose: &Pose<T>) {
+    fn backward_pass<C: Constant>(&mut self, model: &PassModel<C>, pose: &Pose<T>) {
         let ForceBalance {
             moment,
             slide_force,
@@ -197,7 +203,12 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
     /// those on the frames, forces from those on the slides, and (where needed) the load on each body from what
     /// its joint must exert on it. This includes bodies without mass and bodies at rest.
     #[inline(never)]
-    fn propagate_loads(&mut self, model: &PassModel, pose: &Pose<T>, loads: &mut LoadState<T>) {
+    fn propagate_loads<C: Constant>(
+        &mut self,
+        model: &PassModel<C>,
+        pose: &Pose<T>,
+        loads: &mut LoadState<T>,
+    ) {
         let moving_bodies = model.plan.moving_bodies();
         for (i, body) in moving_bodies.iter().enumerate() {
             let force = loads.force[body.body];
@@ -230,12 +241,14 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
 
     /// Stores each body's own inertia force: the first part of what its joint must exert on it.
     #[inline(always)]
-    fn store_inertia_forces(
+    fn store_inertia_forces<C: Constant>(
         &mut self,
-        model: &PassModel,
+        model: &PassModel<C>,
         pose: &Pose<T>,
         accelerations: impl AccelerationInput<T, N>,
-    ) {
+    ) where
+        T: Lift<C>,
+    {
         let needed = &model.reaction_sources.joint_force_needed;
         self.joint_forces.fill([Vec2::zero(); N]);
         for (accelerated, force) in model.accelerated_bodies.iter().zip(&self.inertia_force) {
@@ -254,7 +267,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
     /// The force that each joint of the tree exerts on the body it carries, where that is needed: the inertia
     /// forces of all bodies that it carries, less the forces of the loop joints on them.
     #[inline(always)]
-    fn accumulate_joint_forces(&mut self, model: &PassModel, pose: &Pose<T>) {
+    fn accumulate_joint_forces<C: Constant>(&mut self, model: &PassModel<C>, pose: &Pose<T>) {
         let sources = &model.reaction_sources;
         for (c, ends) in sources.loop_joint_ends.iter().enumerate() {
             for (end, sign) in ends.iter().zip([1.0, -1.0]) {
@@ -278,7 +291,12 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
 
     /// The force of a loop joint's first body on its second, in ground axes.
     #[inline(always)]
-    fn loop_joint_force(&self, model: &PassModel, pose: &Pose<T>, closure: usize) -> [Vec2<T>; N] {
+    fn loop_joint_force<C: Constant>(
+        &self,
+        model: &PassModel<C>,
+        pose: &Pose<T>,
+        closure: usize,
+    ) -> [Vec2<T>; N] {
         let multiplier = self.balance.loop_multiplier[closure];
         match model.plan.loop_closures[closure].axis {
             None => multiplier,
@@ -293,18 +311,20 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
     /// about its origin, before they are transferred.
     // Long because it is inlined whole, and each part needs the same sources.
     #[inline(always)]
-    fn accumulate_joint_moments(
+    fn accumulate_joint_moments<C: Constant>(
         &mut self,
-        model: &PassModel,
+        model: &PassModel<C>,
         pose: &Pose<T>,
         accelerations: impl AccelerationInput<T, N>,
-    ) {
+    ) where
+        T: Lift<C>,
+    {
         self.joint_moments.fill([T::from_f64(0.0); N]);
         let sources = &model.reaction_sources;
         let moving_bodies = model.plan.moving_bodies();
         let needed = &sources.joint_moment_needed;
         for body in model.inertial_bodies.iter().filter(|m| needed[m.body]) {
-            let inertia = T::from_f64(body.inertia_about_joint);
+            let inertia = T::lift(body.inertia_about_joint);
             let rates = accelerations.angular_acceleration(body.frame);
             self.joint_moments[body.body] = map_array(rates, |rate| rate * inertia);
         }
@@ -330,7 +350,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
                 if !needed[end.body] {
                     continue;
                 }
-                let turned = |arm: Vec2| arm.cast().rotate(pose.rotation[end.frame]);
+                let turned = |arm: Vec2<C>| arm.cast().rotate(pose.rotation[end.frame]);
                 let mut moment_arm = end.moment_arm.map_or(Vec2::zero(), turned);
                 if let (true, Some((axis, _))) = (sign > 0.0, model.plan.loop_closures[c].axis) {
                     // The force acts at the second body's point on both.
@@ -376,7 +396,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
 
     /// An actuator's force on its second body: the sum of the moments on the frames that it turns.
     #[inline(always)]
-    pub(crate) fn tau(&self, model: &PassModel, actuator: usize) -> [T; N] {
+    pub(crate) fn tau<C: Constant>(&self, model: &PassModel<C>, actuator: usize) -> [T; N] {
         if let Some(slide) = model.reaction_sources.actuated_slides[actuator] {
             return self.balance.slide_force[slide];
         }
@@ -418,9 +438,9 @@ impl<T: Scalar> InverseDynamics<T> {
     }
 
     /// Copies them from a pass.
-    pub(crate) fn read_from(
+    pub(crate) fn read_from<C: Constant>(
         &mut self,
-        model: &PassModel,
+        model: &PassModel<C>,
         pose: &Pose<T>,
         pass: &RecursivePass<T, 1>,
     ) {

@@ -1,19 +1,27 @@
 //! Vectors of the pass that are replaced by those of a variant.
 
 use dwell_geometry::{Plan, Vec2};
+use dwell_numerics::{Constant, Scalar};
 
 /// Replaces a vector that the structure may leave out, because it is zero in all variants; false where it is not.
-pub(super) fn replace_vector(place: &mut Option<Vec2>, value: Vec2) -> bool {
+pub(super) fn replace_vector<C: Constant + Scalar>(
+    place: &mut Option<Vec2<C>>,
+    value: Vec2<C>,
+) -> bool {
     match place {
         Some(place) => {
             *place = value;
             true
         }
-        None => value == Vec2::ZERO,
+        None => value == Vec2::zero(),
     }
 }
 
 /// The vector from a body's origin to one of its points, in its frame, m.
-pub(super) fn vector_to(plan: &Plan, body: usize, point: Vec2) -> Vec2 {
+pub(super) fn vector_to<C: Constant + Scalar>(
+    plan: &Plan<C>,
+    body: usize,
+    point: Vec2<C>,
+) -> Vec2<C> {
     plan.tree().vector_to(plan.frames(), body, point).local
 }

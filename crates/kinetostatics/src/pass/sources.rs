@@ -7,17 +7,17 @@ use dwell_geometry::frames::AngularConstraintSource;
 use dwell_geometry::lower::PairKind;
 use dwell_geometry::plan::PairRole;
 use dwell_geometry::{Component, JointKind, Mechanism, Plan, Pose, Reaction, Vec2, vec2};
-use dwell_numerics::{Scalar, map_array};
+use dwell_numerics::{Constant, Lift, Scalar, map_array};
 
 /// One end of a loop joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct LoopJointEnd {
+pub(crate) struct LoopJointEnd<C = f64> {
     pub(crate) body: usize,
     /// Its index among the moving bodies; none for the ground.
     pub(crate) moving_body: Option<usize>,
     pub(crate) frame: usize,
     /// From the body's origin to the pair's point, in its frame, m; none where they coincide.
-    pub(crate) moment_arm: Option<Vec2>,
+    pub(crate) moment_arm: Option<Vec2<C>>,
 }
 
 /// A direction along which a force is requested.
@@ -58,7 +58,7 @@ enum ReactionSource {
 
 /// The sources of the requested reactions, and the forces and couples that they depend on.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct ReactionSources {
+pub(crate) struct ReactionSources<C = f64> {
     sources: Vec<ReactionSource>,
     pub(crate) needs_joint_forces: bool,
     pub(crate) needs_joint_moments: bool,
@@ -66,7 +66,7 @@ pub(crate) struct ReactionSources {
     pub(crate) joint_force_needed: Vec<bool>,
     pub(crate) joint_moment_needed: Vec<bool>,
     /// By closure: its two ends.
-    pub(crate) loop_joint_ends: Vec<[LoopJointEnd; 2]>,
+    pub(crate) loop_joint_ends: Vec<[LoopJointEnd<C>; 2]>,
     /// By moving body: the body that carries it.
     pub(crate) parent_body: Vec<usize>,
     /// By moving body: whether it is the second body of the joint that carries it.
@@ -109,19 +109,6 @@ impl ReactionSources {
         }
         found.mark_needed(plan);
         found
-    }
-
-    /// Takes the dimensions that a plan of the same structure has by now; false where an end has a moment arm that
-    /// the structure has no place for.
-    pub(crate) fn replace_points(&mut self, plan: &Plan) -> bool {
-        let mut fits = true;
-        for (ends, closure) in self.loop_joint_ends.iter_mut().zip(&plan.loop_closures) {
-            let points = plan.pairs()[closure.pair].points;
-            for (end, point) in ends.iter_mut().zip(points) {
-                fits &= replace_vector(&mut end.moment_arm, vector_to(plan, end.body, point));
-            }
-        }
-        fits
     }
 
     /// Finds the bodies from whose forces and couples the requested ones are summed.
@@ -212,6 +199,49 @@ impl ReactionSources {
     }
 }
 
+impl<C: Constant + Scalar> ReactionSources<C> {
+    /// Takes the dimensions that a plan of the same structure has by now; false where an end has a moment arm that
+    /// the structure has no place for.
+    pub(crate) fn replace_points(&mut self, plan: &Plan<C>) -> bool {
+        let mut fits = true;
+        for (ends, closure) in self.loop_joint_ends.iter_mut().zip(&plan.loop_closures) {
+            let points = plan.pairs()[closure.pair].points;
+            for (end, point) in ends.iter_mut().zip(points) {
+                fits &= replace_vector(&mut end.moment_arm, vector_to(plan, end.body, point));
+            }
+        }
+        fits
+    }
+}
+
+impl ReactionSources {
+    /// The same with the dimensions (m) in another type.
+    pub(super) fn lifted<C: Constant + Lift<f64>>(&self) -> ReactionSources<C> {
+        let end = |end: LoopJointEnd| LoopJointEnd {
+            body: end.body,
+            moving_body: end.moving_body,
+            frame: end.frame,
+            moment_arm: end.moment_arm.map(Vec2::cast),
+        };
+        ReactionSources {
+            sources: self.sources.clone(),
+            needs_joint_forces: self.needs_joint_forces,
+            needs_joint_moments: self.needs_joint_moments,
+            joint_force_needed: self.joint_force_needed.clone(),
+            joint_moment_needed: self.joint_moment_needed.clone(),
+            loop_joint_ends: self
+                .loop_joint_ends
+                .iter()
+                .map(|ends| ends.map(end))
+                .collect(),
+            parent_body: self.parent_body.clone(),
+            child_is_second: self.child_is_second.clone(),
+            actuated_frames: self.actuated_frames.clone(),
+            actuated_slides: self.actuated_slides.clone(),
+        }
+    }
+}
+
 /// The couple in a pair that holds an angle.
 fn angular_constraint_moment(plan: &Plan, pair: usize) -> ReactionSource {
     let source = AngularConstraintSource::Pair(pair);
@@ -239,7 +269,7 @@ fn find_actuated_frames(plan: &Plan) -> Vec<Vec<(usize, f64)>> {
 impl<T: Scalar, const N: usize> RecursivePass<T, N> {
     /// The `k`th requested reaction in each pass, N or N·m.
     #[inline(always)]
-    pub(crate) fn reaction(&self, model: &PassModel, pose: &Pose<T>, k: usize) -> [T; N] {
+    pub(crate) fn reaction<C>(&self, model: &PassModel<C>, pose: &Pose<T>, k: usize) -> [T; N] {
         match model.reaction_sources.sources[k] {
             ReactionSource::Normal(closure) => {
                 map_array(self.balance.loop_multiplier[closure], |m| m.x)
