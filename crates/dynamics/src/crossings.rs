@@ -90,7 +90,7 @@ pub(crate) fn passed_soon(
     root::find(side_at, start, end)
 }
 
-/// Where the parabola through three points has its minimum, between the outer ones; none where it does not come near
+/// Where the parabola through three points has its minimum, between the outer ones; `None` if it does not come near
 /// zero, or starts from there.
 fn vertex([(t0, m0), (t1, m1), (t2, m2)]: [(f64, f64); 3]) -> Option<f64> {
     let (before, after) = ((m1 - m0) / (t1 - t0), (m2 - m1) / (t2 - t1));

@@ -65,7 +65,7 @@ impl MotionModes {
         found.is_ok()
     }
 
-    /// The number of the mode at a time (s) on a side of an event; none where there are no modes.
+    /// The number of the mode at a time (s) on a side of an event; `None` if there are no modes.
     fn number_at(&self, t: f64, side: EventSide) -> Option<usize> {
         let has_begun = |at: f64| match side {
             EventSide::Before => at < t,
@@ -90,7 +90,7 @@ impl MotionModes {
         }
     }
 
-    /// The mode at a time (s) on a side of an event; none where there are no modes.
+    /// The mode at a time (s) on a side of an event; `None` if there are no modes.
     pub(crate) fn mode_at(&self, t: f64, side: EventSide) -> Option<Mode<'_>> {
         let number = self.number_at(t, side)?;
         let pieces = self.pieces.iter().map(|changes| {

@@ -325,7 +325,7 @@ impl<'a> EnergyScan<'a> {
         Ok((q, kinetic, force * direction))
     }
 
-    /// The most steps behind the `k`-th that are one, with the point at their end; none where something may happen in the next two,
+    /// The most steps behind the `k`-th that are one, with the point at their end; `None` if something may happen in the next two,
     /// or they lead to the end of the range.
     fn uneventful_steps(
         &mut self,

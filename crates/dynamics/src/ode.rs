@@ -91,7 +91,7 @@ pub trait OdeSystem {
         false
     }
 
-    /// Where nothing switches: the variables, among [`OdeSystem::read_signals`], that must turn for a load to vary there; none where that
+    /// Where nothing switches: the variables, among [`OdeSystem::read_signals`], that must turn for a load to vary there; `None` if that
     /// is not all.
     fn followed_signals(&self) -> Option<Vec<usize>> {
         None

@@ -168,7 +168,7 @@ impl Orbit {
     }
 
     /// The first time (s), not before the start, at which the coordinate is `q` (rad or m), by (3); of a rotation
-    /// also a time before the start. None where a libration never reaches `q`.
+    /// also a time before the start. `None` if a libration never reaches `q`.
     pub fn time_at(&self, q: f64) -> Option<f64> {
         match self.kind {
             OrbitKind::Rotation(angle_per_period) => {

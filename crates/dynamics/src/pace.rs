@@ -41,7 +41,7 @@ pub(crate) struct Pace {
     steps: usize,
     /// The first load that a program computes; where switches are counted, that of the last one.
     function: Option<usize>,
-    /// Steps of a short and of a long window; none where it is not looked at.
+    /// Steps of a short and of a long window; `None` if it is not looked at.
     windows: [Option<usize>; 2],
     /// When the windows began, s.
     from: [f64; 2],

@@ -58,7 +58,7 @@ pub(crate) struct BothSides {
 }
 
 impl BothSides {
-    /// Those of a state; none where the rates of the functions are not known.
+    /// Those of a state; `None` if the rates of the functions are not known.
     pub(crate) fn at(
         sides: &[Vec<Option<f64>>; 2],
         system: &mut dyn OdeSystem,
@@ -114,7 +114,7 @@ impl<'s, 'i> SlidingSystem<'s, 'i> {
         }
     }
 
-    /// Evaluates both sides, with what they do to the switching function; none where it does not slide.
+    /// Evaluates both sides, with what they do to the switching function; `None` if it does not slide.
     ///
     /// # Errors
     /// [`DynamicsError`](crate::DynamicsError) where the state cannot be evaluated.

@@ -51,7 +51,7 @@ struct MonitoredSwitch {
     kind: SwitchKind,
     /// The switches whose pieces its value depends on: its operands', which come before it.
     inner: Vec<usize>,
-    /// The piece that is held; none where it is not.
+    /// The piece that is held; `None` if it is not.
     piece: Option<f64>,
     /// Whether the piece has held since the integration began: at its start a switch may be within a rounding.
     is_inside: bool,
@@ -62,7 +62,7 @@ struct MonitoredSwitch {
     switched: Option<f64>,
     /// Where it is not held: its piece, for how many steps, and for how many it must be.
     observed: (Option<f64>, u32),
-    /// Steps since its own pieces led back to it; none where they do not.
+    /// Steps since its own pieces led back to it; `None` if they do not.
     chatter: Option<u32>,
     patience: u32,
     /// Distances from the nearest bound at the last points of the step, the latest first.
@@ -100,7 +100,7 @@ impl Crossing {
 }
 
 impl MonitoredSwitch {
-    /// How far the value is within the bounds of the piece; negative beyond one. None where it is not watched.
+    /// How far the value is within the bounds of the piece; negative beyond one. `None` if it is not watched.
     fn margin(&self, value: f64) -> Option<f64> {
         let [low, high] = self.kind.bounds(self.piece?);
         let margin = (value - low).min(high - value);

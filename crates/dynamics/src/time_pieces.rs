@@ -21,7 +21,7 @@ const HORIZON: f64 = 1e6;
 /// What limits the steps of an integration in time.
 pub(crate) struct TimePieces<'f> {
     switches: Scan<'f>,
-    /// None where the user sets the longest step.
+    /// `None` if the user sets the longest step.
     smooth: Option<Scan<'f>>,
     /// The pieces from the present time on.
     ahead: VecDeque<Piece>,

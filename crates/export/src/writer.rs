@@ -11,7 +11,7 @@ pub(crate) struct Members<'a> {
     pub(crate) reactions: &'a [(String, &'static str)],
     pub(crate) points: &'a [String],
     pub(crate) freedoms: usize,
-    /// The unit of the inertia that may be added along the coordinate; none where there are several.
+    /// The unit of the inertia that may be added along the coordinate; `None` if there are several.
     pub(crate) inertia_unit: Option<&'static str>,
 }
 

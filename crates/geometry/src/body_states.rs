@@ -74,7 +74,7 @@ pub struct Separation<T = f64> {
     pub acceleration: Vec2<T>,
     /// The distance, m.
     pub length: T,
-    /// The unit vector from the first to the second; none where they coincide to the rounding of
+    /// The unit vector from the first to the second; `None` if they coincide to the rounding of
     /// their positions.
     pub direction: Option<Vec2<T>>,
 }

@@ -119,7 +119,7 @@ pub struct MovingBody {
     pub frame: usize,
     /// The frame of its parent.
     pub parent_frame: usize,
-    /// The rotated vector from the parent's root to the joint; none where it has no length or
+    /// The rotated vector from the parent's root to the joint; `None` if it has no length or
     /// belongs to the ground itself. (A body that slides without turning carries moments by it.)
     pub joint_vector: Option<usize>,
     /// The slide of a prismatic joint: its index, and the rotated direction of its travel.

@@ -107,7 +107,7 @@ struct NumPy {
 }
 
 impl NumPy {
-    /// None where that Python does not start or has no NumPy.
+    /// `None` if that Python does not start or has no NumPy.
     fn start(python: &str) -> Option<Self> {
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/four_bar_positions.py");
         let mut command = Command::new(python);

@@ -32,7 +32,7 @@ pub struct VariantModel {
 #[derive(Debug, Clone)]
 struct LoadedModel {
     model: Model,
-    /// The constant velocity at which the forces over the turn are wanted, rad/s; none where they are not.
+    /// The constant velocity at which the forces over the turn are wanted, rad/s; `None` if they are not.
     velocity: Option<f64>,
 }
 
@@ -47,7 +47,7 @@ pub struct TurningVariant<'a> {
 
 impl VariantModel {
     /// The variants of a model that was compiled for numbers that do not coincide by chance: whatever vector or first
-    /// moment is zero in it has to be zero in all. None where they need a compilation each: loads, varying inertias,
+    /// moment is zero in it has to be zero in all. `None` if they need a compilation each: loads, varying inertias,
     /// couplings, groups without a closed form, an actuator that does not turn fully, approximate travels.
     pub fn new(model: Model) -> Option<Self> {
         let supported = model.plan().supports_variants(model.mechanism())
@@ -63,7 +63,7 @@ impl VariantModel {
 
     /// The same variants with forces under loads: the actuator force and these reactions over a turn at a constant
     /// `velocity` (rad/s, zero for statics) become a part of [`Turn`]; without one the variants' [loaded
-    /// models](TurningVariant::loaded) alone are filled in. None where a variant needs a compilation each: friction, teeth with
+    /// models](TurningVariant::loaded) alone are filled in. `None` if a variant needs a compilation each: friction, teeth with
     /// a pressure angle, drives, loads that count the revolutions of an angle; and over the turn, magnitudes that are not
     /// constant.
     #[must_use]
@@ -92,7 +92,7 @@ impl VariantModel {
     }
 
     /// The numbers of a mechanism with these masses and loads, in SI: its dimensions, then mass, centre and moment of
-    /// inertia of each body, then those of the loads where the variants have some. None where it has another structure.
+    /// inertia of each body, then those of the loads where the variants have some. `None` if it has another structure.
     pub fn numbers(
         &self,
         mechanism: &Mechanism,

@@ -44,7 +44,7 @@ pub struct SceneWarning {
     /// The byte range of the text that it is about.
     #[label(collection)]
     pub labels: Vec<LabeledSpan>,
-    /// The text the label points into; none where the line is too long to be shown.
+    /// The text the label points into; `None` if the line is too long to be shown.
     #[source_code]
     pub text: Option<Arc<NamedSource<String>>>,
 }

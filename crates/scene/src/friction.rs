@@ -132,7 +132,7 @@ pub(crate) struct FrictionForm<'k> {
 }
 
 impl FrictionForm<'_> {
-    /// The dry friction of a joint that a table gives, and its viscous friction; none where something is wrong.
+    /// The dry friction of a joint that a table gives, and its viscous friction; `None` if something is wrong.
     pub(crate) fn read(
         &self,
         joint: JointId,

@@ -69,7 +69,7 @@ pub(crate) fn curve(
 /// How far a spline may go beyond the range of its points without a warning, as a part of that range.
 const MAX_OVERSHOOT: f64 = 0.05;
 
-/// The interpolation that a table asks for; none where it names no such one.
+/// The interpolation that a table asks for; `None` if it names no such one.
 pub(crate) fn interpolation(
     fields: &TableReader<'_>,
     absent: Interpolation,

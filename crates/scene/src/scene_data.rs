@@ -228,7 +228,7 @@ pub struct FreeMotionSpec<C = Coordinate, R = Reaction> {
     pub initial_coordinates: Vec<f64>,
     /// Speed of each actuator at the start, rad/s or m/s; of a prescribed one, that of its law.
     pub initial_velocities: Vec<f64>,
-    /// By actuator: the law it follows; none where it is free.
+    /// By actuator: the law it follows; `None` if it is free.
     pub laws: Vec<Option<Law>>,
     /// How long it lasts.
     pub duration: MotionDuration,

@@ -39,7 +39,7 @@ pub type NamedPoints<'a> = Vec<(&'a str, [f64; 3])>;
 pub struct AssembledModel<S: MachineScene> {
     /// The model.
     pub model: S::Model,
-    /// All reactions that can be asked for, each with its place among those of the model; none where redundant constraints leave it open.
+    /// All reactions that can be asked for, each with its place among those of the model; `None` if redundant constraints leave it open.
     pub reactions: Vec<(S::Reaction, Option<usize>)>,
 }
 

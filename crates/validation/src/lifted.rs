@@ -93,7 +93,7 @@ impl Plane<'_> {
         Some(Joint::new(joint.name.clone(), joint.bodies, kind, sides))
     }
 
-    /// The mechanism in space; none where a joint or the actuator has no counterpart.
+    /// The mechanism in space; `None` if a joint or the actuator has no counterpart.
     fn mechanism(&self, planar: &plane::Mechanism) -> Option<Mechanism> {
         let joints = planar.joints.iter().enumerate();
         let joints: Option<Vec<Joint>> = joints
@@ -142,7 +142,7 @@ impl Plane<'_> {
         Some((0..model.mechanism().bodies.len()).map(place).collect())
     }
 
-    /// A planar model in space; none where a joint or the actuator has no counterpart.
+    /// A planar model in space; `None` if a joint or the actuator has no counterpart.
     pub fn lift(&self, model: &Model, masses: &[dwell_kinetostatics::Mass]) -> Option<Lifted> {
         let mechanism = self.mechanism(model.mechanism())?;
         let start = model.plan().assembly_coordinates()[0];
@@ -163,7 +163,7 @@ impl Plane<'_> {
     }
 }
 
-/// A planar scene obliquely in space, with its model; none where a joint or the actuator has no counterpart, or an inertia varies.
+/// A planar scene obliquely in space, with its model; `None` if a joint or the actuator has no counterpart, or an inertia varies.
 pub fn lifted_scene(scene: &PlaneScene) -> Option<(Model, Lifted)> {
     if !scene.varying_inertias.is_empty() {
         return None;

@@ -373,7 +373,7 @@ impl DenseMechanism {
         Lu::new(part(&self.scaled_jacobian(poses), rows)).map_err(DenseError::Singular)
     }
 
-    /// The sign of the determinant of the rows that are solved; none where they are dependent, or in space some of those that repeat each
+    /// The sign of the determinant of the rows that are solved; `None` if they are dependent, or in space some of those that repeat each
     /// other, which may become dependent elsewhere.
     pub(crate) fn orientation(&self, poses: &[Pose]) -> Option<bool> {
         let in_space = matches!(self.whole(), Columns::Space(_));

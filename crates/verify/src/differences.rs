@@ -92,7 +92,7 @@ where
     tables.into_iter().map(|s| s.best).collect()
 }
 
-/// The first derivative at zero of a single value; none where no step could be taken.
+/// The first derivative at zero of a single value; `None` if no step could be taken.
 pub(crate) fn slope(
     first_step: f64,
     rounding: f64,

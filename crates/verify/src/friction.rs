@@ -70,7 +70,7 @@ pub(crate) fn coefficient_at(friction: &Friction, speed: f64) -> f64 {
     friction.coefficient * sign
 }
 
-/// The forces of all contacts; none where friction locks itself.
+/// The forces of all contacts; `None` if friction locks itself.
 pub(crate) fn contact_forces(contacts: &[Contact]) -> Option<Vec<f64>> {
     let n = contacts.len();
     let mut forces = vec![0.0_f64; n];

@@ -391,7 +391,7 @@ impl<'a> StateChecker<'a> {
         self.finding(&POWER, comparisons)
     }
 
-    /// What a joint leaves free it does not hold; none where all reactions are multipliers of rows.
+    /// What a joint leaves free it does not hold; `None` if all reactions are multipliers of rows.
     fn ideal_joints(&self) -> Option<Finding> {
         let mut comparisons = ComparisonSet::with_individual_scales();
         let is_wrench = |joint: &&DescribedJoint| joint.is_wrench;

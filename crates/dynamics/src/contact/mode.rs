@@ -109,7 +109,7 @@ pub enum ContactEvent {
         y: Vec<f64>,
         /// The load that switches, by its index; those of the drives are the last.
         load: usize,
-        /// The pieces on both sides; none where the motion leaves the switch.
+        /// The pieces on both sides; `None` if the motion leaves the switch.
         sliding: Option<Sliding>,
     },
     /// A coordinate meets its end stop, rests on it or leaves it.

@@ -64,7 +64,7 @@ impl Stop {
     }
 }
 
-/// The sides of all end stops; none where a coordinate is not free.
+/// The sides of all end stops; `None` if a coordinate is not free.
 pub(crate) fn one_sided(stops: &[EndStop], free: &[usize]) -> Option<Vec<Stop>> {
     let mut all = Vec::new();
     for (stop, one) in stops.iter().enumerate() {

@@ -35,7 +35,7 @@ pub(super) struct Impasse {
     is_slow: bool,
     /// The kinetic energy and the balance, J, before the first of the steps that fail, and after how many steps one has failed last.
     before: Option<([f64; 2], usize)>,
-    /// The length of a step that could not be evaluated and was not shortened, s; none where it is below the rounding of time.
+    /// The length of a step that could not be evaluated and was not shortened, s; `None` if it is below the rounding of time.
     pub(super) failed_step: Option<f64>,
 }
 

@@ -124,7 +124,7 @@ pub(super) struct TotalPotential {
 }
 
 impl TotalPotential {
-    /// None where no load has a potential.
+    /// `None` if no load has a potential.
     pub(super) fn new(machine: &Machine) -> Option<Self> {
         let entry = machine.model().loads().iter().enumerate();
         let loads: Vec<(usize, f64)> = entry

@@ -52,10 +52,10 @@ impl SeveralFreedomsErrors {
 pub struct SampledState {
     /// Coordinates, velocities, currents.
     pub y: Vec<f64>,
-    /// Accelerations, reactions, kinetic and potential energy, and the forces that keep the velocities; none where a loose
+    /// Accelerations, reactions, kinetic and potential energy, and the forces that keep the velocities; `None` if a loose
     /// mass matrix has no accelerations.
     pub values: Option<[Vec<f64>; 4]>,
-    /// The state after the motion of the self-test; none where it ends before.
+    /// The state after the motion of the self-test; `None` if it ends before.
     pub end: Option<Vec<f64>>,
     /// How far the code may be off from each of the values' lists, and from the end: parts of its largest value.
     pub tolerances: [f64; 5],

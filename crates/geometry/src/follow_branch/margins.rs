@@ -7,7 +7,7 @@ use crate::positions::InitialIterate;
 use dwell_numerics::Dual;
 
 impl Plan {
-    /// By group, its margin at a pose. None where its branch has ended.
+    /// By group, its margin at a pose. `None` if its branch has ended.
     pub(super) fn margins_of_pose(
         &self,
         at: &Pose<f64>,

@@ -39,7 +39,7 @@ pub(super) struct Separation {
 
 impl Plan {
     /// How far two branches of a group are apart near a coordinate `q` where its determinant is nearly zero, from poses
-    /// on the side of `anchor`, a pose at some distance from there. None where they cannot be computed.
+    /// on the side of `anchor`, a pose at some distance from there. `None` if they cannot be computed.
     pub(super) fn separation(
         &self,
         group: usize,

@@ -9,7 +9,7 @@ type Frame = (Vec2, Vec2);
 
 impl Mechanism {
     /// The distance, m, of the two points between which an actuator of a length acts, where the bodies stand at their
-    /// approximate angles: from the ground on, each is placed by a joint to one that is placed already. None where the
+    /// approximate angles: from the ground on, each is placed by a joint to one that is placed already. `None` if the
     /// angles do not place both bodies, where the points coincide, and for any other actuator.
     ///
     /// Of the other actuators the coordinates in `assembly` count, which are exact; that of the actuator itself does not.
@@ -155,7 +155,7 @@ impl Mechanism {
         angles
     }
 
-    /// From a joint's first point to its second, in the plane, where the first body has this orientation; none where the
+    /// From a joint's first point to its second, in the plane, where the first body has this orientation; `None` if the
     /// assembly does not say.
     fn guessed_gap(
         &self,

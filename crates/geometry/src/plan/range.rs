@@ -33,7 +33,7 @@ pub struct RangeLimit {
     /// a limit position, where the coordinate turns back.
     pub change_point: bool,
     /// At a change point: the half-width (rad or m) within which the two branches come close without meeting, so close
-    /// that rounding does not show which of them a motion follows. None where they meet.
+    /// that rounding does not show which of them a motion follows. `None` if they meet.
     pub separation: Option<f64>,
     /// The coupling whose table ends there, where that ends the range.
     pub table: Option<JointId>,

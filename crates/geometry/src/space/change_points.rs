@@ -52,7 +52,7 @@ impl Plan {
         self.change_points = found;
     }
 
-    /// The change point of a group between two stored poses; none where its Jacobian is not singular there.
+    /// The change point of a group between two stored poses; `None` if its Jacobian is not singular there.
     fn change_point_between(
         &self,
         (group, (from, first)): (&Group, (f64, &[f64])),

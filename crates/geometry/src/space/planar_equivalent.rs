@@ -41,7 +41,7 @@ struct View<'a> {
 }
 
 impl Plan {
-    /// The planar mechanism with the same motion in its plane; none where there is none, where the mechanism has not one actuator of a
+    /// The planar mechanism with the same motion in its plane; `None` if there is none, where the mechanism has not one actuator of a
     /// joint, or where planes are not looked for.
     pub fn planar_equivalent(&self, mechanism: &Mechanism) -> Option<PlanarEquivalent> {
         let ([actuator], true) = (&mechanism.actuators[..], self.has_planes) else {

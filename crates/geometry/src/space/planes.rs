@@ -48,7 +48,7 @@ impl Plan {
         }
     }
 
-    /// The direction about which all turns on the path of a closure are; none where there is none, or a slide is oblique to it.
+    /// The direction about which all turns on the path of a closure are; `None` if there is none, or a slide is oblique to it.
     // The axes are parallel at every pose if they are at one: nothing else turns the bodies between them.
     fn normal_of(&self, closure: &Closure, pose: &Pose) -> Option<Vec3> {
         let axis = |freedom: usize| pose.screws[freedom].axis;
@@ -66,7 +66,7 @@ impl Plan {
             .then_some(normal)
     }
 
-    /// The rows of a closure along and across the plane with this normal; none where they would not be closed at the pose.
+    /// The rows of a closure along and across the plane with this normal; `None` if they would not be closed at the pose.
     fn rows_in_plane(
         &self,
         mechanism: &Mechanism,

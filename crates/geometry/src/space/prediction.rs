@@ -84,7 +84,7 @@ impl Predictions {
         self.ends.iter().copied().zip(inverses)
     }
 
-    /// Where a coordinate within the range is; none where there is one stored pose only.
+    /// Where a coordinate within the range is; `None` if there is one stored pose only.
     #[inline(always)]
     pub(super) fn at(&self, q: f64) -> Option<PiecePoint> {
         let last = self.parts.len().checked_sub(1)?;

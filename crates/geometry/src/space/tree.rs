@@ -52,7 +52,7 @@ pub(super) enum Step {
 pub(super) struct Link {
     pub(super) body: usize,
     pub(super) parent: usize,
-    /// None where only distances hold the body.
+    /// `None` if only distances hold the body.
     pub(super) joint: Option<JointId>,
     /// −1 where the body is the joint's first: its coordinates then count backwards.
     pub(super) sign: f64,

@@ -179,7 +179,7 @@ impl Rotation<f64> {
         }
     }
 
-    /// From the rows of its matrix, made orthogonal; none where they are far from it.
+    /// From the rows of its matrix, made orthogonal; `None` if they are far from it.
     pub fn of_rows(rows: [[f64; 3]; 3]) -> Option<Self> {
         let column = |k: usize| vec3(rows[0][k], rows[1][k], rows[2][k]);
         let z = column(2).unit()?;

@@ -23,7 +23,7 @@ impl FoundVectors {
         (*known - local).norm() <= SAME_VECTOR * local.norm()
     }
 
-    /// Notes the vectors of a loop. Returns the part on the ground; none where the structure has no place for a vector.
+    /// Notes the vectors of a loop. Returns the part on the ground; `None` if the structure has no place for a vector.
     fn set_loop(&mut self, closure: &LoopClosure, found: &LoopJoint) -> Option<Vec2> {
         let mut fixed = Vec2::ZERO;
         for found in &found.vectors {
@@ -72,7 +72,7 @@ impl Tree {
 
 impl Plan {
     /// The dimensions of a mechanism of this structure, m, as [`Plan::set_dimensions`] takes them: constant vectors, parts
-    /// of loops on the ground, joint vectors, joint origins and the points of the pairs. None where the mechanism has
+    /// of loops on the ground, joint vectors, joint origins and the points of the pairs. `None` if the mechanism has
     /// another structure: other joints, axes, radii or lengths, or a vector that this structure has no place for.
     pub fn dimensions(&self, mechanism: &Mechanism) -> Option<Vec<f64>> {
         let lowered = Lowered::new(mechanism);

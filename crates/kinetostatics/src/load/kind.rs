@@ -159,7 +159,7 @@ impl LoadCoordinate for CoordinateFunction {
 
 /// A kind of load that there is in the plane or in space alone.
 pub trait SpecialKind {
-    /// What a positive force or moment of it does; none where it has no column of its own.
+    /// What a positive force or moment of it does; `None` if it has no column of its own.
     const MEANING: Option<&'static str>;
     /// Whether it is a couple.
     const IS_COUPLE: bool;

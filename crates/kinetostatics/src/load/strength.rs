@@ -41,7 +41,7 @@ pub struct StrengthWords {
     pub units: [&'static str; 2],
     /// What a load of this law is called that is a force, and one that is a couple.
     pub load: [&'static str; 2],
-    /// Why its magnitude must not be negative; none where it may.
+    /// Why its magnitude must not be negative; `None` if it may.
     pub not_negative: Option<&'static str>,
 }
 
@@ -177,7 +177,7 @@ impl Strength {
         }
     }
 
-    /// The force on the second of two points, along the line from the first; none where they coincide and it needs a direction.
+    /// The force on the second of two points, along the line from the first; `None` if they coincide and it needs a direction.
     #[inline]
     pub(crate) fn force_along_line<T: Scalar, V: LoadVector<T>>(
         self,
@@ -229,7 +229,7 @@ fn absolute<T: Scalar>(square: T) -> T {
 pub(crate) struct Line<V> {
     /// From the first to the second, m.
     pub(crate) gap: V,
-    /// Its unit vector; none where they coincide.
+    /// Its unit vector; `None` if they coincide.
     pub(crate) direction: Option<V>,
     /// The rate of the gap, m/s.
     pub(crate) velocity: V,

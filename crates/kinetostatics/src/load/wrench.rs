@@ -68,7 +68,7 @@ pub(crate) fn on_two_bodies<T: Scalar>(
 }
 
 impl CompiledLoads {
-    /// Adds the wrenches of the `i`th load, taken as of this kind and magnitude `f`; none where it has no direction.
+    /// Adds the wrenches of the `i`th load, taken as of this kind and magnitude `f`; `None` if it has no direction.
     #[inline]
     pub(super) fn add_wrenches<T: Scalar>(
         &self,
@@ -127,7 +127,7 @@ impl CompiledLoads {
         Some(())
     }
 
-    /// The wrenches of the `i`th load along a coordinate; none where it has no direction.
+    /// The wrenches of the `i`th load along a coordinate; `None` if it has no direction.
     #[inline]
     fn along<T: Scalar>(
         &self,

@@ -31,7 +31,7 @@ impl Model {
     }
 
     /// The assembly with an initial angle for each body of these pairs: nearest to its own initial guess, or else
-    /// within half a revolution of the other's; none where there is no pose.
+    /// within half a revolution of the other's; `None` if there is no pose.
     fn assembly_with_angles(&self, pairs: &[[BodyId; 2]]) -> Option<AssemblyConfiguration> {
         let mut assembly = self.assembly.clone();
         let plan = self.plan();

@@ -26,7 +26,7 @@ pub(crate) struct InertialBody {
 pub(crate) struct AcceleratedBody {
     pub(crate) moving_body: usize,
     pub(crate) frame: usize,
-    /// The accelerated body that carries it; none where the origin of its carrier is fixed.
+    /// The accelerated body that carries it; `None` if the origin of its carrier is fixed.
     pub(crate) parent: Option<usize>,
     /// The vector from its carrier's origin to its joint, with the frame that turns it.
     pub(crate) joint_vector: Option<(usize, usize)>,

@@ -16,7 +16,7 @@ pub(crate) struct LoopJointEnd {
     /// Its index among the moving bodies; none for the ground.
     pub(crate) moving_body: Option<usize>,
     pub(crate) frame: usize,
-    /// From the body's origin to the pair's point, in its frame, m; none where they coincide.
+    /// From the body's origin to the pair's point, in its frame, m; `None` if they coincide.
     pub(crate) moment_arm: Option<Vec2>,
 }
 

@@ -134,7 +134,7 @@ impl CompiledKind {
         }
     }
 
-    /// Gives the forces and couples on the bodies at magnitude `f` to `add`; none where it has no direction.
+    /// Gives the forces and couples on the bodies at magnitude `f` to `add`; `None` if it has no direction.
     #[inline]
     pub(super) fn act<T: Scalar>(
         &self,
@@ -182,7 +182,7 @@ impl CompiledKind {
     }
 }
 
-/// The forces and couples of a load along a coordinate; none where it has no direction.
+/// The forces and couples of a load along a coordinate; `None` if it has no direction.
 #[inline]
 fn act_along<T: Scalar>(
     coordinate: CoordinateFunction,

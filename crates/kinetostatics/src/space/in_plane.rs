@@ -35,7 +35,7 @@ pub(super) struct InPlaneWorkspace<T> {
 }
 
 impl InPlane {
-    /// That of a model with its reactions; none where it has none, or where the planar branch is not that of the mechanism in space over its
+    /// That of a model with its reactions; `None` if it has none, or where the planar branch is not that of the mechanism in space over its
     /// whole range.
     pub(super) fn new(of: &Model) -> Option<Self> {
         let equivalent = of.plan().planar_equivalent(of.mechanism())?;

@@ -140,7 +140,7 @@ struct Lifting<'a> {
 }
 
 impl LiftedReactions {
-    /// Those of a model whose masses are these, in the axes of the plane; none where a rod is oblique to the plane, whose force has a part
+    /// Those of a model whose masses are these, in the axes of the plane; `None` if a rod is oblique to the plane, whose force has a part
     /// along n at an arm that varies.
     pub(super) fn new(
         of: &Model,

@@ -16,7 +16,7 @@ impl Model {
         kind.potential(self.plan(), &workspace.pose, self.inner_masses())
     }
 
-    /// The response to a unit of a load, at rest; none where it has no direction.
+    /// The response to a unit of a load, at rest; `None` if it has no direction.
     pub(super) fn respond<T: Scalar>(
         &self,
         kind: &CompiledKind,
@@ -27,7 +27,7 @@ impl Model {
         self.respond_to(&[(&unit, T::from_f64(magnitude))], workspace, result)
     }
 
-    /// The response to some shapes with their magnitudes, at rest; none where one has no direction.
+    /// The response to some shapes with their magnitudes, at rest; `None` if one has no direction.
     pub(super) fn respond_to<T: Scalar>(
         &self,
         parts: &[(&CompiledKind, T)],

@@ -122,7 +122,7 @@ fn structure(load: &Load) -> Load {
 }
 
 impl CompiledLoads {
-    /// The numbers of other loads of the same structure, on a mechanism of the same structure. None where they have
+    /// The numbers of other loads of the same structure, on a mechanism of the same structure. `None` if they have
     /// another one: other bodies, directions, laws.
     pub(super) fn numbers_of(&self, mechanism: &Mechanism, loads: &[Load]) -> Option<Vec<f64>> {
         let same = |(one, other): (&Load, &Load)| structure(one) == structure(other);

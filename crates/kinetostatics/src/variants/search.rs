@@ -245,7 +245,7 @@ impl TurnSearch {
         true
     }
 
-    /// Whether the last coefficients of √m and of all curves are small; none where m is not positive.
+    /// Whether the last coefficients of √m and of all curves are small; `None` if m is not positive.
     #[inline(always)]
     fn is_resolved<S: LaneScalar>(&mut self) -> Option<bool> {
         let table = &self.tables[self.level];

@@ -29,7 +29,7 @@ pub(super) struct Run {
     pub(super) name: String,
     pub(super) is_angle: bool,
     pub(super) q: ExportedColumn,
-    /// None where the file has none: that of the paper's runs is meant.
+    /// `None` if the file has none: that of the paper's runs is meant.
     pub(super) speed: Option<ExportedColumn>,
     pub(super) acceleration: Option<ExportedColumn>,
     pub(super) force: ExportedColumn,

@@ -18,7 +18,7 @@ pub struct MotionStart {
     pub coordinates: Vec<f64>,
     /// Speeds, rad/s or m/s.
     pub velocities: Vec<f64>,
-    /// The laws of prescribed coordinates; none where it is free.
+    /// The laws of prescribed coordinates; `None` if it is free.
     pub laws: Vec<Option<Law>>,
 }
 
@@ -101,7 +101,7 @@ pub trait MachineScene: NamedScene {
     /// [`StudyError::Scene`] at the first of them.
     fn reject_unknown_columns(&self) -> Result<(), StudyError>;
 
-    /// The mechanism at values of its only coordinate, rad or m, one for each row of a page; none where it has several, or a
+    /// The mechanism at values of its only coordinate, rad or m, one for each row of a page; `None` if it has several, or a
     /// position cannot be reached.
     fn drawing_along(&self, coordinate: &[f64]) -> Option<Drawing>;
 

@@ -70,7 +70,7 @@ impl JointForces<'_> {
         self.results.written_index(Quantity::Reaction(k))
     }
 
-    /// A component along a direction; none where there is no column of it.
+    /// A component along a direction; `None` if there is no column of it.
     fn part(&self, component: Component, axis: Vec2) -> Option<ForcePart> {
         let column = self.component(component)?;
         let axis = point(axis);
@@ -141,7 +141,7 @@ fn pushing_apart(column: usize, ends: [Anchor; 2]) -> ArrowDirection {
     }
 }
 
-/// Where a load acts and where it points to; none where it is no force at one place, and of separating forces, which are drawn
+/// Where a load acts and where it points to; `None` if it is no force at one place, and of separating forces, which are drawn
 /// with the teeth.
 fn load_direction(
     scene: &PlaneScene,

@@ -70,7 +70,7 @@ pub fn unit_group(_: &str, unit: &str) -> (String, String) {
     (group.to_owned(), String::new())
 }
 
-/// The mechanism at values of the only actuator's coordinate, rad or m, one for each row of a page; none where a position cannot
+/// The mechanism at values of the only actuator's coordinate, rad or m, one for each row of a page; `None` if a position cannot
 /// be reached.
 pub fn drawing_along(scene: &PlaneScene, coordinate: &[f64]) -> Option<Drawing> {
     let model = loaded_model(scene).ok()?;

@@ -26,7 +26,7 @@ pub(crate) struct Peak {
     pub(crate) error: f64,
 }
 
-/// Where m is largest between two rows; none where a row shows it to a thousandth.
+/// Where m is largest between two rows; `None` if a row shows it to a thousandth.
 pub(crate) fn peak_between_rows(
     prepared: &dyn ReducedScene,
     curves: &ReducedCurves,

@@ -19,7 +19,7 @@ use dwell_kinetostatics::{
 };
 use dwell_scene::SceneFile;
 
-/// m and ½m′ at a coordinate (rad or m); none where there is no pose.
+/// m and ½m′ at a coordinate (rad or m); `None` if there is no pose.
 pub type InertiaAt<'a> = Box<dyn FnMut(f64) -> Option<(f64, f64)> + 'a>;
 
 /// A scene with a reduced model, in the plane or in space.

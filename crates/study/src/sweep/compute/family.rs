@@ -48,7 +48,7 @@ struct AffineNumbers {
 }
 
 impl AffineNumbers {
-    /// The function through its values at the reference and where one varied number after another is displaced; none where it
+    /// The function through its values at the reference and where one varied number after another is displaced; `None` if it
     /// is another one `elsewhere`.
     fn find(
         reference: Vec<f64>,
@@ -137,7 +137,7 @@ fn differ_in_numbers_only(one: &PlaneScene, other: &PlaneScene, has_loads: bool)
 }
 
 impl VariantFamily {
-    /// The family of a sweep; none where its variants need a compilation each: for motions, cycles and periods under
+    /// The family of a sweep; `None` if its variants need a compilation each: for motions, cycles and periods under
     /// loads, under friction, or where a varied number is a direction, say.
     pub(crate) fn new(
         scene: &PlaneScene,

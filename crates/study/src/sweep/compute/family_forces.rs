@@ -28,7 +28,7 @@ pub(crate) struct FamilyForces {
 }
 
 impl FamilyForces {
-    /// The forces among the requested quantities, of variants of which `typical` is one; none where a table depends on
+    /// The forces among the requested quantities, of variants of which `typical` is one; `None` if a table depends on
     /// points.
     pub(crate) fn new(typical: &PlaneScene, requested: &RequestedQuantities) -> Option<Self> {
         if typical.loads.iter().any(has_table_of_points) {
@@ -58,7 +58,7 @@ impl FamilyForces {
         add(self.revolution).or_else(|| add(None))
     }
 
-    /// The largest magnitudes of a variant; none where a compilation has to say why.
+    /// The largest magnitudes of a variant; `None` if a compilation has to say why.
     pub(crate) fn peaks(&self, variant: TurningVariant<'_>) -> Option<InverseDynamics<f64>> {
         let loaded = variant.loaded?;
         if let [tau, reactions @ ..] = &variant.turn.loaded_forces[..] {

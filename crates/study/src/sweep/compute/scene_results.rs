@@ -86,7 +86,7 @@ pub(super) fn compute_results<S: SweptScene>(
     }
 }
 
-/// The start of the motion of the only coordinate; none where a law prescribes it, or something drives it.
+/// The start of the motion of the only coordinate; `None` if a law prescribes it, or something drives it.
 fn start_of_free_motion(scene: &impl SweptScene) -> Option<ReducedState> {
     let start = scene.motion_start();
     let is_free = start.laws.iter().all(Option::is_none) && scene.drives().is_empty();

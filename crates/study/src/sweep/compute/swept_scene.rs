@@ -82,6 +82,6 @@ pub trait SweptScene: SimulatedScene {
     /// [`SceneError`] where a number is not there, or the scene makes no sense with it.
     fn varied(&self, values: &[(&str, f64)]) -> Result<Self, SceneError>;
 
-    /// The structure that all variants share; none where each is compiled by itself.
+    /// The structure that all variants share; `None` if each is compiled by itself.
     fn family(&self, design: &Design, requested: &RequestedQuantities) -> Option<VariantFamily>;
 }

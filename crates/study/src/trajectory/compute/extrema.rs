@@ -68,7 +68,7 @@ pub(crate) enum SamplePrecision {
     Exact,
 }
 
-/// The position at a parameter; none where it cannot be computed.
+/// The position at a parameter; `None` if it cannot be computed.
 pub(crate) type Sampler<'s> = Box<dyn FnMut(f64, SamplePrecision) -> Option<TrajectorySample> + 's>;
 
 /// A trajectory at any position.

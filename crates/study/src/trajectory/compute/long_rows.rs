@@ -36,7 +36,7 @@ pub(crate) struct LongRows {
 }
 
 impl LongRows {
-    /// Of so many positions; none where they fit into memory.
+    /// Of so many positions; `None` if they fit into memory.
     pub(crate) fn new(columns: &[Column], points: usize) -> Result<Option<Self>, StudyError> {
         let stride = (points * columns.len()).div_ceil(MAX_VALUES);
         if stride <= 1 {

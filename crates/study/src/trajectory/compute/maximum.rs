@@ -15,7 +15,7 @@ const GOLDEN: f64 = 0.381_966_011_250_105;
 pub(crate) type Point = [f64; 2];
 
 /// The highest point of a function that is known at some points, also between them: it is evaluated about its local
-/// maxima there, about those `count` whose parabolas are highest. None where no point has a value.
+/// maxima there, about those `count` whose parabolas are highest. `None` if no point has a value.
 pub(crate) fn highest_between(
     points: &[Point],
     count: usize,

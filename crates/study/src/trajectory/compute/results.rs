@@ -322,7 +322,7 @@ pub struct ComputedTrajectory<'a> {
 }
 
 impl ComputedTrajectory<'_> {
-    /// The time (s) of the last row of a free motion that the rows have ended early; none where they have not.
+    /// The time (s) of the last row of a free motion that the rows have ended early; `None` if they have not.
     pub(crate) fn end_of_rows(&self) -> Option<f64> {
         let motion = self.trajectory.free_motion()?;
         let last = self.results.len().checked_sub(1)?;

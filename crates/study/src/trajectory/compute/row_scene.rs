@@ -46,7 +46,7 @@ pub struct Measured<M: MachineModel> {
     pub(crate) name: String,
     pub(crate) is_angle: bool,
     pub(crate) meaning: String,
-    /// None where the mechanism does not have it.
+    /// `None` if the mechanism does not have it.
     pub(crate) function: Option<M::CoordinateFunction>,
 }
 

@@ -110,7 +110,7 @@ impl<'s: 'r, 'r, S: RowScene> RowSource<'s, 'r, S> {
         })
     }
 
-    /// The rows of a second computation of a motion, up to where it can be evaluated, and nothing else. None where a column cannot be
+    /// The rows of a second computation of a motion, up to where it can be evaluated, and nothing else. `None` if a column cannot be
     /// evaluated.
     pub(super) fn only_rows(&self, trajectory: &Trajectory<'_>) -> Option<Vec<Vec<f64>>> {
         let rows = &*self.scene.pruned(self.rows);

@@ -10,7 +10,7 @@ pub(crate) struct SecondRows {
 }
 
 impl SecondRows {
-    /// Along a motion, up to where it can be evaluated. None where a column cannot be evaluated.
+    /// Along a motion, up to where it can be evaluated. `None` if a column cannot be evaluated.
     pub(crate) fn new<S: RowScene>(
         source: &RowSource<'_, '_, S>,
         trajectory: &Trajectory<'_>,

@@ -93,7 +93,7 @@ fn add_searched(to: &mut Differences, start: &Start, summary: &Json) {
     }
 }
 
-/// The words for the stability of eigenvalues whose error is known; none where zero is within it.
+/// The words for the stability of eigenvalues whose error is known; `None` if zero is within it.
 fn word(values: &[Complex], error: f64) -> Option<&'static str> {
     let parts = values.iter().map(|[re, _]| *re);
     let largest = parts.fold(f64::NEG_INFINITY, f64::max);
@@ -200,7 +200,7 @@ fn holds(scene: &Table) -> bool {
     })
 }
 
-/// Coordinates, and what the loads do there; none where the loads are refused, as those in time.
+/// Coordinates, and what the loads do there; `None` if the loads are refused, as those in time.
 fn static_rows(
     program: &Program,
     start: &Start,

@@ -78,13 +78,13 @@ impl Differences {
         self.0 = std::mem::take(&mut self.0).merge(other.0);
     }
 
-    /// The finding over a domain, which says how many comparisons there were; none where there was nothing to compare.
+    /// The finding over a domain, which says how many comparisons there were; `None` if there was nothing to compare.
     pub(crate) fn counted_finding(self, spec: &FindingSpec<'_>, domain: &str) -> Option<Finding> {
         let domain = format!("{domain}, {} comparisons", self.0.count);
         self.finding(spec, &domain)
     }
 
-    /// The finding over a domain; none where there was nothing to compare.
+    /// The finding over a domain; `None` if there was nothing to compare.
     pub(crate) fn finding(self, spec: &FindingSpec<'_>, domain: &str) -> Option<Finding> {
         let is_any = self.0.count > 0 || self.0.failure.is_some();
         is_any.then(|| spec.finding(domain.to_owned(), self.0))

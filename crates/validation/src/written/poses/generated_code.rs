@@ -26,7 +26,7 @@ pub(crate) fn assignments(code: &str) -> Vec<(String, Expression)> {
     code.lines().filter_map(assignment).collect()
 }
 
-/// A term of Rust with functions in place of methods: `a.powi(2)` is `pow(a, 2)`. None where a bracket has no other.
+/// A term of Rust with functions in place of methods: `a.powi(2)` is `pow(a, 2)`. `None` if a bracket has no other.
 fn functions_of_methods(text: &str) -> Option<String> {
     const METHODS: [(&str, &str); 6] = [
         (".powi(", "pow"),

@@ -17,7 +17,7 @@ struct Page<'p> {
 }
 
 impl<'p> Page<'p> {
-    /// Reads a page; none where its coordinate is not named.
+    /// Reads a page; `None` if its coordinate is not named.
     fn read(page: &'p str) -> Option<Self> {
         let (_, rest) = page.split_once("The coordinate is $")?;
         let (coordinate, _) = rest.split_once('$')?;
