@@ -19,13 +19,13 @@ use step_buffers::StepBuffers;
 
 /// Revolutions after which a branch that neither ends nor closes is no longer followed.
 const MAX_REVOLUTIONS: u32 = 8;
-/// A branch ends at a change point where a determinant has fallen to this part of its largest value
-/// so far: its rounding is eps over that part, so any closer noise would decide which branch follows.
+/// A branch ends at a change point where a determinant has fallen to this part of its largest value so far: its
+/// rounding error is eps over that part, so that closer to the change point rounding would decide which branch follows.
 const CHANGE_POINT_DETERMINANT: f64 = 1e-6;
 /// A change point is distinguished from a limit position by the product of the determinant and its slope: to
 /// the former it falls as the determinant itself, to the latter (a square root) it stays as it is.
 const CHANGE_POINT_PRODUCT: f64 = 1e-3;
-/// Behind a limit position with a smaller product another branch may be near.
+/// Beyond a limit position with a smaller product another branch may be near.
 const NEAR_PRODUCT: f64 = 0.1;
 /// A step is taken if the tangents of all determinants stay clear of zero over so many times its
 /// length: towards a limit position, where they fall as a square root, the distance left is halved.
@@ -216,7 +216,7 @@ impl Plan {
         })
     }
 
-    /// The limit at which a branch ends soon after a pose, in a direction of the coordinate; and the branch behind it, if
+    /// The limit at which a branch ends soon after a pose, in a direction of the coordinate, and the branch beyond it, if
     /// one is near. `margin` is that of the group that ends it.
     fn limit_near(
         &self,

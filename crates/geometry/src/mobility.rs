@@ -52,7 +52,7 @@ impl Mobility {
 const RANK_TOLERANCE: f64 = 1e-8;
 /// A body or a row has a part in a null space of orthonormal vectors from here on.
 const NULL_SPACE_PART: f64 = 1e-6;
-/// The same where a position is known less precisely.
+/// The rank tolerance at a position that is known less precisely.
 const LOOSE_RANK_TOLERANCE: f64 = 1e-5;
 /// Closed: the residual relative to the size.
 const CLOSED: f64 = 1e-11;

@@ -49,7 +49,7 @@ impl Vec2<f64> {
         self.x.is_finite() && self.y.is_finite()
     }
 
-    /// The same constants as another number type.
+    /// The vector in another number type, as constants.
     #[inline(always)]
     #[track_caller]
     pub fn cast<T: Scalar>(self) -> Vec2<T> {

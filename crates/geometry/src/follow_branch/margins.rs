@@ -1,4 +1,5 @@
-//! How far each group is from where its branch ends: the size of its determinant, with its derivative by the coordinate.
+//! The margin of each group from the end of its branch: the size of its determinant, with its derivative by the
+//! coordinate.
 
 use super::step_buffers::StepBuffers;
 use crate::motion::Motion;

@@ -225,7 +225,8 @@ impl JointKind {
         self.line().filter(|_| self.rolled().is_none())
     }
 
-    /// The axis, in the first body's frame, of the line along which the second point goes; `None` if it goes along none.
+    /// The axis, in the first body's frame, of the line along which the second point moves; `None` if there is no such
+    /// line.
     pub fn line(self) -> Option<Vec2> {
         self.conditions().find_map(|condition| match condition {
             Condition::OnLine { axis, .. } | Condition::Rolled { axis, .. } => Some(axis),

@@ -15,7 +15,8 @@ pub enum Range {
     Limited(f64, f64),
     /// A driven length between two limit positions or change points, m.
     Stroke(f64, f64),
-    /// No end was found, and the pose does not repeat: a length, or gears; or there are several actuators.
+    /// No end was found, and the pose does not repeat, as with a driven length or gears, or there are several
+    /// actuators.
     Unbounded,
     /// No end was found between these coordinates, and no position is known beyond: rad or m.
     Unresolved(f64, f64),
@@ -39,8 +40,8 @@ pub struct RangeLimit {
     pub table: Option<JointId>,
 }
 
-/// Where another branch comes near this one without meeting it: within the half-width of the coordinate, the velocity
-/// ratios change from those of one branch of a change point to those of the other.
+/// A place where another branch comes near this one without meeting it. Within the half-width of the coordinate, the
+/// velocity ratios change from those of one branch of a change point to those of the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearBranch {
     /// The coordinate where they are nearest, rad or m. At a limit position it is that much beyond the range.
@@ -52,7 +53,7 @@ pub struct NearBranch {
 }
 
 impl Range {
-    /// The ends, where there are any.
+    /// The ends, rad or m, if there are any.
     pub fn limits(self) -> Option<(f64, f64)> {
         match self {
             Self::Limited(from, to) | Self::Stroke(from, to) | Self::Unresolved(from, to) => {
@@ -71,7 +72,7 @@ impl Range {
         }
     }
 
-    /// The coordinate within the range that differs from `q` by whole revolutions: the same pose.
+    /// The coordinate within the range that differs from `q` by whole revolutions; the pose is the same.
     ///
     /// # Errors
     /// [`PositionError::OutOfRange`] where there is none.

@@ -24,7 +24,7 @@ pub(crate) struct StoredPose {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct StoredPoses {
     pub(crate) poses: Vec<StoredPose>,
-    /// By unknown: what a period adds to a counted angle, rad.
+    /// By unknown: the change of a counted angle in a period, rad.
     pub(crate) gain_per_period: Vec<f64>,
 }
 

@@ -10,7 +10,8 @@ use dwell_numerics::{Scalar, map_array};
 /// Below this determinant, relative to the lengths that make it, no digit of the result is significant.
 const SINGULAR: f64 = 1e-14;
 
-/// The same for a number type. More precise ones refuse where `f64` does, since they measure its rounding.
+/// The tolerance for a number type. More precise types reject the same positions as `f64`, because they measure its
+/// rounding.
 pub(crate) const fn singular_tolerance<T: Scalar>() -> f64 {
     SINGULAR.max(32.0 * T::EPSILON)
 }

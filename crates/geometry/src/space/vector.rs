@@ -167,7 +167,7 @@ pub struct Rotation<T = f64> {
 }
 
 impl Rotation<f64> {
-    /// No rotation.
+    /// The identity.
     pub const IDENTITY: Self = Self {
         columns: Vec3::AXES,
     };
@@ -179,7 +179,7 @@ impl Rotation<f64> {
         }
     }
 
-    /// From the rows of its matrix, made orthogonal; `None` if they are far from it.
+    /// A rotation from the rows of its matrix, which are made orthonormal; `None` if they are far from orthonormal.
     pub fn of_rows(rows: [[f64; 3]; 3]) -> Option<Self> {
         let column = |k: usize| vec3(rows[0][k], rows[1][k], rows[2][k]);
         let z = column(2).unit()?;

@@ -1,4 +1,4 @@
-//! Whether a variant is assembled on the branch of the plan, and whether its actuator turns fully on it: seen from its
+//! Whether a variant is assembled on the branch of the plan, and whether its actuator turns fully on it, judged by its
 //! own poses.
 
 use crate::assembly::initial_guess::InitialGuess;

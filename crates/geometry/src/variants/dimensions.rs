@@ -11,7 +11,7 @@ use crate::structure::tree::{LoopJoint, Tree};
 /// rounding of sums.
 const SAME_VECTOR: f64 = 16.0 * f64::EPSILON;
 
-/// The constant vectors of a variant, as they are found one after another.
+/// The constant vectors of a variant, in the order in which they are found.
 struct FoundVectors {
     of_frame: Vec<Option<Vec2>>,
 }
@@ -52,7 +52,7 @@ impl FoundVectors {
 }
 
 impl Tree {
-    /// The same tree with the points of other pairs.
+    /// The tree with the points of other pairs.
     fn with_points(&self, lowered: &Lowered, frames: &Frames) -> Self {
         let mut tree = self.clone();
         let mut of_ground = lowered.pairs.iter();
@@ -116,7 +116,7 @@ impl Plan {
 
     /// Takes the dimensions of another mechanism of this structure, as [`Plan::dimensions`] gives them. What the compiler
     /// found on the poses of the mechanism it compiled (range, limits, near branches, the assembly and stored poses)
-    /// stays as it was.
+    /// is not changed.
     pub fn set_dimensions(&mut self, dimensions: &[f64]) {
         let mut next = dimensions.chunks_exact(2).map(|v| vec2(v[0], v[1]));
         let mut fill = |to: &mut Vec2| *to = next.next().unwrap_or(*to);
