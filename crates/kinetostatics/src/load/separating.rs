@@ -18,7 +18,7 @@ pub struct Mesh {
     pub bodies: [BodyId; 2],
     /// The centres of the gears, or a point of the rack's pitch line and the pinion's centre, m.
     pub points: [Vec2; 2],
-    /// Where the pitch point lies.
+    /// The pitch lines, which determine the pitch point.
     pub pitch: PitchLines,
 }
 

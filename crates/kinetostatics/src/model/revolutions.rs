@@ -7,7 +7,7 @@ use dwell_geometry::{AssemblyConfiguration, BodyId, Plan};
 use std::f64::consts::TAU;
 
 impl Model {
-    /// Compiles the plan anew if it does not count the revolutions of the bodies on whose angles the loads depend. The
+    /// Compiles the plan again if it does not count the revolutions of the bodies on whose angles the loads depend. The
     /// plan's structure depends on the mechanism alone, so the rest of the model stays valid.
     pub(crate) fn count_load_angles(&mut self) -> Result<(), LoadError> {
         let angle_pairs: Vec<Vec<[BodyId; 2]>> =

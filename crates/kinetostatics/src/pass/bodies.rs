@@ -21,7 +21,7 @@ pub(crate) struct InertialBody {
     pub(crate) fixed_origin: bool,
 }
 
-/// A body whose origin moves, with what its inertia force depends on.
+/// A body whose origin moves, with the data of its inertia force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct AcceleratedBody {
     pub(crate) moving_body: usize,

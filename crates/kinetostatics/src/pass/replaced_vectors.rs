@@ -1,8 +1,9 @@
-//! Vectors of the pass that are replaced by those of a variant.
+//! Replacement of vectors of the pass by those of a variant.
 
 use dwell_geometry::{Plan, Vec2};
 
-/// Replaces a vector that the structure may leave out, because it is zero in all variants; false where it is not.
+/// Replaces a vector that the structure may leave out, because it is zero in all variants; returns false if it is not
+/// zero.
 pub(super) fn replace_vector(place: &mut Option<Vec2>, value: Vec2) -> bool {
     match place {
         Some(place) => {

@@ -13,7 +13,7 @@ use dwell_numerics::{Scalar, map_array};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LoopJointEnd {
     pub(crate) body: usize,
-    /// Its index among the moving bodies; none for the ground.
+    /// Its index among the moving bodies; `None` for the ground.
     pub(crate) moving_body: Option<usize>,
     pub(crate) frame: usize,
     /// From the body's origin to the pair's point, in its frame, m; `None` if they coincide.
@@ -52,7 +52,7 @@ enum ReactionSource {
     AngularConstraint { body: usize, sign: f64 },
     /// The multiplier of a coupling.
     Coupling(usize),
-    /// Constrained by other pairs already: this one exerts nothing.
+    /// The pair is redundant: others already constrain its bodies, so it exerts nothing.
     Redundant,
 }
 

@@ -10,7 +10,7 @@ use dwell_geometry::space::Wrench;
 use dwell_numerics::Scalar;
 
 impl Model {
-    /// The potential energy of a unit of a load at the last pose, J; none of one that has no potential.
+    /// The potential energy of a unit of a load at the last pose, J; `None` for a load without a potential.
     pub fn potential_energy(&self, load: &LoadKind, workspace: &Workspace) -> Option<f64> {
         let kind = CompiledKind::new(load, self.mechanism(), self.plan()).ok()?;
         kind.potential(self.plan(), &workspace.pose, self.inner_masses())
