@@ -258,7 +258,7 @@ impl AuxiliaryColumns {
         })
     }
 
-    /// The index of the column of a quantity, which is added where it is not there yet.
+    /// The index of the column of a quantity; adds the column if it does not exist.
     fn column(
         &mut self,
         measured: CoordinateFunction,
