@@ -23,8 +23,8 @@ use dwell_report::{Block, Document, Files, TableFormat};
 /// Part of the reduced model that may be left open by all errors together, before the result is none.
 const USELESS: f64 = 0.05;
 
-/// The reduced parameters of two exported runs: of run i (uniform speed) and of run ii (uniform acceleration). Without an
-/// interpolation, the best for their positions.
+/// The reduced parameters of two exported runs: of run i (uniform speed) and of run ii (uniform acceleration). Without a given
+/// interpolation, the best for their positions is used.
 ///
 /// # Errors
 /// [`StudyError`]: a column is missing, the runs do not determine m or contradict each other, a trigonometric series is asked for

@@ -9,8 +9,8 @@ use dwell_geometry::body_states::BodyStates;
 use dwell_page::{Drawing, Page, PageColumn, Peak};
 use dwell_scene::PlaneScene;
 
-/// A page with the rows of a table whose first column is the axis. `group` says what belongs in one chart with a column, and
-/// what the column is.
+/// A page with the rows of a table whose first column is the axis. `group` returns the chart group of a column, and its
+/// description.
 pub fn table_page(
     page: Page,
     table: &Table,
@@ -56,7 +56,7 @@ fn row_peak(table: &Table, column: usize) -> Option<Peak> {
     })
 }
 
-/// What belongs in one chart, where only the unit tells.
+/// A chart group by the unit alone.
 pub fn unit_group(_: &str, unit: &str) -> (String, String) {
     let group = match unit {
         "rad" | "m" => "Coordinates",
