@@ -101,7 +101,7 @@ fn units(variables: &[Variable], text: &mut String) {
     *text += "  </UnitDefinitions>\n";
 }
 
-/// Causality, variability and the rest that both versions write alike, and the value at the start of what has one.
+/// Causality, variability and the other attributes that both versions share, and the start value, if there is one.
 fn properties(variable: &Variable) -> (String, String) {
     let (causality, variability, initial) = match variable.role {
         Role::Time => ("independent", "continuous", ""),

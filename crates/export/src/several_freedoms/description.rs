@@ -21,7 +21,7 @@ pub struct SeveralFreedomsDescription {
     pub reactions: Vec<(String, &'static str)>,
     /// The points whose positions are exported.
     pub points: Vec<String>,
-    /// Sentences about what the scene has and the export has not.
+    /// Sentences about the parts of the scene that are not exported.
     pub left_out: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! The matrices of `linearise` as they are written, by the names of their rows and columns.
+//! The written matrices of `linearise`, by the names of their rows and columns.
 
 use crate::written::poses::rows::Rows;
 use std::collections::BTreeMap;

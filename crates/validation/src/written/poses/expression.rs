@@ -10,7 +10,7 @@ pub(crate) enum Expression {
     Call(String, Vec<Expression>),
 }
 
-/// What stands between two operands.
+/// An operator between two operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Operator {
     Plus,
@@ -42,7 +42,7 @@ impl Expression {
         reader.rest.trim().is_empty().then_some(expression)
     }
 
-    /// Its value, with those of its names; `None` if a name or a function is unknown.
+    /// Its value for given values of its names; `None` if a name or a function is unknown.
     pub(crate) fn at(&self, names: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
         Some(match self {
             Self::Number(value) => *value,
