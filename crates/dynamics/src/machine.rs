@@ -441,8 +441,7 @@ impl<M: MovingModel> Machine<M> {
     }
 }
 
-/// The functions of time among loads (those of the drives last), inputs of drives and prescribed motions; for functions of a program, their
-/// breakpoints.
+/// The functions of time of loads (those of the drives last), inputs of drives and prescribed motions; breakpoints of a program's functions.
 fn time_features<M: MovingModel>(
     model: &M,
     drives: &[CompiledDrive<M>],

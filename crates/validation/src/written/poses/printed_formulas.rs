@@ -107,7 +107,7 @@ impl Formula<'_> {
         Some(product)
     }
 
-    /// Reads a sum up to `end`, and the text after it.
+    /// Reads a sum that `end` follows.
     fn sum_before(&mut self, end: &str) -> Option<f64> {
         let sum = self.sum()?;
         self.takes(end).then_some(sum)
