@@ -8,7 +8,7 @@ mod pieces;
 pub(crate) use load::Load;
 pub use motion::{Evaluator, MotionTerms, ReactionTerms, State};
 
-use crate::real::Real;
+use dwell_numerics::Real;
 
 /// The reason why exported code has no value. Its outputs are then zero, and a state is not changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

@@ -9,9 +9,9 @@ use crate::evaluator::Evaluator;
 use crate::fit::fit;
 use crate::machine::{FunctionSampler, LoadDescription, MachineDescription, Motor, PartKind};
 use crate::part::{Column, Part, Precision};
-use crate::real::Real;
 use crate::slopes::with_slopes;
-use crate::straight_line::StraightLine;
+use dwell_numerics::Real;
+use dwell_numerics::StraightLine;
 use measure::{measure, row};
 
 /// The requested export.

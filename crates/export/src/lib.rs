@@ -1,7 +1,7 @@
 //! Export: the reduced model of a machine of one degree of freedom as source text without dependencies.
 //!
 //! Plain data and a sampler of exact functions come in; [`Export::new`] fits cells of uneven width and measures their errors, or
-//! [`Export::exact`] uses the operations of the exact functions, [recorded](record) once. Each target then generates texts or
+//! [`Export::exact`] uses the operations of the exact functions, [recorded](dwell_numerics::record) once. Each target then generates texts or
 //! bytes: [`c_files`], [`rust_files`], [`fmu_files`], [`matlab_files`]. The [`Evaluator`] is the exported code in Rust, operation
 //! by operation. A machine of several degrees of freedom has its equations of motion in C, by [`SeveralFreedomsExport`].
 //!
@@ -51,6 +51,7 @@
 
 mod balance;
 mod c;
+mod counted;
 mod describe;
 mod error;
 mod evaluator;
@@ -61,12 +62,9 @@ mod identifiers;
 mod machine;
 mod matlab;
 mod part;
-mod real;
-mod recording;
 mod rust;
 mod several_freedoms;
 mod slopes;
-mod straight_line;
 mod template;
 mod writer;
 
@@ -82,11 +80,8 @@ pub use machine::{
 };
 pub use matlab::matlab_files;
 pub use part::{Column, Part, Precision};
-pub use real::Real;
-pub use recording::{RecordedNumber, RecordingError, record, record_at};
 pub use rust::rust_files;
 pub use several_freedoms::{
     FreeCoordinate, SampledState, SeveralFreedomsDescription, SeveralFreedomsErrors,
     SeveralFreedomsEvaluator, SeveralFreedomsExport, c_files_of_several_freedoms,
 };
-pub use straight_line::{Operand, Operation, OperationKind, StraightLine};

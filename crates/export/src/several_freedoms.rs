@@ -1,5 +1,5 @@
 //! Machines of several degrees of freedom: M q̈ + Σ h_ij q̇ᵢ q̇ⱼ = Σ w F and R = Σ a q̈ᵢ + Σ b_ij q̇ᵢ q̇ⱼ + Σ c F, with the model's own
-//! [recorded](crate::record_at) operations.
+//! [recorded](dwell_numerics::record_at) operations.
 //!
 //! Products of velocities are taken in pairs i ≤ j, in the order (0, 0), (0, 1), …, (1, 1), …; a pair has the terms of both orders.
 

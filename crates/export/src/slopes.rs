@@ -1,9 +1,9 @@
 //! Slopes of straight-line code by its coordinate, as more operations of the same code.
 
-use crate::real::Real;
-use crate::recording::{RecordedNumber, RecordingError, record};
-use crate::straight_line::StraightLine;
+use dwell_numerics::Real;
 use dwell_numerics::Scalar;
+use dwell_numerics::StraightLine;
+use dwell_numerics::{RecordedNumber, RecordingError, record};
 use std::convert::Infallible;
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -105,7 +105,7 @@ impl Real for Sloped {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::straight_line::{Operand, Operation, OperationKind as Kind};
+    use dwell_numerics::{Operand, Operation, OperationKind as Kind};
 
     #[test]
     fn slopes_are_those_of_differences() {

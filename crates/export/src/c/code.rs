@@ -3,7 +3,7 @@
 use super::{ACCESS, CWriter};
 use crate::identifiers::comment;
 use crate::part::Precision;
-use crate::straight_line::{Operand, Operation, OperationKind, StraightLine};
+use dwell_numerics::{Operand, Operation, OperationKind, StraightLine};
 use std::fmt::Write as _;
 
 /// The note on calls and memory of the operations of a model.

@@ -4,7 +4,7 @@ use super::{CWriter, tables};
 use crate::export::Export;
 use crate::machine::PartKind;
 use crate::part::{CURVE, Column, HEAD, Wrapping};
-use crate::straight_line::StraightLine;
+use dwell_numerics::StraightLine;
 use std::fmt::Write as _;
 
 const PLACE: &str = "\

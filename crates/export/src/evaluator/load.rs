@@ -1,7 +1,7 @@
 //! The effect of a load at a state, with the value of its parameter or input in the scene.
 
 use crate::machine::{LoadDescription, LoadEffect, Resistance};
-use crate::real::Real;
+use dwell_numerics::Real;
 
 /// A load in one kind of number.
 #[derive(Debug, Clone)]

@@ -4,8 +4,8 @@ use super::pieces::{Functions, Pieces, Range};
 use super::{Load, Status, runge_kutta};
 use crate::machine::{MachineDescription, PartKind};
 use crate::part::{Part, Precision, Wrapping};
-use crate::real::Real;
-use crate::straight_line::StraightLine;
+use dwell_numerics::Real;
+use dwell_numerics::StraightLine;
 
 /// The terms of the equation of motion at a coordinate.
 #[derive(Debug, Clone, PartialEq)]

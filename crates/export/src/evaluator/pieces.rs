@@ -3,8 +3,8 @@
 use super::Status;
 use crate::machine::Domain;
 use crate::part::{CURVE, Column, HEAD, Part, Precision, TERMS, Wrapping};
-use crate::real::Real;
-use crate::straight_line::StraightLine;
+use dwell_numerics::Real;
+use dwell_numerics::StraightLine;
 
 /// The source of the functions of a part. Their values are value and half slope of each curve, the columns, then the slopes
 /// of the columns of motion (zero for a column that moves no rotor).

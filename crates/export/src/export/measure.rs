@@ -1,11 +1,12 @@
 //! The measured properties of an export: errors, operations and the error of its step, measured before it is written.
 
 use super::Export;
+use crate::counted::Counted;
 use crate::evaluator::{Evaluator, MotionTerms, ReactionTerms};
 use crate::fit::sample_values;
 use crate::machine::{FunctionSampler, LoadEffect, MachineDescription, PartKind};
 use crate::part::Precision;
-use crate::real::{Counted, Real};
+use dwell_numerics::Real;
 
 /// Positions at which the errors are measured, steps of the golden section over the domain.
 const POSITIONS: usize = 4096;

@@ -2,8 +2,8 @@
 
 use super::description::SeveralFreedomsDescription;
 use crate::evaluator::{Load, Status, runge_kutta};
-use crate::real::Real;
-use crate::straight_line::StraightLine;
+use dwell_numerics::Real;
+use dwell_numerics::StraightLine;
 
 /// The exported code in one kind of number, with the parameters and inputs of the scene.
 #[derive(Debug, Clone)]

@@ -3,7 +3,7 @@
 use super::description::SeveralFreedomsDescription;
 use super::measure::{SampledState, SeveralFreedomsErrors, measure};
 use crate::part::Precision;
-use crate::straight_line::{Operand, StraightLine};
+use dwell_numerics::{Operand, StraightLine};
 
 /// An export of several degrees of freedom, ready to be written.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,8 +2,8 @@
 
 use super::description::{FreeCoordinate, SeveralFreedomsDescription};
 use super::evaluator::SeveralFreedomsEvaluator;
-use crate::real::Real;
-use crate::straight_line::StraightLine;
+use dwell_numerics::Real;
+use dwell_numerics::StraightLine;
 
 /// States of the self-test.
 const STATES: usize = 3;

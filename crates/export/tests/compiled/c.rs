@@ -57,7 +57,7 @@ fn printed(export: &Export, compiler: &str, extra: &[&str]) -> Vec<Vec<f64>> {
 }
 
 /// The output by the evaluator in Rust, in its own number type.
-pub(crate) fn evaluated<R: dwell_export::Real>(export: &Export) -> Vec<Vec<f64>> {
+pub(crate) fn evaluated<R: dwell_numerics::Real>(export: &Export) -> Vec<Vec<f64>> {
     let twin = Evaluator::<R>::new(&export.machine, &export.parts, export.request.precision);
     let mut lines = Vec::new();
     for i in -200..=400 {

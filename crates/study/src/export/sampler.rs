@@ -3,11 +3,9 @@
 
 use super::description::ExportedScene;
 use dwell_dynamics::DynamicsError;
-use dwell_export::{
-    Function, FunctionSampler, PartKind, RecordedNumber, RecordingError, StraightLine, record,
-};
+use dwell_export::{Function, FunctionSampler, PartKind};
 use dwell_kinetostatics::{Coefficients, InverseDynamics, Workspace};
-use dwell_numerics::Scalar;
+use dwell_numerics::{RecordedNumber, RecordingError, Scalar, StraightLine, record};
 
 /// Parts of the domain at which the operations are recorded: they must be the same.
 const RECORDED_AT: [f64; 4] = [0.137, 0.412, 0.659, 0.921];

@@ -8,15 +8,12 @@ use crate::explain::{StudyError, actuator_labels, explain_motion, scene_error};
 use crate::machines::MachineScene as _;
 use crate::number_format::count;
 use dwell_dynamics::DynamicsError;
-use dwell_export::{
-    FreeCoordinate, Precision, RecordedNumber, RecordingError, SeveralFreedomsDescription,
-    SeveralFreedomsExport, StraightLine, record_at,
-};
+use dwell_export::{FreeCoordinate, Precision, SeveralFreedomsDescription, SeveralFreedomsExport};
 use dwell_geometry::ActuatorId;
 use dwell_kinetostatics::{
     InverseDynamics, Load, LoadShape as _, MachineModel as _, Model, Strength,
 };
-use dwell_numerics::Scalar;
+use dwell_numerics::{RecordedNumber, RecordingError, Scalar, StraightLine, record_at};
 use dwell_scene::{PlaneScene, SceneLocation};
 
 /// Positions at which the operations are compared with the model, and how many of them record the operations.

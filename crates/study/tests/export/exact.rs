@@ -2,7 +2,8 @@
 
 use super::cases::REFUSED;
 use super::toolchain::{Scratch, c_compiler, case, cases, compile, request, run};
-use dwell_export::{OperationKind, Precision, c_files};
+use dwell_export::{Precision, c_files};
+use dwell_numerics::OperationKind;
 use dwell_scene::PlaneScene;
 use dwell_study::{ExportRequest, compute_export};
 

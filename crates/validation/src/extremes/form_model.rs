@@ -3,7 +3,7 @@
 use super::forms::{Evaluated, Form};
 use super::mechanisms::scene;
 use crate::lifted::{Plane, tilt};
-use dwell_export::{Domain, Evaluator as ExportedCode, Precision, Real, Request};
+use dwell_export::{Domain, Evaluator as ExportedCode, Precision, Request};
 use dwell_geometry::space::{Placement, Vec3};
 use dwell_geometry::{Component, PositionError, Range, Reaction};
 use dwell_kinetostatics::space::{
@@ -12,7 +12,7 @@ use dwell_kinetostatics::space::{
 use dwell_kinetostatics::{
     Coefficients, ExactModel, Inertia, ReducedModel, ReducibleModel, TableDomain, TabulatedModel,
 };
-use dwell_numerics::{DoubleDouble, Scalar};
+use dwell_numerics::{DoubleDouble, Real, Scalar};
 use dwell_scene::PlaneScene;
 use dwell_study::models::{compile_model, reduced_model};
 use dwell_study::{ExportRequest, compute_export, estimate};

@@ -55,10 +55,6 @@ pub(crate) trait ChartedProblem: MotionProblem<Scene: RowScene> + Sync {
     /// A chart.
     type Chart: Send + Sync;
 
-    /// Whether points of a quadrature and steps in the search for extrema are as few as the accuracy allows; otherwise the quadrature
-    /// resolves the motion, and every step counts.
-    const IS_THINNED: bool;
-
     /// The motion over a duration, s.
     ///
     /// # Errors

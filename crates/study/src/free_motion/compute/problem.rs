@@ -163,8 +163,6 @@ impl<'a> FreeMotionProblem<'a> {
 impl ChartedProblem for FreeMotionProblem<'_> {
     type Chart = Chart;
 
-    const IS_THINNED: bool = true;
-
     fn by_method(&self, duration: f64, options: &Options) -> Result<SegmentedMotion, StudyError> {
         self.solve(duration, options)
     }

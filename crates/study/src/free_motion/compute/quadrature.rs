@@ -63,10 +63,7 @@ pub(super) fn by_quadrature<P: ChartedProblem>(
         sample_interval,
         delay,
     };
-    let found = match P::IS_THINNED {
-        true => quadrature.by_fewest_points()?,
-        false => quadrature.compared([&exact; 2])?,
-    };
+    let found = quadrature.by_fewest_points()?;
     let (difference, points) = (found.difference, found.points);
     let how = format!("quadrature (conservative, periodic motion), {points} quadrature points");
     let (remarks, record) = difference.remarks(accuracy, &how);

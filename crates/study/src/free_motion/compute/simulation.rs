@@ -201,11 +201,7 @@ pub(crate) fn simulated<P: ChartedProblem, R>(
         return Err(problem.explain(error));
     }
     let method_text = &integrated.method_text;
-    let max_skipped = if P::IS_THINNED {
-        max_skipped(solver)
-    } else {
-        0
-    };
+    let max_skipped = max_skipped(solver);
     let (followed, steps) = rayon::join(
         || trajectory(problem, (motion, evaluated), method_text, times),
         || problem.steps_as_samples(motion, max_skipped),

@@ -82,8 +82,6 @@ impl SpaceMotionProblem<'_> {
 impl ChartedProblem for SpaceMotionProblem<'_> {
     type Chart = SpaceMotionProblem<'static>;
 
-    const IS_THINNED: bool = false;
-
     fn by_method(&self, duration: f64, options: &Options) -> Result<Motion, StudyError> {
         let motion = self.through_charts(options, duration);
         motion.map_err(|error| self.explain(&error))

@@ -72,7 +72,7 @@ pub struct StraightLine {
 
 impl StraightLine {
     /// This code without operations that no output needs.
-    pub(crate) fn without_unused(self) -> Self {
+    pub fn without_unused(self) -> Self {
         let mut needed = vec![false; self.operations.len()];
         let mark = |operand: &Operand, needed: &mut Vec<bool>| {
             if let Operand::Result(k) = operand {
@@ -129,13 +129,13 @@ impl StraightLine {
     }
 
     /// The operands of its operations, and its outputs.
-    pub(crate) fn operands(&self) -> impl Iterator<Item = Operand> + '_ {
+    pub fn operands(&self) -> impl Iterator<Item = Operand> + '_ {
         let used = self.operations.iter().flat_map(|o| o.operands);
         used.chain(self.outputs.iter().copied())
     }
 
     /// All constants.
-    pub(crate) fn constants(&self) -> impl Iterator<Item = f64> + '_ {
+    pub fn constants(&self) -> impl Iterator<Item = f64> + '_ {
         self.operands().filter_map(|operand| match operand {
             Operand::Constant(value) => Some(value),
             Operand::Coordinate(_) | Operand::Result(_) => None,

@@ -4,8 +4,8 @@
 //! Decisions depend on values, as usual, and are not recorded. Therefore code recorded at one coordinate is valid at
 //! another one only if all decisions are the same: [`record`] compares recordings at several.
 
+use crate::scalar::Scalar;
 use crate::straight_line::{Operand, Operation, OperationKind as Kind, StraightLine};
-use dwell_numerics::Scalar;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
