@@ -6,7 +6,7 @@
 //! ```
 //!
 //! (Hairer, Nørsett and Wanner 1993, eq. II.10.17.) diffsol's explicit methods have at most 8 stages and one error
-//! formula, so this one has a step loop of its own, behind the same `integrate` and with the same observers. A failed
+//! formula, so this method has its own step loop, which `integrate` calls with the same observers. A failed
 //! evaluation shortens the step, and ends the motion if no step is short enough. Three more stages are evaluated if
 //! dense output is needed within a step.
 

@@ -11,7 +11,7 @@ use dwell_numerics::Scalar;
 pub struct DriveError {
     /// Index of the drive.
     pub drive: usize,
-    /// What is wrong with it.
+    /// The fault.
     pub what: &'static str,
 }
 

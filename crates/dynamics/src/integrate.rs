@@ -200,7 +200,7 @@ fn integrate_held(
     parts.whole.ok_or(DynamicsError::DurationTooShort)
 }
 
-/// What ends an integration on held pieces.
+/// The event that ends an integration on held pieces.
 enum HeldEvent {
     /// Switches of loads are passed.
     Switch(Crossing),

@@ -24,8 +24,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Highest number of improvements of the turning points.
 const MAX_REFINEMENTS: usize = 60;
-/// Samples at which the work of the force is compared with the potential, and by what part of the largest difference of potentials, or so many
-/// times the last coefficients of the force, it may differ.
+/// Samples at which the work of the force is compared with the potential, and the allowed difference, relative to the largest difference of
+/// potentials, or as a multiple of the last coefficients of the force.
 const COMPARED_WORKS: usize = 16;
 const WORK_ERROR: f64 = 1e-6;
 const LEFT_OUT: f64 = 100.0;

@@ -178,7 +178,7 @@ impl StateSwitches {
         first.map(|(_, hidden)| hidden)
     }
 
-    /// Holds one piece for each function, or none: `set` gets the load's index and its pieces.
+    /// Holds one piece for each function, or `None`: `set` gets the load's index and its pieces.
     pub(crate) fn hold(
         &self,
         mut pieces: &[Option<f64>],

@@ -13,7 +13,7 @@ pub struct MachineDescription {
     pub version: String,
     /// The name of its coordinate.
     pub coordinate: String,
-    /// Whether the coordinate is an angle (rad), else a length (m).
+    /// Whether the coordinate is an angle (rad); otherwise it is a length (m).
     pub is_angle: bool,
     /// The interval of the coordinate.
     pub domain: Domain,

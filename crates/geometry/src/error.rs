@@ -82,7 +82,7 @@ pub enum AssemblyError {
     /// Redundant joints are inconsistent.
     #[error("redundant joints are inconsistent: a gap of {gap:.3e} m remains")]
     Inconsistent {
-        /// Those joints.
+        /// The redundant joints.
         joints: Vec<JointId>,
         /// How many constraints are too many.
         redundant_count: usize,

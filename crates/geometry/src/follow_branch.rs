@@ -27,8 +27,8 @@ const CHANGE_POINT_DETERMINANT: f64 = 1e-6;
 const CHANGE_POINT_PRODUCT: f64 = 1e-3;
 /// Beyond a limit position with a smaller product another branch may be near.
 const NEAR_PRODUCT: f64 = 0.1;
-/// A step is taken if the tangents of all determinants stay clear of zero over so many times its
-/// length: towards a limit position, where they fall as a square root, the distance left is halved.
+/// A step is taken if the tangents of all determinants stay clear of zero over this multiple of its length: towards a
+/// limit position, where they fall as a square root, the distance left is halved.
 const TANGENT_CLEARANCE: f64 = 4.0;
 /// Two poses are one if they differ by less: rad, or of the lengths of a group.
 const SAME_POSE: f64 = 1e-6;
@@ -272,7 +272,7 @@ impl Plan {
         found.iter().all(is_clear).then_some(found)
     }
 
-    /// The pose at `q` near another one, if every correction is small beside its prediction.
+    /// The pose at `q` near another one, if every correction is small relative to its prediction.
     fn corrected_pose(&self, from: &Pose<f64>, q: f64) -> Option<Pose<f64>> {
         let mut pose = from.clone();
         if self.is_explicit() {

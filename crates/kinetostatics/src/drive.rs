@@ -49,7 +49,7 @@ impl Drive {
 pub enum DriveKind<C = Coordinate> {
     /// A given couple or force on the coordinate, N·m or N.
     AppliedForce(Magnitude<C>),
-    /// A direct-current motor behind a gear.
+    /// A direct-current motor with a gear.
     Motor(Motor<C>),
     /// A proportional-integral controller of the coordinate's speed.
     SpeedController(SpeedController<C>),
@@ -75,7 +75,7 @@ pub struct DriveWords {
     pub input: &'static str,
     /// The unit of its input.
     pub input_unit: &'static str,
-    /// Name, unit and meaning of its state; the meaning is empty where the name says it.
+    /// Name, unit and meaning of its state; the meaning is empty if the name states it.
     pub state: Option<[&'static str; 3]>,
 }
 
@@ -118,7 +118,7 @@ impl<C> DriveKind<C> {
     }
 }
 
-/// A direct-current motor behind a gear, eq. (1).
+/// A direct-current motor with a gear, eq. (1).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motor<C = Coordinate> {
     /// Voltage u, V.

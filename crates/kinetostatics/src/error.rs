@@ -26,7 +26,7 @@ pub enum ModelError {
     VaryingInertia {
         /// The body.
         body: BodyId,
-        /// What is wrong with it.
+        /// The fault.
         what: &'static str,
     },
 }
@@ -37,7 +37,7 @@ pub enum ModelError {
 pub struct LoadError {
     /// Index of the load.
     pub load: usize,
-    /// What is wrong with it.
+    /// The fault.
     pub what: &'static str,
 }
 

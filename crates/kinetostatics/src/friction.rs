@@ -42,7 +42,7 @@ pub(crate) struct DependentLoad<L = ReactionLaw, const N: usize = 2> {
     pub(crate) law: L,
 }
 
-/// The state of a load that depends on reactions: what is given in addition to its law.
+/// The state of a load that depends on reactions: the quantity that is given in addition to its law.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum FrictionState<T> {
     /// Its factor φ follows from the speed of its surfaces; at rest a friction without regularisation is zero.

@@ -106,7 +106,7 @@ impl fmt::Display for TableQuantity {
 /// Why there is no table.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum TableError {
-    /// An accuracy that cannot be kept in double precision, or none at all.
+    /// An accuracy that double precision cannot reach, or an invalid one.
     #[error("a table's accuracy is between 1e-14 and 1e-2, not {accuracy:e}")]
     Accuracy {
         /// The one requested.

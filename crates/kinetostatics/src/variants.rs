@@ -118,9 +118,9 @@ impl VariantModel {
         self.inertial_numbers() + of_loads
     }
 
-    /// Evaluates the turns of some variants in one thread. `fill` writes the numbers of a variant, as [`numbers`](Self::numbers)
-    /// gives them, and returns the coordinate (rad) at which m is wanted besides; `done` takes the variant, or `None` if it must
-    /// be compiled.
+    /// Evaluates the turns of some variants in one thread. `fill` writes the numbers of a variant, in the order of
+    /// [`numbers`](Self::numbers), and returns an additional coordinate (rad) at which m is evaluated; `done` takes the variant,
+    /// or `None` if it must be compiled.
     pub fn turns(
         &self,
         variants: std::ops::Range<usize>,

@@ -6,7 +6,7 @@
 use dwell_geometry::{BodyId, Pose, Vec2};
 use dwell_numerics::{PiecewiseQuintic, Scalar};
 
-/// The moment of inertia of a body as a function of its angle from the ground, besides its own constant one.
+/// The moment of inertia of a body as a function of its angle from the ground, in addition to its constant one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VaryingInertia {
     /// The body.
@@ -23,7 +23,7 @@ pub struct VaryingInertia {
 pub struct KnownReaction {
     /// Its name.
     pub name: String,
-    /// Whether it is a moment (N m), else a force (N).
+    /// Whether it is a moment (N m); otherwise it is a force (N).
     pub is_moment: bool,
     /// a over the body's angle, kg m or kg m².
     pub a: PiecewiseQuintic,

@@ -14,10 +14,10 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 impl SceneFile {
-    /// The path of every number that [`value`](Self::value) and [`with_value`](crate::PlaneScene::with_value)
-    /// accept, in the order of the file: `crank.mass`, `crank.inertia`, `crank.center[0]` (when it is
-    /// written as [x, y]), `crank.points.B[1]`. Only what the file writes down has a path. The
-    /// ground has its points alone, since its mass has no effect.
+    /// The path of every number that [`value`](Self::value) and [`with_value`](crate::PlaneScene::with_value) accept,
+    /// in the order of the file: `crank.mass`, `crank.inertia`, `crank.center[0]` (when it is written as [x, y]),
+    /// `crank.points.B[1]`. Only numbers in the file have a path. The ground has only its points, because its mass has
+    /// no effect.
     pub fn number_paths(&self) -> Vec<String> {
         self.body_numbers.iter().map(|n| n.path.clone()).collect()
     }

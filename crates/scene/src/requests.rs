@@ -156,7 +156,7 @@ fn path_points<D: Notation>(entry: &Entry<'_>, bodies: &Bodies<'_, D>) -> Vec<Pa
     paths
 }
 
-/// The moving body that a value names; of the ground, the message says `lacks`.
+/// The moving body that a value names; for the ground, `lacks` is part of the error message.
 fn moving_body<D: Notation>(
     value: Value<'_>,
     what: &str,

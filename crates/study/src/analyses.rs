@@ -295,7 +295,7 @@ pub fn simulate<S: StudyScene>(
 /// largest value.
 ///
 /// # Errors
-/// As [`simulate`]. If the accuracy is not reached, [`TrajectoryOutcome::early_stop`] says so.
+/// As [`simulate`]. If the accuracy is not reached, [`TrajectoryOutcome::early_stop`] has the reason.
 #[cfg(feature = "output")]
 pub fn simulate_to_accuracy<S: StudyScene>(
     scene: &S,

@@ -412,7 +412,7 @@ fn part(matrix: &Mat<f64>, rows: &[usize]) -> Mat<f64> {
     Mat::from_fn(rows.len(), matrix.ncols(), |i, j| matrix[(rows[i], j)])
 }
 
-/// The largest magnitude; not a number if any is not, where `f64::max` would drop it.
+/// The largest magnitude; NaN if any value is NaN, which `f64::max` would drop.
 fn max_abs(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |max, value| {
         if max.is_nan() || value.abs() <= max {

@@ -34,7 +34,7 @@ pub(crate) struct Line {
     pub(crate) bodies: [BodyId; 2],
     /// The points on both bodies.
     pub(crate) points: [Vec3; 2],
-    /// The axis of the couple or the direction of the force on the second body; not a number where two points coincide.
+    /// The axis of the couple or the direction of the force on the second body; NaN if two points coincide.
     pub(crate) along: Vec3,
     pub(crate) kind: LineKind,
     /// The coordinate and its rate.

@@ -84,8 +84,8 @@ impl DenseMechanism {
         independent
     }
 
-    /// The multipliers of joints' rows that balance without any force, each of length one where moments are divided by the size: none where
-    /// no row repeats others, or no joint has its reactions by components.
+    /// The multipliers of joints' rows that balance without any force, each of length one, with moments divided by the size. Empty if no
+    /// row is redundant, or if no joint has reactions by components.
     pub(crate) fn self_stresses(&self, poses: &[Pose]) -> Vec<Vec<f64>> {
         let by_components = self.joints.iter().any(|joint| joint.is_wrench);
         if self.rows.len() == self.rows.columns() || !by_components {

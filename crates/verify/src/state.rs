@@ -98,7 +98,7 @@ pub struct ClaimedState {
 /// [kinetic energy](check_energies).
 ///
 /// If joints are redundant, all rows must close, and reactions that are not determined must balance. The findings come in a fixed order. If
-/// the mechanism is not determinate there is one failed finding that says why; a state that cannot be closed fails all of them.
+/// the mechanism is not determinate there is one failed finding with the reason; a state that cannot be closed fails all of them.
 pub fn check_states(
     assembled: &AssembledMechanism<'_>,
     states: &[ClaimedState],

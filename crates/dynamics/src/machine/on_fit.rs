@@ -225,7 +225,7 @@ impl MovingModel for Model {
         Ok(state)
     }
 
-    /// A reaction that is not determined at the change point is not a number.
+    /// A reaction that is not determined at the change point is NaN.
     fn outputs_on_fit<'o>(
         machine_state: &MachineState<'_>,
         (window, x): (&FitWindow, f64),

@@ -186,7 +186,7 @@ impl<M: MovingModel> MachineState<'_, f64, M> {
 
     /// Evaluates another model of the same mechanism and loads at this state: its reactions are then
     /// in `result`. Within the window of a change-point
-    /// fit, a reaction that is not determined at the change point is not a number.
+    /// fit, a reaction that is not determined at the change point is NaN.
     ///
     /// # Errors
     /// [`DynamicsError`](crate::DynamicsError) as of [`Machine::evaluate`].

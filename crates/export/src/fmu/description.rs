@@ -140,7 +140,7 @@ fn is_initial_unknown(variable: &Variable) -> bool {
     matches!(variable.role, Role::Rate(_) | Role::Output | Role::Periods)
 }
 
-/// The elements of the structure in 3.0 and in 2.0, which has no list of indicators, and what they are of.
+/// The elements of the structure in 3.0 and in 2.0, which has no list of indicators, with the variables in each.
 type Listed = (&'static str, &'static str, fn(&Variable) -> bool);
 const STRUCTURE: [Listed; 4] = [
     ("Output", "Outputs", is_output),

@@ -30,7 +30,7 @@ pub struct SeveralFreedomsDescription {
 pub struct FreeCoordinate {
     /// Its name.
     pub name: String,
-    /// Whether it is an angle (rad), else a length (m).
+    /// Whether it is an angle (rad); otherwise it is a length (m).
     pub is_angle: bool,
     /// q and q̇ at the start, rad and rad/s, or m and m/s.
     pub initial: [f64; 2],

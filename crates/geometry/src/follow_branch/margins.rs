@@ -21,9 +21,9 @@ impl Plan {
         }
     }
 
-    /// The margins at a coordinate if every group is a closed form, with the pose there, whose revolutions are counted
-    /// from another one; none where one of them is not clear. The slopes follow from the motion at unit velocity, in a third of
-    /// the operations of dual numbers.
+    /// The margins at a coordinate if every group is a closed form, with the pose there, whose revolutions are counted from
+    /// another one; `None` if one of them is not clear of zero. The slopes follow from the motion at unit velocity, in a third
+    /// of the operations of dual numbers.
     pub(super) fn closed_form_margins(
         &self,
         (from, q): (&Pose<f64>, f64),

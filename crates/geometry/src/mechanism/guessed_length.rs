@@ -47,8 +47,8 @@ impl Mechanism {
         (length > 0.0 && length.is_finite()).then_some(length)
     }
 
-    /// Meshes racks and rolling discs as the assembly gives them: where a travel given there says how far the disc has rolled, the point P₁ of the
-    /// pitch line or track moves along it, so that the disc is there at its angle. Without such a travel P₁ stays, where angle 0 meets it.
+    /// Meshes racks and rolling discs in the assembly. If the assembly states the travel of the disc, the point P₁ moves along the pitch
+    /// line or track, so that the disc is there at its angle. Without a travel P₁ is not moved, and angle 0 meets it.
     pub fn mesh_as_given(&mut self, assembly: &AssemblyConfiguration) {
         // A travel that the phase does not depend on says nothing about it.
         let mut other = assembly.clone();

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 pub enum Range {
     /// Every angle can be reached, with period 2π.
     Full,
-    /// Every angle can be reached; the pose repeats after so many revolutions.
+    /// Every angle can be reached; the pose repeats after this number of revolutions.
     Revolutions(u32),
     /// An angle between two limit positions or change points, rad.
     Limited(f64, f64),

@@ -1,5 +1,5 @@
-//! Poses stored along the range, from which Newton's method starts and whole revolutions are counted: so a
-//! pose depends on the coordinate alone, not on what was evaluated before it.
+//! Poses stored along the range, from which Newton's method starts and whole revolutions are counted: so that a pose
+//! depends on the coordinate alone, not on earlier evaluations.
 
 use crate::error::PositionError;
 use crate::plan::range::Range;

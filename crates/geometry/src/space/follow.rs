@@ -166,8 +166,8 @@ impl Plan {
         self.follow_back(forward, &first, unit, is_angle, &mut pose)
     }
 
-    /// Whether everything repeats after so many stored poses, but coordinates that gain the same each time, as those of a screw do: then
-    /// nothing ends the range.
+    /// Whether the pose repeats after this number of stored poses, except for coordinates that change by a constant amount each time, as
+    /// those of a screw do. Then nothing ends the range.
     fn repeats(&self, nodes: &[Node], stride: usize) -> bool {
         let unit = if self.is_angle(0) { 1.0 } else { self.size };
         let (first, end) = (&nodes[0], &nodes[stride]);

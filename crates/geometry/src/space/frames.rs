@@ -217,8 +217,8 @@ impl Link {
         frame
     }
 
-    /// The body's velocities, and its accelerations without those of the freedoms, from those of the parent and what it has with the
-    /// parent alone.
+    /// The body's velocities, and its accelerations without those of the freedoms, from those of the parent and those that the body
+    /// has if it moves with the parent.
     ///
     /// ```text
     /// ω̇ = ω̇_p + Σ ω×u ċ,     v̇ = v̇_p + ω̇_p×r + ω_p×(ω_p×r) + Σ 2 ω_p×u ċ                            (1)

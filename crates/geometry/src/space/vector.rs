@@ -58,7 +58,7 @@ impl Vec3<f64> {
         normal.scaled(1.0 / normal.norm())
     }
 
-    /// The same constants as another number type.
+    /// This value in another number type, as constants.
     #[inline(always)]
     #[track_caller]
     pub fn cast<T: Scalar>(self) -> Vec3<T> {
@@ -231,7 +231,7 @@ impl Rotation<f64> {
         axis.scaled(std::f64::consts::PI)
     }
 
-    /// The same constants as another number type.
+    /// This value in another number type, as constants.
     #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Rotation<T> {
         Rotation {

@@ -343,7 +343,7 @@ impl Lowered {
             .push(LoweredCoupling::linear(owner, dependent));
     }
 
-    /// Makes the travel of a pair a coordinate.
+    /// Declares the travel of a pair a coordinate.
     fn make_travel_coordinate(&mut self, pair: usize) {
         if let PairKind::Prismatic {
             travel_is_coordinate,

@@ -114,9 +114,9 @@ impl Plan {
         2 * (vectors + self.tree.joint_origins.len() + 2 * self.lowered.pairs.len())
     }
 
-    /// Takes the dimensions of another mechanism of this structure, as [`Plan::dimensions`] gives them. What the compiler
-    /// found on the poses of the mechanism it compiled (range, limits, near branches, the assembly and stored poses)
-    /// is not changed.
+    /// Sets the dimensions of another mechanism of this structure, in the order of [`Plan::dimensions`]. The results of
+    /// the compiler on poses of its own mechanism (range, limits, near branches, the assembly and stored poses) are not
+    /// changed.
     pub fn set_dimensions(&mut self, dimensions: &[f64]) {
         let mut next = dimensions.chunks_exact(2).map(|v| vec2(v[0], v[1]));
         let mut fill = |to: &mut Vec2| *to = next.next().unwrap_or(*to);

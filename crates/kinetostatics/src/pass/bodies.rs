@@ -32,7 +32,7 @@ pub(crate) struct AcceleratedBody {
     pub(crate) joint_vector: Option<(usize, usize)>,
     /// The slide that carries it, and the index of its direction.
     pub(crate) slide: Option<(usize, usize)>,
-    /// Of the body alone, kg.
+    /// Mass of the body alone, kg.
     pub(crate) mass: f64,
     /// First moment of the body about its origin, in its frame, kg m; none if zero.
     pub(crate) first_moment: Option<Vec2>,

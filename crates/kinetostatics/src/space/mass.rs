@@ -29,7 +29,7 @@ impl Mass {
         vec3(x.dot(w), y.dot(w), z.dot(w))
     }
 
-    /// Whether it is a mass: not negative, with a tensor that is positive semidefinite but for rounding. A principal moment may exceed the
+    /// Whether it is a mass: not negative, with a tensor that is positive semidefinite within rounding. A principal moment may exceed the
     /// sum of the two others, because equations of motion do not need this condition ([`Mass::excess_moment`]).
     pub fn is_valid(&self) -> bool {
         let [xx, yy, zz, xy, xz, yz] = self.inertia;

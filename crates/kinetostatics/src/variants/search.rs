@@ -16,7 +16,8 @@ const LAST_POSITIONS: usize = 1024;
 const RESOLVED_MEAN: f64 = 1e-8;
 /// An extreme is evaluated at its place: its curve needs to be known only so well that no other is taken for it.
 const RESOLVED_CURVE: f64 = 1e-4;
-/// The tangents of all determinants stay clear of zero over so many steps, both ways: the follower's own test of a branch.
+/// The tangents of all determinants stay clear of zero over this number of steps in both directions: the follower's own
+/// test of a branch.
 const TANGENT_CLEARANCE: f64 = 4.0;
 
 /// The largest or smallest value of a curve, and its coordinate.

@@ -334,7 +334,7 @@ fn describe_by_angles(mechanism: &Mechanism, bodies: &[BodyId], modes: &[Vec<f64
     modes.join("; or ")
 }
 
-/// Entries for [assembly]: of one joint if it differs in every mode, else of all.
+/// Entries for [assembly]: of one joint if it differs in every mode, otherwise of all.
 fn suggested_hints(scene: &PlaneScene, joints: &[JointId], modes: &[Vec<f64>]) -> String {
     let mechanism = &scene.mechanism;
     let joint = |k: usize| &mechanism.joints[joints[k].0];

@@ -364,7 +364,7 @@ pub(crate) fn load_units<K: LoadShape>(kinds: impl Iterator<Item = K>) -> Vec<Lo
     kinds.map(|kind| (kind.unit(), kind.strength())).collect()
 }
 
-/// How a load acts: by a parameter if its magnitude is a constant, else by an input.
+/// The effect of a load: by a parameter if its magnitude is a constant, otherwise by an input.
 fn magnitude_effect<K: LoadShape, C>(load: &Load<K, C>, law: Strength) -> LoadEffect {
     let resistance = match law {
         Strength::Direct | Strength::Elastic { .. } => None,

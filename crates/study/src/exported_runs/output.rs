@@ -27,8 +27,8 @@ const USELESS: f64 = 0.05;
 /// interpolation, the best for their positions is used.
 ///
 /// # Errors
-/// [`StudyError`]: a column is missing, the runs do not determine m or contradict each other, a trigonometric series is asked for
-/// positions that are no whole revolution.
+/// [`StudyError`]: a column is missing, the runs do not determine m or contradict each other, or a trigonometric series is
+/// requested for positions that are not a whole revolution.
 // Long: one result after another.
 pub fn reduce_runs(
     name: &str,

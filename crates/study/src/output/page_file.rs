@@ -56,7 +56,7 @@ pub fn add_page(
     Ok(())
 }
 
-/// The files beside a page.
+/// Links to the files beside a page.
 fn links(outcome: &Outcome, own: &str) -> Vec<FileLink> {
     let folder = own.rsplit_once('/').map_or("", |(folder, _)| folder);
     let link = |path: &str| {

@@ -88,7 +88,7 @@ impl<'a> PartFolder<'a> {
     /// All parts with points of this run, each with its existing files.
     ///
     /// # Errors
-    /// [`SweepError`] of a file that is damaged, or none of this study.
+    /// [`SweepError`] for a file that is damaged or belongs to another study.
     pub(crate) fn parts(&self) -> Result<Vec<Part>, SweepError> {
         let mut files = self.files()?;
         let starts = (0..self.design.points).step_by(PART_LENGTH as usize);

@@ -18,9 +18,8 @@ use crate::subject::Subject;
 use dwell_findings::Finding;
 use rayon::prelude::*;
 
-/// Compares a subject with every check, in parallel. The findings come in a fixed order, that of
-/// the checks' numbers. If the mechanism itself cannot be written in dense rows, there is one
-/// failed finding that says why.
+/// Compares a subject with every check, in parallel. The findings come in a fixed order, that of the checks' numbers.
+/// If the mechanism itself cannot be written in dense rows, there is one failed finding with the reason.
 pub fn verify_all(
     case: &Case<'_>,
     subject: &dyn Subject,

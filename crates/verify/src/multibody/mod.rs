@@ -53,7 +53,7 @@ pub enum MultibodyError {
     Load {
         /// Its index.
         load: usize,
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
     },
     /// A drive that cannot act.
@@ -61,7 +61,7 @@ pub enum MultibodyError {
     Drive {
         /// Its index.
         drive: usize,
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
     },
     /// The poses, velocities or times are missing, not finite or not in order.
@@ -83,7 +83,7 @@ pub enum MultibodyError {
         "at t = {0} s no friction force satisfies the friction law: the mechanism is self-locking"
     )]
     SelfLocking(f64),
-    /// A load, drive or law that is no number at a time, s.
+    /// A load, drive or law that is not finite at a time, s.
     #[error("at t = {0} s a load, drive or law is not a finite number")]
     NotFinite(f64),
     /// The accuracy is out of reach from a time on, s.

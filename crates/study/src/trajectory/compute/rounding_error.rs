@@ -12,8 +12,8 @@ const POSITIONS: usize = 48;
 /// Numbers of a body: position, orientation, velocity, angular velocity, acceleration, angular acceleration.
 pub(crate) type BodyNumbers<T> = [Vec<T>; 6];
 
-/// The largest errors along a trajectory in the plane or in space, by kind of number: of positions, velocities and accelerations where
-/// no forces are computed, else of actuator forces and reactions.
+/// The largest errors along a trajectory in the plane or in space, by kind of number: of positions, velocities and accelerations if no
+/// forces are computed, otherwise of actuator forces and reactions.
 pub struct LargestErrors {
     pub(crate) analysis: Analysis,
     stride: usize,

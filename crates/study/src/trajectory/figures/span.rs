@@ -27,7 +27,7 @@ impl DrawnRows {
     /// The rows within a span, with one more at either side; `values` are the abscissae of all rows in the unit of the span.
     ///
     /// # Errors
-    /// [`StudyError::Scene`] where the span is reversed, empty, no number, or outside the trajectory.
+    /// [`StudyError::Scene`] if the span is reversed, empty, NaN, or outside the trajectory.
     pub(super) fn new(
         scene: &SceneFile,
         span: PictureSpan,
