@@ -1,4 +1,4 @@
-"""What a call costs: times of this machine, and as a ratio to a plain loop in NumPy where there is one. Nothing is asserted.
+"""Computing times of calls on this machine, and their ratio to NumPy code with the same result where it exists. Nothing is asserted.
 
     python crates/python/benchmark.py
 """
@@ -25,7 +25,7 @@ def least(call, rounds=15):
 
 
 def numpy_positions(q):
-    """Positions alone of the single-dwell's four-bar A B C O, as one array operation."""
+    """Positions of the four-bar A B C O of the case single-dwell, by array operations of NumPy."""
     b = 0.1 * np.exp(1j * q)
     d = 0.2 - b
     along = np.abs(d) / 2

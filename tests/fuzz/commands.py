@@ -1,8 +1,8 @@
-"""Random commands on a scene, with options as they are meant and as they are not."""
+"""Random commands on a scene, with valid and invalid options."""
 import tomllib
 
 METHODS = ["bdf", "esdirk34", "tr-bdf2", "tsit45", "dop853"]
-# How often each command is drawn. work-precision and validate take seconds, for they time and check.
+# Weights with which commands are drawn. work-precision and validate take seconds, because they measure times and run all checks.
 WEIGHTS = {
     "check": 22, "simulate": 16, "kinematics": 3, "statics": 3, "kinetostatics": 3, "reduce": 9, "equilibria": 13, "linearise": 12,
     "cycle": 5, "symbolic": 6, "export": 6, "calibrate": 5, "sweep": 5, "work-precision": 0.2, "schema": 0.1,
@@ -15,7 +15,7 @@ def name(rng):
 
 
 def arguments_of(rng, name, text, folder):
-    """The arguments of a command on `scene.toml` in a folder; files that it reads are written there."""
+    """The arguments of a command on `scene.toml` in a folder; writes the other input files of the command there."""
     if name == "schema":
         return [name]
     arguments = [name, "scene.toml"]
@@ -88,7 +88,7 @@ def arguments_of(rng, name, text, folder):
 
 
 def fixed_method(rng, arguments, option):
-    """A method and its tolerance. One of low order takes a million steps with a fine one, which says nothing new."""
+    """A method and its tolerance. Methods of low order get no fine tolerance, with which they take a million steps."""
     if rng.random() < 0.8:
         option("--method", *METHODS)
     if arguments[-1] in ("tr-bdf2", "esdirk34"):

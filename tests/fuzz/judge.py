@@ -1,26 +1,26 @@
-"""What must hold of every run, whatever the scene and the command: the exit status, the messages, the printed numbers and the files
-never contradict each other."""
+"""Rules for every run, independent of the scene and the command: the exit status, the messages, the printed numbers and the files
+are consistent."""
 import csv
 import math
 import re
 import tomllib
 
-# Longest time without an answer or a sign of life, s of computing on one thread, and largest memory, bytes.
+# Longest computing time on one thread without output, s, and largest memory, bytes.
 LONGEST = 10
-# The status of a run that is stopped for its time (SIGXCPU).
+# The status of a run that exceeds its computing time (SIGXCPU).
 OUT_OF_TIME = -24
 LARGEST = 2 * 2**30
 NUMBER = r"[-−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
-# A number that is none, as Rust prints it.
+# Non-finite numbers as Rust prints them.
 NON_FINITE = re.compile(r"(?<![\w.`-])[-−]?(?:NaN|inf)(?![\w`-])")
-# What a long run prints after 2 s, and then now and then.
+# The progress line, which a long run prints after 2 s and then in growing intervals.
 GOES_ON = re.compile(r"^dwell [a-z-]+: running for \d+ (?:s|min)", re.M)
-# What miette and clap begin a message with.
+# The first characters of messages of miette and clap.
 ERROR = re.compile(r"^\s*(?:×|Error:|error:)", re.M)
 
 
 class Run:
-    """What a run of the command came to."""
+    """The outcome of a run of the command."""
 
     def __init__(self, arguments, scene, status, out, err, seconds, memory, folder):
         self.arguments, self.scene, self.status, self.out, self.err = arguments, scene, status, out, err
@@ -30,7 +30,7 @@ class Run:
         return sorted(self.folder.glob(f"**/*{ending}"))
 
     def table(self, ending):
-        """The rows of the CSV file of this ending as dictionaries by the names of the columns, without units; None where there is none."""
+        """The rows of the CSV file with this ending as dictionaries by column names without units; None if there is no such file."""
         found = self.files(ending)
         if not found:
             return None
@@ -41,7 +41,7 @@ class Run:
 
 
 def faults(run):
-    """What is wrong with a run, each as a sentence; a crash alone, for what it prints is no result."""
+    """The faults of a run, each as a sentence. After a crash nothing else is judged, because its output is no result."""
     crash = crashed(run)
     if crash or out_of_time(run):
         return [crash] if crash else []
@@ -90,8 +90,8 @@ def non_finite_print(run):
     return None
 
 
-# Columns that are undefined at some positions: at a dead point there is no ratio, at rest no pole. An equilibrium may
-# have fewer modes than another, or a stability that its linearisation does not decide; a quadrature no tolerance.
+# Columns that are undefined in some rows: ratios at a dead point, poles at rest, modes of equilibria that have fewer of them,
+# a stability that the linearisation does not decide, the tolerance of a quadrature.
 UNDEFINED = ("tolerance", "mechanical_advantage", "pole", "ratio", "transmission", "relative_error", "mode", "table_", "stability")
 
 
@@ -115,8 +115,8 @@ def numeric(rows, name):
 
 
 def digits_agree(printed, value, error=0.0):
-    """Whether a printed number is the value, rounded to as many digits, or to those within its stated error."""
-    # The last digit that is printed is the first beyond the error, or one more.
+    """Whether a printed number is the value rounded to the printed digits, or to the digits within its stated error."""
+    # The last printed digit is the first one beyond the error, or one more.
     if abs(float(printed.replace("−", "-")) - value) <= 10 * error:
         return True
     mantissa = re.sub(r"e.*", "", printed.replace("−", "-"))
@@ -132,7 +132,7 @@ TRAJECTORIES = {"simulate": "-motion", "kinematics": "-kinematics", "statics": "
 
 
 def rows_as_printed(run):
-    """The number of positions and the end of the motion are those of the table."""
+    """The printed number of positions and the printed end of the motion agree with the table."""
     kind = TRAJECTORIES.get(run.arguments[0])
     head = re.search(r", (?:(\d+) of )?(\d+) positions? over (.*)", run.out)
     if not kind or not head or run.status == 2:
@@ -210,7 +210,7 @@ def events_as_printed(run):
 
 
 def extrema_bound_rows(run):
-    """No row is beyond the extrema of its column, and what is printed is in the file."""
+    """No row is beyond the extrema of its column, and the printed extrema are in the file."""
     kind = TRAJECTORIES.get(run.arguments[0])
     if not kind or run.status == 2:
         return None
@@ -247,7 +247,7 @@ def extrema_bound_rows(run):
     return None
 
 
-# What is printed is in the scene's units of lengths and angles; files are in SI.
+# Printed numbers are in the scene's units of lengths and angles; files are in SI units.
 IN_SCENE_UNIT = {"deg": 180 / math.pi, "mm": 1e3, "cm": 1e2, "um": 1e6, "km": 1e-3, "in": 1 / 0.0254, "ft": 1 / 0.3048}
 
 
@@ -256,7 +256,7 @@ def largest_of_unit(extrema, unit):
 
 
 def accuracy_kept(run):
-    """With status 0 the estimated error is within the accuracy that was asked for."""
+    """With status 0 the estimated error is within the required accuracy."""
     if "--accuracy" not in run.arguments or run.status != 0 or run.arguments[0] != "simulate":
         return None
     wanted = run.arguments[run.arguments.index("--accuracy") + 1]

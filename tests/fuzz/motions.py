@@ -23,14 +23,14 @@ import sys
 import tempfile
 
 METHODS = ["bdf", "esdirk34", "tr-bdf2", "tsit45", "dop853"]
-# Rows that are looked at, from the last.
+# The number of last rows that are checked.
 LAST = 5
 # The energies of a row, as parts of the largest kinetic energy: between digits of two computations, and of the balance. The rows before
 # a singular position closed to 1e-5; false ones missed by 0.3 and more.
 SAME, BALANCED = 1e-9, 1e-3
-# Steps, as a multiple of the median, and what is never too many.
+# Largest number of steps as a multiple of the median, and a number of steps that is always allowed.
 MOST, ALLOWED = 20, 30000
-# Computing, s.
+# Longest computing time, s.
 LONGEST = 60
 
 
@@ -43,7 +43,7 @@ def vector(values):
 
 
 class Body:
-    """Some points in the frame of the body, with which it stands in the frame of the ground at the start."""
+    """A body with points in its frame, which coincides with the frame of the ground at the start."""
 
     def __init__(self, rng, name, points):
         self.name, self.points = name, points
@@ -74,7 +74,7 @@ def speeds(rng, names, largest):
 
 
 def chain_in_plane(rng, pendulums, links):
-    """A loop of so many moving links, stretched soon by its speeds, and pendulums on it."""
+    """A loop of moving links whose speeds soon stretch it, with pendulums on it."""
     near = lambda x, y: [x + rng.uniform(-0.06, 0.06), y + rng.uniform(-0.06, 0.06)]
     places = {3: [(0, 0), (0, 0.15), (0.3, 0.25), (0.35, 0)], 4: [(0, 0), (0, 0.12), (0.2, 0.3), (0.35, 0.15), (0.35, 0)]}
     at = [near(*place) for place in places[links]]
@@ -106,7 +106,7 @@ def chain_in_plane(rng, pendulums, links):
 
 
 def spherical_loop(rng, pendulum):
-    """Crank, rod between two balls and rocker, seldom free to rotate fully; a pendulum on the crank."""
+    """Crank, rod between two spherical joints, and rocker, with a pendulum on the crank. The crank can seldom rotate fully."""
     a, d = [0, 0, 0], [rng.uniform(0.3, 0.5), rng.uniform(-0.05, 0.05), rng.uniform(0, 0.2)]
     b = [rng.uniform(0.08, 0.3), 0, 0]
     c = [d[0] + rng.uniform(-0.05, 0.05), d[1], d[2] + rng.uniform(0.15, 0.3)]
@@ -126,7 +126,7 @@ def spherical_loop(rng, pendulum):
 
 
 def tripod(rng):
-    """A platform on three legs of variable length, whose feet turn about hinges: three coordinates."""
+    """A platform on three legs of variable length with revolute joints at their feet: three coordinates."""
     angle = lambda k: 2 * math.pi * k / 3
     feet = [[0.4 * math.cos(angle(k)), 0.4 * math.sin(angle(k)), 0] for k in range(3)]
     height = rng.uniform(0.2, 0.5)
@@ -167,7 +167,7 @@ def masses(text):
 
 
 def kinetic(row, bodies):
-    """The kinetic energy of a row, from the velocities of its masses."""
+    """The kinetic energy of a row, from the written velocities of the centres of mass and the angular velocities."""
     total = 0.0
     for name, (mass, inertia) in bodies.items():
         velocity = [row.get(f"{name}.G.v{axis}", 0.0) for axis in "xyz"]
@@ -184,7 +184,7 @@ def rows_of(path):
 
 
 def faults(text, run, folder):
-    """What is wrong with a run, and its steps."""
+    """The faults of a run, and its number of steps."""
     if run.returncode not in (0, 1):
         return [f"status {run.returncode}: {run.stderr.strip().splitlines()[:1]}"], None
     summary = json.loads((folder / "o/scene-simulate.json").read_text(encoding="utf-8"))

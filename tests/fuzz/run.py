@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Pairs of a mutated scene and a command, each in a process of its own: no panic, no silence above 10 s, no memory above 2 GB, and
-no status, message, number and file that contradict each other.
+"""Runs pairs of a mutated scene and a command, each in its own process. No run may panic, compute for more than 10 s without output,
+take more than 2 GB, or be inconsistent in its status, messages, numbers and files.
 
     python3 tests/fuzz/run.py 2000 1             # 2000 pairs of seed 1; status 1 where one fails
     python3 tests/fuzz/run.py 1 1 --first 716 --keep FOLDER   # pair 716 again, with its scene and its files
@@ -29,13 +29,13 @@ import scenes
 
 # At least this part of the pairs must be valid: status 0, or a result with status 1.
 LEAST_VALID = 0.3
-# Waiting for a run that computes nothing, s.
+# Longest wait on the clock for a run that uses no computing time, s.
 LONGEST_WAIT = 120
 SOURCES = scenes.sources()
 
 
 def limit():
-    """Of the child: its time of computing, a second longer than it may be silent, and its memory."""
+    """Limits of the child process: its computing time, a second longer than the longest silence, and its memory."""
     resource.setrlimit(resource.RLIMIT_CPU, (judge.LONGEST + 1, judge.LONGEST + 3))
     resource.setrlimit(resource.RLIMIT_AS, (2 * judge.LARGEST, 2 * judge.LARGEST))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
@@ -61,7 +61,7 @@ def run_pair(task):
 
 
 def environment():
-    # One thread: the time of computing is then that of waiting on a free machine.
+    # One thread: its computing time equals the elapsed time on an idle machine.
     return {"NO_COLOR": "1", "LC_ALL": "C.UTF-8", "TERM": "xterm", "RAYON_NUM_THREADS": "1"}
 
 
@@ -110,7 +110,7 @@ def main():
         print(f"  {name}: {count} pairs, {accepted} valid, {used / count:.3f} s each")
     print(f"{options.pairs} pairs of seed {options.seed} in {seconds:.0f} s: {valid:.0%} valid, "
           f"{long_runs} longer than {judge.LONGEST} s, {len(failed)} faults")
-    # A single pair is run again to be looked at.
+    # A single pair is a repetition for inspection.
     return 1 if failed or options.pairs >= 100 and valid < LEAST_VALID else 0
 
 

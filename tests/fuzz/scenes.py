@@ -1,6 +1,6 @@
-"""Mutated scenes: those of the cases with numbers changed, keys dropped, renamed and written twice, joints doubled, and
-loads, drives, laws, tables and events added. Most scenes stay valid: a change of a few per cent, a load that the mechanism can
-bear. The others are what a tired user or an attacker writes."""
+"""Mutated scenes: scenes of the cases with changed numbers, with keys dropped, renamed or repeated, with duplicated joints, and
+with added loads, drives, laws, tables and events. Most scenes stay valid: numbers change by a few per cent, and loads are moderate.
+The others imitate typing errors and attacks."""
 import copy
 import json
 import math
@@ -13,18 +13,18 @@ FOLDERS = ["validation/*/scene.toml", "tests/mutations/scenes/*.toml", "crates/c
 
 
 def sources():
-    """The scenes that are mutated, by their paths, in an order that is the same everywhere."""
+    """The paths of the scenes to mutate, in an order that is the same on every machine."""
     paths = [path for pattern in FOLDERS for path in TOP.glob(pattern)]
     return [path.read_text(encoding="utf-8") for path in sorted(paths)]
 
 
 def mutated(rng, source, command):
-    """A scene made of a source for a command: its text."""
+    """The text of a mutated scene for a command."""
     scene = tomllib.loads(source)
     if rng.random() < 0.9:
         fit(rng, scene, command)
     gentle = rng.random() < 0.6
-    # A motion with a period has no loads.
+    # A scene that requests a period may have no loads.
     changes = [nudge] if command == "calibrate" else GENTLE
     for _ in range(rng.choice([0, 1, 1, 2, 3])):
         rng.choice(changes)(rng, scene)
@@ -38,11 +38,11 @@ def mutated(rng, source, command):
 
 
 def fit(rng, scene, command):
-    """Gives a scene what a command needs."""
+    """Adds the sections that a command needs."""
     if command in ("simulate", "calibrate", "sweep", "work-precision") and not isinstance(scene.get("motion"), dict):
         add_motion(rng, scene)
     if command == "calibrate":
-        # Calibration needs a period, which only a motion without loads always has.
+        # Calibration needs a period; only a motion without loads always has one.
         scene.pop("loads", None)
         scene.pop("drives", None)
         scene.pop("friction", None)
@@ -71,7 +71,7 @@ def points(scene):
 
 
 def leaves(node, path=()):
-    """Every number of a scene, as (its container, its key, the keys above it)."""
+    """Every number of a scene as (its container, its key, the keys above)."""
     items = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
     for key, value in items:
         if isinstance(value, (int, float)) and not isinstance(value, bool):
@@ -81,7 +81,7 @@ def leaves(node, path=()):
 
 
 def nudge(rng, scene):
-    """A mass, a load or a speed, some per cent more or less. Points stay, for most lengths must fit each other."""
+    """Changes a mass, a load or a speed by some per cent. Points are kept, because most lengths must fit each other."""
     free = [leaf for leaf in leaves(scene) if not {"points", "joints", "assembly", "center"} & set(leaf[2])]
     if free:
         node, key, _ = rng.choice(free)
@@ -107,7 +107,7 @@ def magnitude(rng, scene):
 
 
 def expression(rng, scene, size=1.0):
-    """An expression as users write them: pulses, switches, stops, friction by hand."""
+    """An expression like those of users: pulses, switches, stops and friction written as expressions."""
     actuators = names(scene, "actuators") or ["phi"]
     quote = lambda name: name if re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name) else f"`{name}`"
     q = rng.choice(actuators + names(scene, "coordinates"))
@@ -273,7 +273,7 @@ def break_number(rng, scene):
 
 
 def tables(node):
-    """Every table that holds something, the scene itself among them."""
+    """Every table that is not empty, including the scene itself."""
     if isinstance(node, dict):
         if node:
             yield node
@@ -304,7 +304,7 @@ def swap_value(rng, scene):
 
 
 def double_joint(rng, scene):
-    """A joint written twice under another name; or between other bodies."""
+    """Copies a joint under another name, or connects it to other bodies."""
     joints = names(scene, "joints")
     if joints:
         again = copy.deepcopy(scene["joints"][rng.choice(joints)])
@@ -315,7 +315,7 @@ def double_joint(rng, scene):
 
 
 def swap_references(rng, scene):
-    """Two names of bodies or points exchanged."""
+    """Exchanges two names of bodies or points."""
     lists = [t[k] for t in tables(scene) for k in t if isinstance(t[k], list) and all(isinstance(v, str) for v in t[k]) and t[k]]
     if lists:
         rng.choice(lists)[0] = rng.choice((points(scene) or ["ground.A"]) + (names(scene, "bodies") or ["ground"]))
@@ -333,7 +333,7 @@ HARSH = [break_number, break_number, break_number, break_number, drop_key, renam
 
 
 def torn(rng, text):
-    """The text of a scene with a line lost, doubled or cut, or a letter exchanged."""
+    """The text of a scene with a line removed, repeated or cut, or with a changed letter."""
     lines = text.splitlines()
     k = rng.randrange(len(lines)) if lines else 0
     change = rng.randrange(5)
@@ -356,7 +356,7 @@ def torn(rng, text):
 # ------------------------------------------------------------------------------------------------ TOML as text
 
 def document(scene):
-    """A scene as TOML: a section for each of its tables, all below them inline."""
+    """A scene as TOML: a section for each table at the top level, with inline tables below."""
     head = [f"{key(k)} = {value(v)}" for k, v in scene.items() if not isinstance(v, dict)]
     for name, table in scene.items():
         if isinstance(table, dict):

@@ -1,4 +1,4 @@
-"""The mechanism of docs/theory.md by its equations (1) to (17), with 50 digits and nothing but the standard library.
+"""The mechanism of docs/theory.md by its equations (1) to (17), with 50 digits, from the standard library alone.
 
 Derivatives are central differences: with 50 digits, steps of 1e-13 leave more than twenty of them.
 """
@@ -16,7 +16,7 @@ GRAVITY = D("9.81")
 
 
 def sine_cosine(x):
-    """Both, by their series."""
+    """Sine and cosine, by their series."""
     sine, cosine, term, n = D(0), D(0), D(1), 0
     while abs(term) > D("1e-58") or n < 4:
         if n % 2:
@@ -29,7 +29,7 @@ def sine_cosine(x):
 
 
 def arc_tangent(y, x):
-    """The angle of (x, y), by Newton's method from the machine's."""
+    """The angle of (x, y), by Newton's method from the value in double precision."""
     from math import atan2
 
     angle = D(atan2(float(y), float(x)))
@@ -52,12 +52,12 @@ def combine(a, u, b, v):
 
 
 def left(u):
-    """Turned by +90 degrees."""
+    """The vector turned by +90 degrees."""
     return -u[1], u[0]
 
 
 def derivative(f, x):
-    """Of a number or a pair."""
+    """The derivative of a function whose value is a number or a pair."""
     a, b = f(x + STEP), f(x - STEP)
     if isinstance(a, tuple):
         return tuple((p - q) / (2 * STEP) for p, q in zip(a, b))
@@ -65,7 +65,7 @@ def derivative(f, x):
 
 
 class Position:
-    """Section 2."""
+    """The positions of section 2."""
 
     def __init__(self, phi):
         sine, cosine = sine_cosine(phi)
@@ -90,7 +90,7 @@ class Position:
 
 
 class Rates:
-    """Section 3, with velocity and acceleration of the crank; ratios by (5) to (7)."""
+    """The velocities and accelerations of section 3 for given rates of the crank; ratios by (5) to (7)."""
 
     def __init__(self, position, v, a):
         p = position
@@ -115,7 +115,7 @@ class Rates:
 
 
 class Forces:
-    """Section 4."""
+    """The forces of section 4."""
 
     def __init__(self, rates):
         p = rates.position
@@ -157,6 +157,6 @@ def potential(phi):
 
 
 def period(n, energy, crank=I_A):
-    """T_n of (17); the mechanism is not symmetric, so that every node counts."""
+    """T_n of (17). The mechanism is not symmetric, so the sum has all nodes."""
     nodes = (inertia(2 * PI * j / n) - I_A + crank for j in range(n))
     return 2 * PI / n * sum((m / (2 * energy)).sqrt() for m in nodes)

@@ -1,8 +1,8 @@
-"""Computes every number of five or more digits that docs/theory.md prints, and fails where one is printed that no formula gives.
+"""Computes every number of five or more digits in docs/theory.md, and fails if a printed number differs from all computed ones.
 
     python3 tests/handout/theory_numbers.py
 
-Sections 1 to 9 and 12 are computed by `mechanism.py`, section 13 here, the values of the reference are read from the case's file. Section 10 is about
+`mechanism.py` computes sections 1 to 9 and 12, this file section 13; the reference values are read from the file of the case. Section 10 is about
 other programs, and section 11 has no such number.
 """
 
@@ -29,7 +29,7 @@ def flat(*values):
 
 
 def of_runs():
-    """Sections 2 to 4, and section 8: run 1 at 1 + ε, whose second part is the derivative."""
+    """The numbers of sections 2 to 4, and of section 8: run 1 at 1 + ε, whose second part is the derivative."""
     p = m.Position(ONE)
     yield from flat(p.b, p.d, p.square, p.h, p.c, p.e_beta, p.e_gamma, p.p, p.w, p.s, p.e_theta, p.delta)
     yield from flat([p.angle(name) for name in ("beta", "gamma", "theta")])
@@ -49,7 +49,7 @@ def of_runs():
 
 
 def half_slope(phi):
-    """½m′, the actuator's moment in run 1."""
+    """½m′, which is the actuator's moment in run 1."""
     return m.run(phi, 1, 0)[2].tau
 
 
@@ -77,7 +77,7 @@ def run_two(phi):
 
 
 def of_meaning():
-    """Section 5."""
+    """The numbers of section 5."""
     inertia, half, a, b = coefficients(ONE)
     yield from flat(run_two(ONE), released(ONE), a - released(ONE)[0])
     _, r1, f1 = m.run(ONE, 1, 0)
@@ -94,7 +94,7 @@ def free_motion(phi):
 
 
 def of_motion():
-    """Section 6, and the Jacobian of section 8."""
+    """The numbers of section 6, and the Jacobian of section 8."""
     velocity, acceleration, first, second = free_motion(ONE)
     start = m.inertia(D(0))
     yield from flat(start, start / 2, velocity, acceleration, first, second, first + second)
@@ -113,7 +113,7 @@ def of_motion():
 
 
 def of_period(text):
-    """Section 7; the errors of its table are compared here, for they have but two digits."""
+    """The numbers of section 7. The errors of its table are compared here, because they have only two digits."""
     half = m.inertia(D(0)) / 2
     exact = m.period(160, half)
     yield exact
@@ -133,7 +133,7 @@ def of_period(text):
 
 
 def of_checks():
-    """Section 9."""
+    """The numbers of section 9."""
     inertia, half, _, _ = coefficients(ONE)
     p, r, f = m.run(ONE, 1, 0)
     yield from flat(m.energy_parts(ONE), inertia - m.I_A)
@@ -147,7 +147,7 @@ def of_checks():
 
 
 def of_exercises():
-    """Section 12."""
+    """The numbers of section 12."""
     inertia, half, a, b = coefficients(ONE)
     at_two = coefficients(TWO)
     velocity, acceleration, first, second = free_motion(TWO)
@@ -163,7 +163,7 @@ def of_exercises():
 
 
 def of_hooke_joint():
-    """Section 13: β = 30°, q = 60°."""
+    """The numbers of section 13: β = 30°, q = 60°."""
     half, root = D("0.5"), D(3).sqrt() / 2
     sin_b, cos_b, sin_q, cos_q = half, root, root, half
     one, two = D("0.02"), D("0.03")
@@ -179,7 +179,7 @@ def of_hooke_joint():
 
 
 def of_reference():
-    """The values of the case at φ = 1."""
+    """The reference values of the case at φ = 1."""
     case = tomllib.loads((ROOT / "validation/single-dwell/case.toml").read_text(encoding="utf-8"))
     sample = next(s for s in case["samples"] if D(s["phi_rad"]) == 1)
     yield from flat(sample["m1_kg_m2"], sample["half_dm1"])
@@ -188,7 +188,7 @@ def of_reference():
 
 
 def is_value_of(printed, values):
-    """Whether one of the values is the printed one, rounded or cut off in its last digit."""
+    """Whether one of the values equals the printed number, rounded or truncated in its last digit."""
     unit = D(1).scaleb(printed.as_tuple().exponent)
     return any(abs(printed - value) <= unit * D("0.51") for value in values)
 

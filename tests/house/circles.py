@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Counts circles of imports between the files of each crate; exits with 1 where there is one.
+"""Counts circular imports between the folders of each crate; exits with status 1 if there are any.
 
 A file may import from a file of its own folder that imports it back: such files tell one story. A module and the files below it
 (`plan.rs` and `plan/*.rs`) are one folder. The root of a crate is no folder in this sense: its files are ideas of their own.
-Imports are what `use` and paths name, followed through re-exports; code of tests does not count.
+Imports are the names in `use` and in paths, followed through re-exports. Code of tests does not count.
 
     python3 tests/house/circles.py            # the whole workspace
     python3 tests/house/circles.py --imports  # every import, file by file
@@ -48,7 +48,7 @@ class Crate:
                     self.walk((*module, name), candidate)
 
     def folder(self, module):
-        """The folder of a module's file: its own where there are modules below it."""
+        """The folder of a module. A module with modules below it is its own folder."""
         return module if any(m[:-1] == module for m in self.files if m) else module[:-1]
 
     def uses(self, module, public=False):

@@ -34,7 +34,7 @@ def lines_of(path, left_out):
 
 
 OTHERS = {".py", ".js", ".mjs", ".c", ".h", ".m", ".css", ".html"}
-# Made or fetched, not written.
+# Generated or downloaded files.
 MADE = {"node_modules", "target", "__pycache__"}
 
 

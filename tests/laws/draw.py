@@ -6,7 +6,7 @@ from motion import Law
 
 MOST_DEPTH = 5
 DURATION = 2.0
-# Of pulses and windows, in the unit of their variable.
+# Widths of pulses and windows, in the unit of their variable.
 WIDTHS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 
 
@@ -99,7 +99,7 @@ class Draw:
         self.times = [Term("t", Law("var", (), 0))]
         self.places = [Term(n, Law("var", (), 1 + i)) for i, n in enumerate(names)]
         self.speeds = [Term(f"{n}.velocity", Law("var", (), 1 + len(names) + i)) for i, n in enumerate(names)]
-        # Which variables this scene's laws are of.
+        # The variables of the laws of this scene.
         mixed = [*self.times, *self.places, *self.speeds]
         self.variables = rng.choices([self.times, self.places, self.speeds, mixed], [2, 3, 2, 4])[0]
 
@@ -115,7 +115,7 @@ class Draw:
         return self.rng.choice(self.variables)
 
     def smooth(self):
-        """What no decision is in."""
+        """An expression without a decision."""
         kind = self.rng.randrange(8)
         x = self.variable()
         if kind < 3:
@@ -131,7 +131,7 @@ class Draw:
         return minus(self.eighth(), times(self.factor(), x))
 
     def argument(self, depth):
-        """What is likely to meet a threshold."""
+        """An argument that is likely to meet a threshold."""
         if depth > 0 and self.rng.random() < 0.6:
             return self.nested(depth)
         x = self.variable()
@@ -148,7 +148,7 @@ class Draw:
         return self.nested(depth) if depth > 0 and self.rng.random() < 0.6 else self.smooth()
 
     def threshold(self):
-        """A whole number often, which floors, steps and signs take."""
+        """A threshold; often a whole number, at which floors, steps and signs jump."""
         if self.rng.random() < 0.6:
             return number(self.rng.randint(-1, 2))
         return self.eighth()
@@ -182,21 +182,21 @@ class Draw:
             return plus(self.value(d), self.value(d))
         width = rng.choice(WIDTHS)
         pulse = bell(self.variable(), self.eighth(-0.5, 1.5), width)
-        # Of an impulse that does not vanish with the width, and not beyond 1000 N.
+        # The impulse does not vanish with the width, and the force is at most 1000 N.
         height = number(min(1000.0, round(rng.uniform(0.1, 1.0) / width, 1)) * rng.choice([-1, 1]))
         if kind == "bell":
             return times(height, pulse)
         return conditional(rng.choice([">", ">="]), pulse, number(0.5), height, self.value(d))
 
     def table(self):
-        """A table in place of an expression: its text, and its tree."""
+        """A table instead of an expression: its text and its tree."""
         rng = self.rng
         of = rng.choice([*self.times, *self.places, *self.speeds])
         is_step = rng.random() < 0.5
         inner = sorted(rng.sample(range(-8, 17), rng.randint(2, 6)))
         xs = [-1e5, *[k / 8 for k in inner], 1e5]
         ys = [self.rng.randint(-16, 16) / 8 for _ in xs]
-        # Beyond its inner points a table of straight lines is constant.
+        # A piecewise linear table is constant beyond its inner points.
         ys[0], ys[-1] = ys[1], ys[-2]
         law = fixed(ys[-2] if is_step else ys[-1])
         for i in range(len(inner), -1, -1):

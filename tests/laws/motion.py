@@ -1,4 +1,4 @@
-"""The motion of unit inertias under nested laws: an independent program, which shares nothing with Dwell.
+"""The motion of unit inertias under nested laws. This independent program shares nothing with Dwell.
 
 A law is a tree of `Law`s. Where all of its decisions are taken it is a smooth expression; Taylor series with enclosed remainders
 carry the motion to the next place where a decision may change, and no window between is missed, however narrow. There each
@@ -13,23 +13,23 @@ import math
 from series import Algebra, Unbounded, bisected, depends_on, enclosures, first_root, horner, in_order, least, numbers, ranges, value_and_size
 
 ORDER = 14
-# What is below this part of its terms is on its threshold.
+# An argument below this fraction of its terms is on its threshold.
 ON = 1e-11
-# A deciding coefficient below this many times that is too close to say.
+# A deciding coefficient below this multiple of that fraction is too small to decide.
 CLOSE = 1e4
-# What comes this near its threshold, as a part of its terms, may touch it.
+# An argument this near to its threshold, as a fraction of its terms, may touch it.
 TOUCHES = 1e-4
-# Coefficients that decide.
+# The number of coefficients that may decide.
 DECIDING = 6
 MOST_EVENTS = 3000
-# Steps that are tried, also in vain.
+# Largest number of steps, including rejected ones.
 MOST_STEPS = 6000
-# Beyond these a motion is not compared.
+# A motion beyond these limits is not compared.
 LARGEST = 1e4
 
 
 class Unjudged(Exception):
-    """The motion has no value to compare with; the reason."""
+    """The motion has no reference value, for the stated reason."""
 
 
 class NotUnique(Unjudged):
@@ -59,7 +59,7 @@ def holds(comparison, a):
 
 
 class Mode:
-    """Decisions, the rates of the speeds, and what must keep its sign: expression → sign."""
+    """Decisions, the rates of the speeds, and the expressions that must keep their signs: expression → sign."""
 
     def __init__(self, choices, rates, signs):
         self.choices, self.rates, self.signs = choices, rates, signs
@@ -78,10 +78,10 @@ class Motion:
         self.is_close = False
         self.speeds = range(1 + self.freedoms, 1 + 2 * self.freedoms)
 
-    # --- laws with their decisions taken
+    # --- laws with decisions taken
 
     def frozen(self, law, choices, memo):
-        """The smooth expression where the decisions are `choices`."""
+        """The smooth expression of a law with the decisions `choices`."""
         if law in memo:
             return memo[law]
         f = self.algebra
@@ -145,7 +145,7 @@ class Motion:
         return choices + [(0.0, argument, 0)] if zero_too else choices
 
     def sign_by_speeds(self, argument):
-        """The sign of the rate of what does not depend on speeds, if it is not zero."""
+        """The sign of the rate of an expression without speeds, if the rate is not zero."""
         if depends_on(argument, self.speeds):
             return 0
         rate, size = self.algebra.derivative(argument, 0), value_and_size(argument, self.point)[1]
@@ -173,7 +173,7 @@ class Motion:
     # --- the mode that begins at a point
 
     def leading(self, coefficients, size):
-        """The first coefficient that is not zero by rounding, with its place; none where all are."""
+        """The first coefficient that is nonzero beyond rounding, with its order; None if all are zero."""
         for k, c in enumerate(coefficients):
             if abs(c) > ON * size:
                 if k > 0 and abs(c) < CLOSE * ON * size:
@@ -182,7 +182,7 @@ class Motion:
         return None
 
     def decide(self):
-        """The only mode that agrees with the motion that follows from it, or one that slides."""
+        """The only mode that is consistent with the motion that follows from it, or a sliding mode."""
         modes = {}
         for mode in self.candidates(True):
             if self.agrees(mode):
@@ -203,7 +203,7 @@ class Motion:
         return self.slide()
 
     def distinct(self, modes):
-        """Those of which no other has the same series."""
+        """The modes with different series."""
         found = {}
         for key, mode in modes.items():
             variables, _ = numbers(mode.rates, [], self.point, self.freedoms, DECIDING)
@@ -228,7 +228,7 @@ class Motion:
         return True
 
     def slide(self):
-        """Two modes on either side of a threshold that both lead back to it (Filippov)."""
+        """The sliding mode between two modes that both lead back to their common threshold (Filippov)."""
         modes = self.candidates(False)
         if len(modes) > 64:
             raise Unjudged("too many thresholds at a time")
@@ -321,7 +321,7 @@ class Motion:
         return self.point[1:]
 
     def step(self, mode, h):
-        """One step: its length, that of the next to try, and whether an event ends it."""
+        """Takes a step: its length, the length of the next attempt, and whether an event ends the step."""
         signs = mode.signs
         variables, series = numbers(mode.rates, signs, self.point, self.freedoms, self.order)
         leads = {}

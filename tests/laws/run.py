@@ -62,7 +62,7 @@ def limit():
 
 
 def reference(scene, shift=0.0, kicks=0, kick=0.0, **options):
-    """The motion from a start moved by `shift`, and whose speeds are changed by `kick` so many times on the way."""
+    """The reference motion from a start moved by `shift`. Its speeds are changed by `kick` several times on the way."""
     found = motion.Motion(scene.laws, [x + shift for x in scene.start], **options)
     for part in range(1, kicks + 1):
         found.run(draw.DURATION * part / (kicks + 1))
@@ -102,13 +102,13 @@ def values_of(scene, row):
 
 
 def difference(values, right, largest):
-    """The largest, each relative to the largest of its kind; not a number counts as infinite."""
+    """The largest difference, relative to the largest coordinate or speed; NaN counts as infinite."""
     parts = [abs(a - b) / max(size, 1e-3) for a, b, size in zip(values, right, largest)]
     return max(math.inf if math.isnan(p) else p for p in parts)
 
 
 def verdict(scene, found, run, agree, again):
-    """What a run of the program is worth; `again` computes it at a tenth of its tolerance."""
+    """The verdict on a run of the program; `again` computes the motion at a tenth of its tolerance."""
     status, text, row = run
     if status in (-signal.SIGXCPU, -signal.SIGKILL):
         return "slow", f"more than {LONGEST} s"
@@ -140,7 +140,7 @@ def verdict(scene, found, run, agree, again):
 
 
 def is_sensitive(scene, found, gap):
-    """Whether the motion from a start nearby, or by other steps, differs by as much."""
+    """Whether the motion from a neighbouring start, or with other steps, differs by as much."""
     try:
         others = [reference(scene, shift) for shift in (NEARBY, -NEARBY)] + [reference(scene, order=11, tolerance=1e-15)]
         if gap > FAR:
@@ -173,7 +173,7 @@ def judged(task):
         run = simulated(program, scene, method, folder)
         seconds = time.monotonic() - begin
         if found is None:
-            # Nothing to compare with, but the program must end, and not panic.
+            # Without a reference, the program must still end without a panic.
             is_slow = run[0] in (-signal.SIGXCPU, -signal.SIGKILL)
             is_lost = not is_slow and run[0] not in (0, 1, 2) or "panicked" in run[1]
             outcome = ("wrong", run[1][:300]) if is_lost else ("slow", f"more than {LONGEST} s") if is_slow else ("not judged", reason)

@@ -40,7 +40,7 @@ def closed_forms():
     yield "first turn", conditional("<", call("floor", tau), one, number(4), nothing), (0, 0), 8, (math.tau + speed * (8 - speed / 4), speed)
     yield "oscillator", times(number(-1), X), (0, 1), 10, (math.sin(10), math.cos(10))
     pull = plus(times(number(-0.5), call("sign", V)), times(number(0.25), T))
-    # At rest until the pull is as large as the friction: v = (t − 2)²/8.
+    # The mass rests until the pull equals the friction: v = (t − 2)²/8.
     yield "rest and release", pull, (0, 0), 5, (27 / 24, 9 / 8)
     surface = times(number(-5), call("sign", plus(V, times(number(2), X))))
     # v + 2x = 0 with v = 1 − 5t and x = t − 2.5t².
@@ -69,7 +69,7 @@ class Gives(Exception):
 
 
 def value(law, point, decisions, memo):
-    """A law's value; `decisions` fills with those taken, or gives them where they are held."""
+    """The value of a law. `decisions` collects the decisions, or contains them if they are held."""
     if law in memo:
         return memo[law]
     if law.op == "num":
@@ -128,7 +128,7 @@ def second_program(laws, start, end):
             h = max(high, 1e-13)
             state = stepped(h, dict(decisions))
             now += h
-            # What the values say a little later.
+            # The decisions by the values a little later.
             decisions = taken(now + 1e-11, stepped(1e-11, taken(now, state)))
             continue
         held = dict(decisions)

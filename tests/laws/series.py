@@ -1,8 +1,8 @@
-"""Smooth expressions of t, coordinates and speeds, and the Taylor series of motions that they drive.
+"""Smooth expressions of t, coordinates and speeds, and the Taylor series of the motions under them.
 
-Expressions are interned: two that are written alike are one object. A series is computed once in numbers and once in intervals
+Expressions are interned: equal expressions are one object. A series is computed once in numbers and once in intervals
 (midpoint and radius), whose last coefficient bounds what the numbers leave out (Moore, Interval Analysis, 1966; Nedialkov's
-high-order enclosure). Roundings are not enclosed: they are of the order of 1e-16 and do not decide anything here.
+high-order enclosure). Rounding errors, of the order of 1e-16, are not enclosed; no decision here depends on them.
 """
 import math
 from operator import mul
@@ -16,7 +16,7 @@ class Expr:
 
 
 class Algebra:
-    """Makes expressions, folds constants and sums of nothing. Variable 0 is t; then come coordinates, then their speeds."""
+    """Builds expressions; folds constants and empty sums. Variable 0 is t; coordinates follow, then their speeds."""
 
     def __init__(self):
         self.known = {}
@@ -113,7 +113,7 @@ def numeric(op, values):
 
 
 def in_order(roots):
-    """All parts of some expressions, operands first."""
+    """All subexpressions, operands first."""
     found, stack = {}, list(roots)
     while stack:
         e = stack.pop()
@@ -283,7 +283,7 @@ def product(a, b):
 
 
 def tail(b):
-    """The same without its first coefficient."""
+    """The series without its first coefficient."""
     rest = Balls()
     rest.mid, rest.rad, rest.size, rest.reach = b.mid[1:], b.rad[1:], b.size[1:], b.reach[1:]
     return rest

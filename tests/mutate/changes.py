@@ -1,4 +1,4 @@
-"""The changes that a line of computation admits: one operator, constant, sign, function or index at a time."""
+"""The possible changes of a line of computation: one operator, constant, sign, function or index at a time."""
 
 from rust_text import Source
 
@@ -9,7 +9,7 @@ INDICES = {"0": "1", "1": "0"}
 
 
 class Change:
-    """One change: where it is in the text (`start` to `end` is the expression it is in), and the text instead."""
+    """One change: the expression that contains it (`start` to `end` in the text), and its replacement."""
 
     def __init__(self, path, line, what, region, text):
         self.path, self.line, self.what = path, line, what
@@ -58,7 +58,7 @@ def at_token(source, k):
 
 
 def constant(source, k):
-    """A number twice as large, or larger by a hundredth."""
+    """The number doubled, and the number increased by one per cent."""
     token = source.tokens[k]
     value = token.text.replace("_f64", "").replace("f64", "").replace("_", "")
     if source.is_sign(k - 1, ".") or float(value) == 0.0:
@@ -68,7 +68,7 @@ def constant(source, k):
 
 
 def method(source, k):
-    """Another function, or none."""
+    """Another function, the argument of `abs` itself, or another power."""
     token, region = source.tokens[k], None
     if token.text in METHODS:
         if region := expression(source, k):
@@ -84,12 +84,12 @@ def method(source, k):
 
 
 def expression(source, k):
-    """Where the whole expression around a token lies in the text."""
+    """The range of the whole expression around a token in the text."""
     return region_of(source, source.extent(k))
 
 
 def whole_of_indexed(source, k):
-    """That around an index: of the number indexed, not of the index."""
+    """The range of the expression around an index: that of the indexed number, not of the index."""
     return region_of(source, source.extent(k - 1))
 
 

@@ -1,4 +1,4 @@
-"""Which numbers of what a run wrote differ from those of another run, and by how much."""
+"""Compares the written numbers of two runs: which of them differ, and by how much."""
 import io
 import json
 import math
@@ -11,9 +11,9 @@ PICTURES = {".png", ".svg", ".gif", ".parquet"}
 # A number has changed where it differs by more than this, relative to the largest of its column or to itself.
 EFFECTIVE = 1e-9
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\bNaN\b|\binf\b")
-# What is measured of the machine, or says where files are, is no result.
+# Times, memory and paths of files are no results.
 IGNORED = re.compile(r"second|running for|time:|\btime\b.*ms|program|sha256|hash|seconds|version", re.I)
-# Numbers that say how certain or how costly a result is, not what it is.
+# Estimated errors and costs of results.
 ESTIMATES = re.compile(
     r"error|estimate|step|evaluation|reject|jacobian|factoris|condition|uncertain|accura|drift|toleran|rtol|atol|digits"
     r"|residual|closes to|work_sum|\bhint\b|\bruns\b|worst_at", re.I
@@ -62,7 +62,7 @@ def same_printed(x, y):
 
 
 def numbers(name, data):
-    """The numbers of a file by the name of what they are: {label: [numbers]}."""
+    """The numbers of a file by the names of their quantities: {label: [numbers]}."""
     ending = name.rsplit(".", 1)[-1]
     try:
         if ending == "npz":
@@ -80,7 +80,7 @@ def numbers(name, data):
 
 
 def of_npz(data):
-    """Arrays of doubles, and everything else by its bytes."""
+    """The arrays of doubles as numbers, and all other entries as bytes."""
     found = {}
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         for name in archive.namelist():
@@ -96,7 +96,7 @@ def of_npz(data):
 def of_json(value, label="", found=None):
     found = {} if found is None else found
     if isinstance(value, dict):
-        # Where an entry says its name, it is known by it.
+        # An entry with a name is labelled by it.
         for key, inner in value.items():
             if key not in ("files", "printed", "program", "messages"):
                 of_json(inner, f"{label}.{key}", found)
@@ -139,7 +139,7 @@ def of_table(text):
 
 
 def of_text(text):
-    """The numbers of sentences, by the words around them."""
+    """The numbers in sentences, labelled by the words around them."""
     found = {}
     for line in text.splitlines():
         label = re.sub(r"\s+", " ", NUMBER.sub("#", line)).strip()
@@ -168,7 +168,7 @@ def is_other_place(label, differs, sizes_here, threshold):
 
 
 def quantity_of(label):
-    """The quantity that a label is of, whatever file it stands in."""
+    """The quantity of a label, independent of its file."""
     before = None
     while before != label:
         before, label = label, AROUND.sub("", label)
@@ -176,7 +176,7 @@ def quantity_of(label):
 
 
 def stated(written):
-    """The errors that a run states beside its results, by the quantities."""
+    """The estimated errors that a run states, by quantity."""
     errors = {}
     for name, data in written.files.items():
         if not name.endswith(".json"):
@@ -190,13 +190,13 @@ def stated(written):
 
 
 def slack(base, other):
-    """By how much each quantity may differ: by both stated errors."""
+    """The allowed difference of each quantity: the sum of both stated errors."""
     of_base, of_other = stated(base), stated(other)
     return {name: error + min(of_other.get(name, 0.0), TIMES_STATED * error) for name, error in of_base.items() if math.isfinite(error)}
 
 
 class Difference:
-    """What differs between two runs."""
+    """The difference of two runs."""
 
     def __init__(self):
         self.largest, self.place, self.only_estimates, self.count = 0.0, "", True, 0

@@ -1,4 +1,4 @@
-"""Runs of the program on a few scenes: which changes each of them reaches, and what it writes without any."""
+"""Runs of the program on a few scenes: the changes that each run reaches, and its output without any change."""
 import json
 import math
 import os
@@ -24,7 +24,7 @@ SCENES = [
     "crates/study/tests/run/*.toml",
     "docs/slider.toml",
 ]
-# As short as each can be: positions and rows are few, and no picture is drawn.
+# The commands are short: few positions, few rows and no pictures.
 COMMANDS = [
     ["check"],
     ["reduce", "--points", "25"],
@@ -51,7 +51,7 @@ LONGEST, LONGEST_BASE = 90.0, 5.0
 
 
 class Written:
-    """What one run left: its status (None: endless), its sentences, and its files."""
+    """The output of one run: its status (None if it did not end), its printed text, and its files."""
 
     def __init__(self, status, printed, files, seconds, cost):
         self.status, self.printed, self.files = status, printed, files
@@ -64,13 +64,13 @@ class Written:
 
 
 def processor_time():
-    """Of the processes that ended, s."""
+    """The processor time of the child processes that have ended, s."""
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     return usage.ru_utime + usage.ru_stime
 
 
 class Exercise:
-    """A scene and a command, the changes it reaches, and what it writes without a change."""
+    """A scene and a command, with the changes that the run reaches and its output without a change."""
 
     def __init__(self, scene, arguments):
         self.scene, self.arguments = scene, arguments
@@ -86,7 +86,7 @@ class Exercise:
 
 
 class Program:
-    """The program with all changes in it."""
+    """The program that contains all changes."""
 
     def __init__(self, path, scratch):
         self.path, self.scratch = path, scratch
@@ -137,7 +137,7 @@ def own_commands(scene):
 
 
 def exercises(top, program, say):
-    """All runs that give a result in a short time, with what they reach."""
+    """All runs that end quickly with a result, with the changes that they reach."""
     scenes = sorted(path for pattern in SCENES for path in top.glob(pattern))
     found = []
     for scene in scenes:

@@ -1,4 +1,4 @@
-"""What becomes of each change: whether a written number changes, and which numbered checks of `dwell validate` fail."""
+"""The outcome of each change: whether a written number changes, and which numbered checks of `dwell validate` fail."""
 import json
 
 import contents
@@ -8,7 +8,7 @@ import exercise
 MOST_RUNS, MOST_RUNS_NAMED = 3, 9
 # No more cases are tried than take so long without a change, s of the processors, but at least so many.
 MOST_SECONDS, LEAST_CASES = 25.0, 8
-# The whole of `dwell validate` takes no longer, s.
+# Time limit of `dwell validate` on all cases, s.
 WHOLE_SECONDS = 600.0
 CAUGHT = "caught by two"
 
@@ -45,7 +45,7 @@ class Whole:
 
 
 class Result:
-    """What became of a change."""
+    """The outcome of a change."""
 
     def __init__(self, change):
         self.change, self.outcome, self.checks, self.by = change, "", {}, []

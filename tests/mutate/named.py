@@ -1,4 +1,4 @@
-"""The named faults of `named.toml`: each is planted where its text stands, which must be exactly once in its file.
+"""The named faults of `named.toml`. Each replaces a text that must occur exactly once in its file.
 
     python3 tests/mutate/named.py        # whether all of them still find their place; status 1 if one does not
 """
@@ -18,7 +18,7 @@ AUDITED = 10
 
 
 def named_changes(top):
-    """The faults as changes, and what is wrong with those that cannot be planted."""
+    """The faults as changes, and the reasons for those that cannot be planted."""
     listed = tomllib.loads((top / "tests/mutate/named.toml").read_text(encoding="utf-8"))["fault"]
     changes, wrong, names = [], [], set()
     for fault in listed:

@@ -1,12 +1,12 @@
-"""The overview of what each change did: reports/source-mutations.txt and .md."""
+"""The overview of the outcomes of all changes: reports/source-mutations.txt and .md."""
 import collections
 import tomllib
 
 import judge
 
-# In this order they are counted.
+# The outcomes, in the order of the table.
 OUTCOMES = [judge.CAUGHT, "caught by one", "refused", "endless", "not caught", "only an estimate", "no number changed", "not reached"]
-# At most this part of the changes of a number may stay uncaught.
+# Largest fraction of the changes of a number that may stay uncaught.
 MOST_UNCAUGHT = 0.02
 GROUPS = ["laws, every line", "drawn lines", "named faults"]
 ESTIMATE = "only an estimated error, a residual or a count of steps changes, which no result depends on"
@@ -27,7 +27,7 @@ def reasons(top):
 
 
 def why(result, known):
-    """Why a change is not caught by two checks: as somebody wrote it, or as can be seen."""
+    """The reason why two checks do not catch a change: from reasons.toml, or derived from the outcome."""
     written = known.get((result["file"], result["text"], result["change"]))
     if written:
         return written

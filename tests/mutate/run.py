@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Changes of the source text, one at a time, and which numbered checks of `dwell validate` fail by each.
+"""Changes the source text, one change at a time, and finds the numbered checks of `dwell validate` that fail.
 
     python3 tests/mutate/run.py 400 1          # one change of each of 400 lines drawn by seed 1, all of the laws, all named faults
     python3 tests/mutate/run.py --named        # only the named faults of named.toml
@@ -24,7 +24,7 @@ import overview
 import schemata
 import selection
 
-# Outcomes that a later run need not look at again.
+# Outcomes that `--again` skips.
 SETTLED = {judge.CAUGHT, "no number changed", "not reached", "refused", "endless"}
 # A number is known to change, and only the checks are to be tried again. What no check catches is tried from its beginning.
 OPEN = {"caught by one"}
@@ -70,7 +70,7 @@ def main():
             result["text"] = selection.line_of(top, change)
             say(f"{count}/{len(build.changes)} {result['outcome']}: {change.path}:{change.line} {change.what} {sorted(result['checks'])}")
             results.append(result)
-            # What is not looked at yet is not lost where this ends early.
+            # Written now, so that an interrupted run keeps the changes that are still to be tried.
             keep(list(known.values()))
         else:
             results.append(result)
@@ -93,7 +93,7 @@ def reached(build, program, folder, say):
 
 
 def chosen(top, options):
-    """The changes of a run; a named fault that finds no place ends it."""
+    """The changes of a run. A named fault whose text is not found ends the run."""
     changes, wrong = named.named_changes(top)
     if wrong:
         raise SystemExit("\n".join(wrong))
@@ -103,7 +103,7 @@ def chosen(top, options):
 
 
 def keys(some):
-    """Each with its count among those that are the same, such as two constants of one line."""
+    """The key of each change, with its number among equal ones, such as two constants of one line."""
     counts = collections.Counter()
     numbered = []
     for one in some:
@@ -113,7 +113,7 @@ def keys(some):
 
 
 def key(result):
-    """What stays the same where lines are added above."""
+    """An identification that does not change if lines are added above."""
     return result["file"], result["text"], result["change"], result["instead"]
 
 

@@ -1,4 +1,4 @@
-"""Which parts of a Rust source text compute: tokens, the bodies of functions, and how far an expression reaches."""
+"""The computing parts of a Rust source text: tokens, bodies of functions, and extents of expressions."""
 import re
 
 TOKEN = re.compile(
@@ -30,7 +30,7 @@ COMPUTING_MACROS = {"vec"}
 
 
 class Token:
-    """A token and where it lies in the text."""
+    """A token and its range in the text."""
 
     __slots__ = ("kind", "text", "start", "end")
 
@@ -107,7 +107,7 @@ class Source:
         return out
 
     def computing(self):
-        """The places of all tokens in bodies of functions that are no tests, macros or constants."""
+        """The indices of all tokens in bodies of functions, except in tests, macros and constants."""
         inside = set()
         for begin, end in self.bodies:
             inside.update(range(begin + 1, end))

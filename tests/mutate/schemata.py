@@ -1,7 +1,7 @@
 """One build for all changes: a copy of the sources in which every changed expression is chosen while the program runs.
 
-`a + b` becomes `(if crate::mutant::on(17) { a - b } else { a + b })`. Changes that do not compile are left out: the compiler says
-where they are.
+`a + b` becomes `(if crate::mutant::on(17) { a - b } else { a + b })`. Changes that do not compile are left out; they are found from
+the positions of the compiler errors.
 """
 import json
 import os
@@ -51,14 +51,14 @@ MOST_ROUNDS = 60
 
 
 class Region:
-    """An expression with its changes, and those inside of it."""
+    """An expression with its changes and its subexpressions."""
 
     def __init__(self, start, end):
         self.start, self.end, self.changes, self.inner = start, end, [], []
 
 
 def regions(changes):
-    """The expressions of a file as a tree; changes that overlap others only in part are left out."""
+    """The changed expressions of a file as a tree. Changes that overlap others only in part are left out."""
     by_extent = {}
     for change in changes:
         by_extent.setdefault((change.start, change.end), []).append(change)
@@ -76,7 +76,7 @@ def regions(changes):
 
 
 class Rendered:
-    """A file with choices in it, and the bytes at which each change and each choice came to be."""
+    """A file with inserted choices, and the byte ranges of the changes and choices."""
 
     def __init__(self, text, changes):
         self.pieces, self.at = [], 0
@@ -113,7 +113,7 @@ class Rendered:
         return "".join(self.pieces)
 
     def blamed(self, start, end):
-        """The changes that an error at these bytes is blamed on."""
+        """The changes to which an error at these bytes is attributed."""
         around = lambda ones: [one for one in ones if one[0] <= start and end <= one[1]]
         smallest = lambda ones: min(ones, key=lambda one: one[1] - one[0])[2]
         if found := around(self.branches):
@@ -124,7 +124,7 @@ class Rendered:
 
 
 class Build:
-    """The copy of the tree, and the program made of it."""
+    """The copy of the source tree, and the program built from it."""
 
     def __init__(self, top, folder, changes):
         self.top, self.folder, self.changes = top, folder, changes
@@ -159,7 +159,7 @@ class Build:
         raise SystemExit(f"after {MOST_ROUNDS} rounds the copy does not compile")
 
     def _copy(self, rendered):
-        """Everything but what is rendered; files that are as they were keep their times, so that they are not compiled again."""
+        """Copies all files that are not rendered. Unchanged files keep their times, so that they are not compiled again."""
         for name in COPIED:
             source, copy = self.top / name, self.tree / name
             for path in sorted(source.rglob("*")) if source.is_dir() else [source]:

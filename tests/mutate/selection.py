@@ -1,4 +1,4 @@
-"""Which lines are changed: all of the laws, and those drawn from the crates between the scene and the written files."""
+"""Selects the lines to change: all lines of the laws, and random lines of the crates between the scene and the written files."""
 import hashlib
 import pathlib
 import re
@@ -8,11 +8,11 @@ from changes import changes_of
 # Every change of every line: the laws are small, and generic over no scalar that could record their operations.
 EXHAUSTIVE = ["laws"]
 DRAWN = ["dynamics", "study", "scene", "report", "cli"]
-# Pictures, captions and the wording of errors: no number is written by them.
+# Pictures, captions and error texts write no numbers.
 WITHOUT_NUMBERS = re.compile(
     r"/tests(/|\.rs)|figure|drawing|caption|explain|picture|wording|branch_note|symbols|labels|error|schema|keys|spans|diagnostics|former|animation"
 )
-# Of the report, what writes numbers; the rest draws.
+# The files of the crate report that write numbers; its other files draw.
 WRITERS = re.compile(r"report/src/(npz|json|number|summary|markdown|table|long_export|output_folder|header|files|page)\.rs")
 
 
@@ -37,12 +37,12 @@ def exhaustive_changes(top):
 
 
 def drawn_changes(top, lines, seed):
-    """One change of each of so many lines, drawn by the seed: every line that computes is as probable as any other."""
+    """One change of each of `lines` random lines; all computing lines are equally probable."""
     by_line, seen = {}, {}
     for change in every_change(top, DRAWN):
         by_line.setdefault((change.path, change.line), []).append(change)
     def lot(place):
-        """Of the line's text, not its number, and of its count among the same ones of its file: a line keeps its lot where others change."""
+        """A hash of the text of the line and its index among equal lines of the file. It does not change if other lines do."""
         (path, line), text = place, line_of(top, by_line[place][0])
         seen[path, text] = seen.get((path, text), 0) + 1
         return hashlib.sha256(f"{seed} {path} {text} {seen[path, text]}".encode()).digest()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Small texts with known changes: what may be changed, how far an expression reaches, and what differs between two runs."""
+"""Tests on small texts: possible changes, extents of expressions, and differences between two runs."""
 import contents
 import schemata
 from changes import changes_of
@@ -35,7 +35,7 @@ def check_choices():
     rendered = schemata.Rendered(text, changes)
     written = rendered.written()
     assert written.count("{ g(a + 1.5) / b }") == 1 and written.count("{ a - 1.5 }") == 1, written
-    # An error in one choice is blamed on its change, and on no other.
+    # An error in one choice is attributed to its change only.
     at = len(written[: written.index("a - 1.5")].encode())
     assert [c.text for c in rendered.blamed(at, at + 3)] == ["a - 1.5"]
 

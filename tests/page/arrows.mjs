@@ -1,10 +1,10 @@
-// Forces at contacts as arrows: where they begin, where they point to, and how long they are, by the table of the command.
+// Tests of force arrows at contacts: origin, direction and length, compared with the table of the command.
 
 import { join } from 'node:path';
 import { read } from './csv.mjs';
 import { expect, same } from './expect.mjs';
 
-// By row the numbers of the table.
+// Reads the table of a command; `value(row, name)` is a number of it.
 function table(pages, stem) {
   const { header, rows } = read(join(pages, `${stem}.csv`));
   const names = header.map(name => name.replace(/ \[.*/, ''));
@@ -14,14 +14,14 @@ function table(pages, stem) {
   } };
 }
 
-// Tail and tip of an arrow on the screen, px; nothing of one too short to be seen.
+// Tail and tip of an arrow on the screen, px; null for an arrow that is too short to be drawn.
 async function drawn(page, name) {
   const d = await page.getAttribute(`[data-arrow="${name}"] path`, 'd');
   const ends = /^M([-\d.e]+) ([-\d.e]+)L[^M]*M([-\d.e]+) ([-\d.e]+)/.exec(d || '');
   return ends && ends.slice(1).map(Number);
 }
 
-// Where points of the ground are on the screen: in the plane by a body whose origin is known, m; it is drawn by its frame.
+// The map from points of the ground (m) to the screen (px), from the transform of a body in the plane whose origin is known.
 async function byBody(page, body, [ax, ay]) {
   const all = await page.$$eval('.mechanism g[data-body][transform^=matrix]', (groups, own) => groups.filter(g => g.querySelector('title').textContent === own).map(g => g.getAttribute('transform')), body);
   const [a, b, , , x, y] = all[0].match(/-?\d[\d.e-]*/g).map(Number);
@@ -29,7 +29,7 @@ async function byBody(page, body, [ax, ay]) {
   return point => [x + scale * (point[0] - ax), y - scale * (point[1] - ay)];
 }
 
-// The same by the marks of two joints.
+// The same map, from the marks of two joints.
 async function byMarks(page, [[one, [ax, ay]], [other, [bx, by]]]) {
   const place = async joint => {
     const texts = await page.$$eval('.mechanism .mark', (all, own) => all.filter(m => m.querySelector('title').textContent.startsWith(own)).map(m => m.getAttribute('transform')), `${joint} (`);
@@ -40,8 +40,8 @@ async function byMarks(page, [[one, [ax, ay]], [other, [bx, by]]]) {
   return ([x, y]) => [a[0] + scale * (x - ax), a[1] - scale * (y - ay)];
 }
 
-// Compares arrows with forces in some rows: `expected(row)` has what is on the screen, and by arrow its place and force, in the axes of the ground.
-// All have one scale, px for each N.
+// Compares arrows with forces in the given rows. `expected(row)` returns the map to the screen and, for each arrow, its point and its
+// force in the axes of the ground. All arrows must have the same scale in px/N.
 async function compare(page, rows, expected) {
   let scale = null;
   let count = 0;
@@ -74,7 +74,7 @@ export async function arrowTests({ onPage, pages, pictures }) {
 
   await onPage('the forces of teeth are those of the CSV', 'planetary-teeth-kinetostatics.html', async page => {
     const { rows, value } = table(pages, 'planetary-teeth-kinetostatics');
-    // The reaction on the sun is there by choice only.
+    // The reaction on the sun is hidden by default.
     const hidden = '[data-arrow="inner.line-of-action on sun"]';
     expect(await page.locator(hidden).evaluate(g => g.style.display === 'none'), 'the reaction is shown at first');
     await page.click('summary[aria-label="which forces"]');
@@ -86,8 +86,8 @@ export async function arrowTests({ onPage, pages, pictures }) {
       const length = Math.hypot(...center);
       const [ux, uy] = center.map(c => c / length);
       const [tooth, away, ring] = ['inner.tooth', 'inner.separating', 'outer.tooth'].map(name => value(row, name));
-      // Seen from the planet's centre a positive force turns the planet counter-clockwise. The sun touches it on the inner side, at
-      // 30 mm from the centre of all, the ring on the outer side, at 70 mm.
+      // A positive tooth force turns the planet counter-clockwise. The sun touches the planet at 30 mm from the central axis, the ring at
+      // 70 mm.
       const [inner, outer] = [0.03, 0.07].map(r => [r * ux, r * uy]);
       const tangential = [uy * tooth, -ux * tooth];
       const separating = [ux * away, uy * away];
@@ -108,7 +108,7 @@ export async function arrowTests({ onPage, pages, pictures }) {
     await page.screenshot({ path: join(pictures, 'teeth.png') });
   });
 
-  // The longest is 154 px; in this run the picture has room for all of it.
+  // In this run the picture has room for the longest possible arrow, 154 px.
   await onPage('arrows stay in the picture', 'slider-crank-kinetostatics.html', async page => {
     const found = await page.evaluate(() => {
       const picture = document.querySelector('svg.mechanism');
@@ -172,7 +172,7 @@ export async function arrowTests({ onPage, pages, pictures }) {
     const { rows, value } = table(pages, 'bevel-kinetostatics');
     const [azimuth, elevation] = await page.evaluate(() => window.dwellPage.run().description.drawing.view);
     const [sa, ca, se, ce] = [Math.sin(azimuth), Math.cos(azimuth), Math.sin(elevation), Math.cos(elevation)];
-    // As it is seen: to the right and upwards.
+    // The projection to the picture: components to the right and upwards.
     const seen = ([x, y, z]) => [ca * y - sa * x, ce * z - se * (ca * x + sa * y)];
     const vector = (row, name) => ['x', 'y', 'z'].map(axis => value(row, `${name}.${axis}`));
     const forces = row => Object.fromEntries([['left-teeth', 'carrier.L'], ['right-teeth', 'carrier.R']].map(([teeth, point]) => {

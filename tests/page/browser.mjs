@@ -1,4 +1,4 @@
-// A browser with one page, which reports what it should not do: errors, and requests beside the file itself.
+// A browser with one page. It records faults of the page: errors, and requests other than that of the file itself.
 
 import { chromium } from 'playwright-core';
 import { existsSync } from 'node:fs';
@@ -12,7 +12,7 @@ export async function launch() {
   return chromium.launch({ executablePath, args: ['--no-sandbox'] });
 }
 
-// A page of a file; `faults` gathers errors and requests.
+// Opens the page of a file; `faults` collects errors and requests.
 export async function open(browser, file, { hash = '', ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1440, height: 1100 }, offline: true, acceptDownloads: true, permissions: ['clipboard-read', 'clipboard-write'], ...options });
   const page = await context.newPage();
@@ -38,7 +38,7 @@ export async function openRun(browser, file, options) {
   return opened;
 }
 
-// After so many frames: what an observer of the layout or a timer of the page would do has been done.
+// Waits for `count` frames, so that observers of the layout and timers of the page have run.
 export const frames = (page, count) => page.evaluate(async number => {
   for (let k = 0; k < number; k++) await new Promise(requestAnimationFrame);
 }, count);

@@ -1,4 +1,4 @@
-// What people do to the live page without care, and what it does when they are in a hurry.
+// Tests of the live page with careless and hurried input.
 
 import { expect, same } from './expect.mjs';
 
@@ -7,7 +7,7 @@ const heading = page => page.textContent('.dwell-page h1');
 const hasHeading = (page, words) => page.waitForFunction(own => document.querySelector('.dwell-page h1').textContent.includes(own), words);
 
 export async function carelessTests({ test, settled, paste, write, text, status, caseText, linked }) {
-  // Coloured, it would be half a million elements: the browser ended the tab.
+  // With colours, this text needs half a million elements, and the browser ended the tab.
   await test('900 kB that are no scene do not end the page', async page => {
     const before = await text(page);
     await write(page, 'a=[1,{b}\n'.repeat(100000));
@@ -33,7 +33,7 @@ export async function carelessTests({ test, settled, paste, write, text, status,
     await page.reload();
     await settled(page);
     expect((await heading(page)).startsWith('Edited'), `after a reload: ${await heading(page)}`);
-    // A link that is opened in the same tab is another scene, even so.
+    // A link opened in the same tab still opens its scene.
     await page.evaluate(hash => { location.hash = hash; }, linked(Buffer.from(caseText('whitworth'))));
     await hasHeading(page, 'Whitworth');
     await page.goBack();
@@ -51,7 +51,7 @@ export async function carelessTests({ test, settled, paste, write, text, status,
     expect((await heading(page)).startsWith('Later'), await heading(page));
   });
 
-  // Ten million periods take longer than the minute that is allowed.
+  // Ten million periods take longer than the time limit of one minute.
   await test('what was asked for is ended when it is left', async page => {
     await write(page, caseText('single-dwell').replace(/periods = \d+/, 'periods = 10000000'));
     await page.click('[data-command=simulate]');

@@ -1,4 +1,4 @@
-// Curves: read-out, zoom, choice, and what is in the address.
+// Tests of charts: read-out, zoom, selection of curves, and state in the address.
 
 import { join } from 'node:path';
 import { openRun, launch } from './browser.mjs';

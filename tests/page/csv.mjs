@@ -1,4 +1,4 @@
-// Tables as the command writes them.
+// Reads tables in the CSV format of the commands.
 
 import { readFileSync } from 'node:fs';
 
@@ -13,7 +13,7 @@ function fields(line) {
   return all;
 }
 
-// Header and rows; an empty field is no number.
+// Header and rows; an empty field is NaN.
 export function parse(text) {
   const [header, ...rows] = text.trim().split('\n').map(fields);
   const number = field => (field === '' ? NaN : Number(field.replace('inf', 'Infinity')));

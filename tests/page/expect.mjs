@@ -1,4 +1,4 @@
-// What is expected.
+// Assertions of the tests.
 
 export function expect(condition, message) {
   if (!condition) throw new Error(message);
@@ -8,7 +8,7 @@ export function same(found, expected, what) {
   expect(Object.is(found, expected), `${what}: ${JSON.stringify(found)} instead of ${JSON.stringify(expected)}`);
 }
 
-// A printed number, as the page writes it.
+// The value of a number in the notation of the page.
 export const printed = text => Number(text.replace(/−/g, '-').replace(/·10([⁻⁰-⁹¹²³]+)/, (_, power) => `e${[...power].map(c => '-0123456789'['⁻⁰¹²³⁴⁵⁶⁷⁸⁹'.indexOf(c)]).join('')}`).replace(/[^\d.e-].*$/, ''));
 
 export function near(found, expected, relative, what) {

@@ -2,7 +2,7 @@
 //
 //     node live.mjs WEB PAGES
 //
-// WEB is the folder that `just web` fills, PAGES one for scenes, results and pictures.
+// WEB is the folder that `just web` fills; PAGES is a folder for scenes, results and pictures.
 
 import { execFileSync, spawnSync } from 'node:child_process';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -32,7 +32,7 @@ const browser = await launch();
 const failures = [];
 let count = 0;
 
-// A test on the live page; what it throws is a failure, and so is a fault of the page.
+// Runs a test on the live page. It fails if its body throws or the page has a fault.
 async function test(name, body, options = {}) {
   count += 1;
   const opened = await open(browser, options.file || file, { reducedMotion: 'reduce', ...options });
@@ -54,7 +54,7 @@ const area = '.live-editor textarea';
 const text = page => page.inputValue(area);
 const status = page => page.textContent('#live-status');
 
-// One change of the whole text, as pasting makes; typing it would be one for each line.
+// Replaces the whole text in one change, as pasting does; typing would be one change for each line.
 async function paste(page, scene) {
   await page.evaluate(([selector, value]) => {
     const field = document.querySelector(selector);
@@ -73,7 +73,7 @@ async function saved(page, button) {
   return { name: download.suggestedFilename(), text: readFileSync(await download.path(), 'utf8') };
 }
 
-// The table of a command on a text.
+// The table that a command writes for the text of a scene.
 function table(command, scene) {
   const path = join(scratch, 'scene.toml');
   writeFileSync(path, scene);
@@ -82,7 +82,7 @@ function table(command, scene) {
   return parse(readFileSync(join(scratch, `cli-${names[command] || command}.csv`), 'utf8'));
 }
 
-// All columns of the command, to 1e-13 of the largest value of each unit.
+// Compares all columns with those of the command, to 1e-13 of the largest value of each unit.
 function compare(shown, expected, what) {
   const unit = name => (/\[(.*)\]$/.exec(name) || ['', ''])[1];
   const scales = new Map();
@@ -102,7 +102,7 @@ function compare(shown, expected, what) {
   });
 }
 
-// The scene with its first length that is not zero longer by a factor.
+// The scene with its first nonzero length multiplied by a factor.
 const longer = (scene, part) => scene.replace(/(points = \{[^}]*\[)([1-9]\d*\.?\d*)/, (_, before, number) => `${before}${Number(number) * part}`);
 
 const SAVE_CSV = '.dwell-page button:text("all data")';
@@ -114,9 +114,9 @@ await test('a changed length gives the numbers of the command line', async page 
   await page.screenshot({ path: join(pictures, 'live-jansen.png') });
 });
 
-// All that the results show, as text.
+// All results of the page, as text.
 const shownResults = async page => {
-  // Lines of the table say what is now when an observer has seen them.
+  // The table fills in the values of the current row after an observer has reported its visible lines.
   await frames(page, 3);
   return page.evaluate(shownNow);
 };
@@ -136,7 +136,7 @@ const shownNow = () => {
   };
 };
 
-// So little that the same curves vary most: charts keep theirs while a scene is changed.
+// The changes are so small that the same curves vary most, because charts keep their curves while a scene is edited.
 for (const [name, changed] of [['jansen', scene => longer(scene, 1.001)], ['spatial/rssr', scene => scene.replace(/mass = (\d+\.?\d*)/, (_, mass) => `mass = ${1.5 * mass}`)]]) {
   await test(`a change of ${name} shows what is shown without the scene before it`, async page => {
     const before = name.includes('/') ? readFileSync(join(top, 'validation', `${name}.toml`), 'utf8') : caseText(name);
@@ -167,10 +167,10 @@ await test('what is asked for gives the numbers of the command line', async page
   for (const command of ['reduce', 'simulate']) {
     await page.click(`[data-command=${command}]`);
     await settled(page);
-    // An integration adds up the roundings of its steps, which differ between processors.
+    // Rounding errors of the steps add up in an integration, and differ between processors.
     const expected = table(command, scene);
     if (command === 'reduce') {
-      // Rounding errors are themselves rounding.
+      // The column of rounding errors is itself known only to rounding.
       const kept = expected.header.map((name, k) => k).filter(k => expected.header[k] !== 'relative_error');
       compare(parse((await saved(page, SAVE_CSV)).text), { header: kept.map(k => expected.header[k]), rows: expected.rows.map(row => kept.map(k => row[k])) }, command);
     } else {
@@ -192,7 +192,7 @@ await test('the page begins with the single-dwell mechanism, follows its crank, 
   await page.keyboard.press('ArrowRight');
   expect(place !== await page.textContent('.dwell-page output.place'), 'the row does not move');
   const box = await page.locator('.dwell-page svg.mechanism').boundingBox();
-  // A point on the crank, near its end.
+  // A point on the crank near its end.
   const from = await page.evaluate(() => {
     const groups = [...document.querySelectorAll('.dwell-page svg.mechanism g[data-body]')];
     const path = groups.find(group => group.querySelector('title').textContent === 'crank').querySelector('path');
@@ -247,7 +247,7 @@ await test('a number has a slider, which everything follows', async page => {
   await settled(page);
   const changed = await text(page);
   expect(changed !== scene && /computed in/.test(await status(page)), 'nothing followed');
-  // Only this number.
+  // Only this number has changed.
   same(changed.slice(0, at), scene.slice(0, at), 'text before the number');
 });
 
@@ -274,7 +274,7 @@ await test('a step of the slider is one step of undo', async page => {
   same(await text(page), scene, 'after all steps back');
 });
 
-// As from a file.
+// Opens a scene through the file input.
 async function openScene(page, scene) {
   await page.setInputFiles('#live-file', { name: 'mine.toml', mimeType: 'text/plain', buffer: Buffer.from(scene) });
   await page.waitForFunction(([selector, value]) => document.querySelector(selector).value === value, [area, scene]);
@@ -308,7 +308,7 @@ await test('keys are completed and explained', async page => {
   await page.keyboard.press('Control+End');
   await page.keyboard.type('ine');
   expect(await page.locator('[data-part=completion]').isVisible(), 'no list');
-  // After the events of the typed letters, too.
+  // The explanation remains after the events of the typed letters.
   await page.screenshot({ path: join(pictures, 'live-keys.png') });
   const explained = async () => /^inertia: .*inertia/im.test(await page.textContent('[data-part=hint]'));
   expect(await explained(), 'no explanation of the chosen key');
@@ -334,7 +334,7 @@ await test('200 random edits never leave it dead', async page => {
     else scene = scene.replace(/\d+\.?\d*/g, number => (random(12) === 0 ? String(Number(number) * (random(40) - 10)) : number));
     if (k % 20 === 19) scene = original;
     await paste(page, scene);
-    // Edits are faster than results: only some are waited for.
+    // Edits are faster than results: the test waits for the results of every tenth edit only.
     if (k % 10 !== 9) continue;
     await settled(page);
     expect((await status(page)).length > 0, `nothing is said after edit ${k}`);
@@ -378,7 +378,7 @@ await test('a damaged link is refused', async page => {
 await test('a panic costs an instance, not the page', async page => {
   const before = await text(page);
   const worker = page.workers()[0];
-  // The address of more memory than there is: a panic within the module, in the way of the next request.
+  // The next request makes the module panic, because it asks for more memory than there is.
   await worker.evaluate(() => {
     const { exports } = instance;
     instance = { exports: { ...exports, respond: () => exports.room(0xffffffff) } };
@@ -391,7 +391,7 @@ await test('a panic costs an instance, not the page', async page => {
 
 await test('what takes too long is ended', async page => {
   const before = await text(page);
-  // A module that never answers.
+  // Replaces the module by one that never answers.
   await page.workers()[0].evaluate(() => {
     instance = { exports: { ...instance.exports, respond: () => { for (;;); } } };
   });
@@ -414,7 +414,7 @@ await test('narrow screens', async page => {
   expect(wide <= 1, `${wide} pixels too wide`);
 }, { viewport: { width: 400, height: 900 } });
 
-// In 24 rows: pairs of labels that lie over each other by more than the room above and below their letters, 3 px.
+// The number of pairs of labels in 24 rows that overlap by more than 3 px, the space above and below their letters.
 const labelsMeet = page => page.evaluate(() => {
   const slider = document.querySelector('input.slider');
   let count = 0;
@@ -428,7 +428,7 @@ const labelsMeet = page => page.evaluate(() => {
   return count;
 });
 
-// Two pairs are left, each in one row: of pins that come so near that there is no room.
+// Two pairs remain, each in one row, of pins so near to each other that there is no room.
 const NEAR_PINS = { 'four-bar': 1, 'bricard-a04': 1 };
 
 await test('labels keep apart on narrow screens', async page => {
@@ -439,7 +439,7 @@ await test('labels keep apart on narrow screens', async page => {
     const count = await labelsMeet(page);
     expect(count <= (NEAR_PINS[name] || 0), `${name}: labels over each other, ${count}`);
   }
-  // A long name is not cut by the edge.
+  // A long name stays within the picture.
   await write(page, caseText('single-dwell').replace(/\bA\b(?= = \[)/g, 'point_of_a_long_name').replace(/\.A"/g, '.point_of_a_long_name"').replace('"A"', '"point_of_a_long_name"').replace(/^A = /m, 'point_of_a_long_name = '));
   const outside = await page.$$eval('svg.mechanism text.label', all => all.filter(label => {
     const [own, picture] = [label.getBoundingClientRect(), label.ownerSVGElement.getBoundingClientRect()];
@@ -461,7 +461,7 @@ await test('examples', async page => {
   }
 });
 
-// The names of the arrows that are seen.
+// The names of the visible arrows.
 const arrows = page => page.$$eval('svg.mechanism [data-arrow]', all => all.filter(g => g.style.display !== 'none').map(g => g.dataset.arrow));
 
 await test('forces of a scene are shown after another scene, and what is chosen stays', async page => {
@@ -469,7 +469,7 @@ await test('forces of a scene are shown after another scene, and what is chosen 
   await write(page, caseText('planetary'));
   const first = await arrows(page);
   expect(['C', 'inner', 'outer'].every(name => first.includes(name)) && !first.includes('inner on sun'), `arrows ${first}`);
-  // And its charts begin with what it answers.
+  // The first chart shows the default group of the new command.
   same(await page.inputValue('.chart-head select >> nth=0'), 'Reactions, magnitudes|N', 'the first chart');
   await page.click('summary[aria-label="which forces"]');
   await page.click('.choices label:text-is("inner")');
@@ -485,7 +485,7 @@ await test('forces of a scene are shown after another scene, and what is chosen 
   await page.screenshot({ path: join(pictures, 'live-teeth.png') });
 });
 
-// What `dwell view` writes.
+// Writes the live page with `dwell view`.
 spawnSync(dwell, ['view', join(top, 'validation/four-bar/scene.toml'), '--page', file, '--out', scratch], { stdio: 'ignore' });
 await test('dwell view opens its scene', async page => {
   same(await text(page), caseText('four-bar'), 'the scene');

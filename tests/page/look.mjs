@@ -1,4 +1,4 @@
-// What a page looks like: dark, in print, on a phone, for those who want no motion. Pictures are kept to be looked at.
+// Tests of the appearance: dark theme, print, phone, reduced motion. The screenshots are kept for inspection.
 
 import { join } from 'node:path';
 import { frames } from './browser.mjs';

@@ -1,4 +1,4 @@
-// The mechanism, its slider and its keys.
+// Tests of the picture of the mechanism, its slider and its keys.
 
 import { join } from 'node:path';
 import { frames } from './browser.mjs';
@@ -52,13 +52,13 @@ export async function mechanismTests({ onPage, pages, pictures }) {
   });
 
   await onPage('the crank follows the pointer', file, async page => {
-    // The crank is from A, on the ground, to B: the first two pins.
+    // The crank connects A, on the ground, and B: the first two pins.
     const [center, from] = await page.$$eval('.mark-pin .pin', all => all.map(pin => {
       const b = pin.getBoundingClientRect();
       return [b.x + b.width / 2, b.y + b.height / 2];
     }));
     const [dx, dy] = [from[0] - center[0], from[1] - center[1]];
-    // A little inside of the pin, on the bar.
+    // A point on the bar, a little inside the pin.
     await page.mouse.move(center[0] + 0.8 * dx, center[1] + 0.8 * dy);
     await page.mouse.down();
     const turn = angle => [center[0] + 0.8 * (dx * Math.cos(angle) + dy * Math.sin(angle)), center[1] + 0.8 * (dy * Math.cos(angle) - dx * Math.sin(angle))];

@@ -1,4 +1,4 @@
-// Data that leave the page, and words that are only words.
+// Tests of downloaded data, and of texts that contain markup.
 
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -64,7 +64,7 @@ export async function numberTests({ onPage, pages }) {
     same(await page.title(), title, 'the title');
     same(await page.locator('img, b').count(), 0, 'elements of a scene');
     await frames(page, 10);
-    // A script that is put into the page does not run.
+    // A script inserted into the page does not run.
     const told = page.waitForEvent('console', message => message.type() === 'error');
     const ran = await page.evaluate(() => {
       const script = document.createElement('script');

@@ -2,7 +2,7 @@
 //
 //     node run.mjs PAGES REPORTS
 //
-// PAGES is the folder that make.sh fills, REPORTS that of `dwell validate`. Screenshots go to PAGES/pictures.
+// PAGES is the folder that make.sh fills; REPORTS is the folder that `dwell validate` fills. Screenshots go to PAGES/pictures.
 
 import { mkdirSync, readdirSync, statSync } from 'node:fs';
 import { join } from 'node:path';
@@ -25,7 +25,7 @@ const browser = await launch();
 const failures = [];
 let count = 0;
 
-// A test by its name; what it throws is a failure, and so is a fault of its page.
+// Runs a named test. It fails if its body throws or its page has a fault.
 async function test(name, body) {
   count += 1;
   try {
@@ -36,7 +36,7 @@ async function test(name, body) {
   }
 }
 
-// A test on a page of PAGES.
+// Runs a test on a page of PAGES.
 const onPage = (name, file, body, options) => test(`${file}: ${name}`, async () => {
   const opened = await openRun(browser, join(pages, file), options);
   try {
@@ -56,7 +56,7 @@ await lookTests(tools);
 
 const htmlOf = folder => readdirSync(folder).filter(file => file.endsWith('.html')).map(file => join(folder, file));
 
-// Every page opens without an error or a request, and shows something.
+// Every page opens without errors and requests, and shows contents.
 for (const file of [...htmlOf(pages), ...htmlOf(reports)]) {
   await test(file, async () => {
     const { page, faults, context } = await open(browser, file);
@@ -67,7 +67,7 @@ for (const file of [...htmlOf(pages), ...htmlOf(reports)]) {
     const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
     if (isRun && wide > 1) throw new Error(`the page is ${wide} pixels too wide`);
     await context.close();
-    // Documents show the pictures beside them.
+    // Documents load the pictures beside them.
     const real = isRun || file.endsWith('index.html') ? faults : faults.filter(fault => !/request: file:.*\.png$/.test(fault));
     if (real.length) throw new Error(real.join('; '));
   });

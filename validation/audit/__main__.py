@@ -1,4 +1,4 @@
-"""The independent reader and judge of what the commands write: `python3 validation/audit SCENE FOLDER`."""
+"""The independent reader and judge of the files of the commands: `python3 validation/audit SCENE FOLDER`."""
 
 import argparse
 import json

@@ -8,7 +8,7 @@ from kinematics import zero_if_none
 from scene import Z
 
 
-# At most so many rows are projected where reactions are in no column: each takes a singular value decomposition.
+# Largest number of projected rows if reactions have no columns: each row needs a singular value decomposition.
 PROJECTED = 200
 
 
@@ -45,7 +45,7 @@ class Balance:
                 self.moment = np.maximum.reduce([self.moment, force * arm, np.linalg.norm(w.couple, axis=-1)])
 
     def add_inertia(self, order=2):
-        """m a and dL/dt; with order 1 velocities stand for accelerations, so that what is left is linear in them."""
+        """Adds m a and dL/dt. With order 1, velocities replace the accelerations, so that the residual is linear in them."""
         motion = self.motion
         for k in self.moving:
             body, frame, center = motion.scene.bodies[k], motion.frames[k], motion.center(k)
@@ -68,12 +68,12 @@ class Balance:
             self.moment = np.maximum(self.moment, terms)
 
     def add_unknown(self, wrenches):
-        """A component of which the file has no column: what it could balance is left out."""
+        """Adds a component without a column in the file; the residual that it could balance is not judged."""
         self.unknown.append(self.vector(wrenches))
         return len(self.unknown) - 1
 
     def judge(self, judge, key, what):
-        """What is left of every body, beyond what unknown components could balance."""
+        """Judges the residual of every body, except the part that unknown components could balance."""
         force = largest(self.force)
         moment = max(largest(self.moment), force * self.size)
         if self.unknown:
@@ -109,7 +109,7 @@ class Balance:
                       f"{what}{decided} of {equations} equations that reactions without a column leave")
 
     def condition(self, condition):
-        """A direction in which a joint transmits nothing: the value of known components, and the row of the unknown ones."""
+        """A condition for a direction in which a joint transmits nothing: the value of known components, and the row of the unknown ones."""
         (direction_f, direction_m), known_f, known_m, unknown = condition
         is_moment = np.any(direction_m)
         parts = [d / self.size if is_moment else d for d in (direction_f, direction_m)]
@@ -121,7 +121,7 @@ class Balance:
 
 
 def add_reactions(judge, balance, suffix="", parts_teeth=True):
-    """The reactions of all joints, as columns with this ending have them; with what parts teeth, which counts as a load."""
+    """Adds the reactions of all joints from the columns with this ending, and the separating forces of teeth, which count as loads."""
     motion = balance.motion
     rows = motion.rows
     for joint in motion.scene.joints:
@@ -145,7 +145,7 @@ def add_reactions(judge, balance, suffix="", parts_teeth=True):
 
 
 def add_free_directions(judge, balance, joint, vectors, unknown, suffix):
-    """A joint transmits no force along what it leaves free, and no moment about it."""
+    """Adds the conditions that a joint transmits no force along its free directions, and no moment about them."""
     force, moment = vectors
     for direction in free_directions(joint, balance.motion):
         condition = (direction, force, moment, unknown)
@@ -158,7 +158,7 @@ def add_free_directions(judge, balance, joint, vectors, unknown, suffix):
 
 
 def reaction(motion, joint):
-    """Force and moment of a joint about its second body's point; none where a component has no column."""
+    """Force and moment of a joint about its second body's point; None if a component has no column."""
     total, couple = np.zeros((motion.count, 3)), np.zeros((motion.count, 3))
     for name, wrenches in unit_reactions(joint, motion).items():
         column = motion.rows.get(f"{joint.name}.{name}")
@@ -170,12 +170,12 @@ def reaction(motion, joint):
 
 
 def written(rows, name):
-    """The force or moment of a load or drive as written; none without a column."""
+    """The written force or moment of a load or drive; None without a column."""
     return next((rows.get(f"{name}.load_{end}") for end in ("force", "moment") if f"{name}.load_{end}" in rows), None)
 
 
 def actuator_forces(balance, of_free, prescribed):
-    """The forces of actuators: their columns; those of free coordinates are zero, all others unknown."""
+    """The forces of actuators from their columns. Without a column, the force of a free coordinate is zero, any other force unknown."""
     motion, powers = balance.motion, []
     for coordinate in motion.scene.actuators:
         column = motion.rows.get(f"{coordinate.name}.actuator_force")

@@ -12,7 +12,7 @@ from runs import prepare
 
 
 def judged(program, scene):
-    """The checks of the files of every folder that the commands left, what was not judged, and what could not be read."""
+    """The checks of all files in the folders of the commands, the files that were not judged, and those that could not be read."""
     checks, skipped, errors = [], [], []
     with tempfile.TemporaryDirectory(prefix="dwell-audit-") as folder:
         prepare(program, scene, folder)

@@ -10,11 +10,11 @@ from reduced import taken
 from sweeps import along_itself, with_numbers
 
 
-# What `check` says.
+# The output of `check`.
 
 
 def judge_contents(judge, scene, summary, others):
-    """Masses, inertias and counts, and the centre of mass and angles where the mechanism is assembled."""
+    """Judges masses, inertias and counts, and the centre of mass and the angles at assembly."""
     moving = [body for body in scene.bodies if not body.is_ground]
     mass = sum(body.mass for body in moving)
     stated = {"moving_bodies": len(moving), "joints": len(scene.joints), "degrees_of_freedom": len(scene.actuators), "mass": mass}
@@ -56,7 +56,7 @@ def judge_contents(judge, scene, summary, others):
 
 
 def assembled(scene, others):
-    """The first row of a file in which all actuators are where the scene is assembled; or none."""
+    """The first row of a file in which all actuators have their values at assembly; None if there is none."""
     starts = {c.name: scene.start_of(c) for c in scene.actuators}
     for rows in others:
         if rows is None or not all(name in rows and start is not None for name, start in starts.items()):
@@ -71,7 +71,7 @@ def assembled(scene, others):
 
 
 def judge_range(judge, summary, rows, name):
-    """Between two limit positions the rows of `reduce` leave out a thousandth of the range at each."""
+    """Judges the range. Between two limit positions, the rows of `reduce` leave out a thousandth of the range at each."""
     said = " ".join(summary.get("printed") or [])
     low, high = result(summary, "range.lower"), result(summary, "range.upper")
     if None in (low, high) or not ("limit positions at both ends" in said or said.count("limit position of ") >= 2):
@@ -85,7 +85,7 @@ def judge_range(judge, summary, rows, name):
 
 
 def judge_calibration(judge, scene, text, summary, moving):
-    """The period with the calibrated number: of a free rotation without loads q̇ √m is constant."""
+    """Judges the period with the calibrated number: in a free rotation without loads, q̇ √m is constant."""
     parameter = scene.keys.get("calibration", {}).get("parameter", "")
     value, period = result(summary, parameter), result(summary, "required_period")
     coordinate = scene.actuators[0]
@@ -102,7 +102,7 @@ def judge_calibration(judge, scene, text, summary, moving):
     if abs(abs(q[-1] - q[0]) - 2.0 * np.pi) > 1e-9 or not here.size:
         judge.skip("the period of the calibrated scene", "no file of a whole revolution with a row at the start")
         return
-    # Trapezoids over a whole revolution are exact to rounding.
+    # The trapezoidal rule over a whole revolution is exact to rounding.
     integral = (0.5 * np.diff(q) * (root[1:] + root[:-1])).sum()
     judge.compare("calibration", integral / (root[here[0]] * abs(speed)) - period, period, "s", f"period with the calibrated {parameter}")
 
@@ -171,7 +171,7 @@ class ModelTable:
 
 
 def judge_table(judge, text, rows, name):
-    """Every row of `reduce` by the table, within the errors that the table states."""
+    """Compares every row of `reduce` with the table, within the errors that the table states."""
     table = ModelTable(text)
     judge.require("table", table.fnv() == table.check, "the checksum of the table is another")
     order = ["m", "half_dm", *table.names("ab"), *table.names("wc")]

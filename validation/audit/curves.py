@@ -1,4 +1,4 @@
-"""Functions of one variable as a scene gives them: tables, sinusoids, rises and expressions."""
+"""Functions of one variable in a scene: tables, sinusoids, rises and expressions."""
 
 from dataclasses import dataclass
 
@@ -35,7 +35,7 @@ class Table:
             self.slopes = np.stack([secants, secants])
 
     def __call__(self, x):
-        """The value; beyond the points along the tangents, or no number."""
+        """The value; beyond the points, that of the tangents, or NaN."""
         at = x.value
         piece = np.clip(np.searchsorted(self.x, at, side="right") - 1, 0, len(self.x) - 2)
         y0, y1 = self.y[piece], self.y[piece + 1]

@@ -41,7 +41,7 @@ class Expression:
             return self.evaluate(names)
 
     def take(self, *signs):
-        """The next sign if it is one of these."""
+        """Takes the next sign if it is one of these."""
         kind, text = self.tokens[0]
         if kind == "sign" and text in signs:
             self.tokens.pop(0)
@@ -98,7 +98,7 @@ class Expression:
         raise ValueError(f"expression `{self.text}` cannot be read at `{text}`")
 
     def add_switches(self, name, arguments):
-        """Where a function switches: between its arguments, or at zero or whole numbers of its only one."""
+        """Adds the switches of a function: where two arguments are equal, or where its only argument is zero or a whole number."""
         if name in ("min", "max", "clamp"):
             self.switches += [operation(lambda a, b: a - b, arguments[0], other) for other in arguments[1:]]
         elif name in ("abs", "sign", "step"):
@@ -123,7 +123,7 @@ def operation(function, left, right):
 
 
 def raised(base, exponent):
-    """A power; of a constant exponent also where the base is negative."""
+    """A power; with a constant exponent the base may be negative."""
     p = exponent.value.flat[0] if exponent.value.size else 0.0
     if np.all(exponent.value == p) and not exponent.first.any() and not exponent.second.any():
         return power(base, float(p))
@@ -177,6 +177,6 @@ FUNCTIONS = {
 
 
 def tanh(u):
-    """tanh(u), whose exponentials would overflow."""
+    """tanh(u) without overflow of the exponentials."""
     t = np.tanh(u.value)
     return u.through(t, 1.0 - t * t, -2.0 * t * (1.0 - t * t))

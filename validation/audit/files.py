@@ -1,4 +1,4 @@
-"""What a command has written in a folder: tables, archives and summaries, by the ends of their names."""
+"""The files of a command in a folder: tables, archives and summaries, by the ends of their names."""
 
 import csv
 import hashlib
@@ -25,12 +25,12 @@ class Rows:
         return self.columns.get(name)
 
     def several(self, prefix, ends):
-        """Columns side by side, (rows, columns); none where one is missing."""
+        """Columns side by side, shape (rows, columns); None if one is missing."""
         found = [self.columns.get(prefix + end) for end in ends]
         return None if any(column is None for column in found) else np.stack(found, axis=-1)
 
     def ending(self, end):
-        """Names without this end, with their columns."""
+        """The columns with this ending, by their names without it."""
         return [(name.removesuffix(end), values) for name, values in self.columns.items() if name.endswith(end)]
 
 
@@ -105,7 +105,7 @@ class Folder:
         return {}
 
     def notes(self):
-        """Summaries of another text of the scene than the one that is read."""
+        """Notes on summaries that belong to another text of the scene than the one read."""
         for path in sorted(self.path.glob(f"{self.name}-*.json")):
             scene = json.loads(path.read_text(encoding="utf-8")).get("scene") or {}
             if scene.get("sha256") not in (None, self.sha256):

@@ -1,4 +1,4 @@
-"""Loads, friction and drives of a scene: what they exert in every row."""
+"""Forces and moments of loads, friction and drives in every row."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ class NoValue(Exception):
 
 
 def load_magnitude(load, motion, names):
-    """The force or moment of a load as its column has it; of gravity its acceleration."""
+    """The force or moment of a load, as in its column; for gravity, the acceleration."""
     amount = value_of(load.magnitude, names, motion.count)
     if load.source == "given":
         return amount
@@ -29,7 +29,7 @@ def along_drag(load, motion):
 
 
 def load_terms(load, motion, names):
-    """The size of the terms of a load's magnitude: that of a spring is a difference of lengths."""
+    """The size of the terms of a load's magnitude; the elongation of a spring, for example, is a difference of lengths."""
     amount = np.abs(value_of(load.magnitude, names, motion.count))
     if load.source == "given":
         return amount
@@ -78,10 +78,10 @@ def coefficient(load, motion):
 
 
 class FrictionForces:
-    """What presses on the surfaces of a joint, how fast they slide, and how friction acts."""
+    """The contact forces of a joint, its sliding speeds, and the friction."""
 
     def __init__(self, friction, motion, force, moment):
-        """Of the force and the moment of the joint about its second body's point, in the axes of the ground."""
+        """Takes the force and the moment of the joint about its second body's point, in the axes of the ground."""
         scene = motion.scene
         self.friction, self.joint = friction, scene.joints[friction.joint]
         self.bodies = [place.body for place in self.joint.places]
@@ -102,7 +102,7 @@ class FrictionForces:
 
     @property
     def speed(self):
-        """What the smoothing refers to: the angular velocity of a pin, the velocity of all other surfaces."""
+        """The speed in the smoothing: angular velocity for a pin, sliding velocity for all other surfaces."""
         if self.is_pin:
             return self.spin
         if self.joint.kind != "cylindrical":
@@ -111,11 +111,11 @@ class FrictionForces:
 
     @property
     def limit(self):
-        """The largest dry friction while sliding: a moment of a pin, a force of all others."""
+        """The largest dry friction while sliding: a moment for a pin, a force for all other joints."""
         return self.friction.coefficient * self.pressure * (self.friction.radius if self.is_pin else 1.0)
 
     def dry(self):
-        """Dry friction along the axis and about it, by the law of the moving surfaces."""
+        """Dry friction along the axis and about it, by the law of sliding surfaces."""
         v, speed = self.friction.regularization, self.speed
         share = np.sign(speed) if v is None else np.tanh(speed / v)
         if self.joint.kind != "cylindrical":
@@ -150,7 +150,7 @@ class DriveForces:
 
     @property
     def current(self):
-        """By the circuit; with an inductance the current is a state, and its column is taken."""
+        """The current of the circuit. With an inductance it is a state and read from its column."""
         if self.numbers.get("inductance", 0.0) > 0.0:
             return self.written_current
         return (self.magnitude - self.induced) / self.numbers["resistance"]
@@ -161,7 +161,7 @@ class DriveForces:
 
     @property
     def current_rate(self):
-        """The rate of a current that is a state; none of others."""
+        """The rate of a current that is a state; None for other currents."""
         inductance = self.numbers.get("inductance", 0.0)
         if not inductance or self.current is None:
             return None
@@ -169,7 +169,7 @@ class DriveForces:
 
     @property
     def unlimited(self):
-        """Of a controller: its force without the limit; none where its integral is in no file, and of other drives."""
+        """The force of a controller without its limit; None for other drives, and if no file has its integral."""
         if self.drive.kind != "speed-controller":
             return None
         integral = self.numbers["integral"]
@@ -179,7 +179,7 @@ class DriveForces:
         return self.numbers["proportional"] * error + (integral * self.integral if integral else 0.0)
 
     def force(self):
-        """Before what accelerates its rotor; of a controller whose integral is in no file the written one."""
+        """The force before the part that accelerates the rotor. For a controller whose integral is in no file, the written force."""
         ratio = self.numbers["ratio"]
         if self.drive.kind == "applied-force":
             return self.magnitude
@@ -193,13 +193,13 @@ class DriveForces:
         return ratio * self.numbers["stall-torque"] * (voltage - ratio * self.coordinate.first / self.numbers["no-load-speed"])
 
     def net(self):
-        """What is left for the mechanism beside what accelerates the rotor."""
+        """The force on the mechanism: the force without the part that accelerates the rotor."""
         force = self.force()
         return None if force is None else force - self.numbers["rotor"] * self.coordinate.second
 
 
 def stop_forces(stop, motion):
-    """The force of a stop that yields, along its coordinate: a spring and a damper that only push."""
+    """The force of a compliant stop along its coordinate: a spring and a damper that can only push."""
     coordinate = motion.measure(motion.scene.coordinate(stop["coordinate"]).measure)
     total = np.zeros(motion.count)
     for end, sign in (("min", 1.0), ("max", -1.0)):

@@ -22,11 +22,11 @@ class Jet:
         return self.value, self.first, self.second
 
     def at_rest(self):
-        """The same value without derivatives."""
+        """The value with zero derivatives."""
         return Jet(self.value)
 
     def each(self, function):
-        """A linear function of every derivative."""
+        """Applies a linear function to value and derivatives."""
         return Jet(*(function(order) for order in self.orders))
 
     def through(self, f, f1, f2):
@@ -63,7 +63,7 @@ class Jet:
 
 
 def jet(value):
-    """A jet of a number or an array that does not change, or the jet itself."""
+    """The jet of a constant number or array; a jet is returned unchanged."""
     return value if isinstance(value, Jet) else Jet(value)
 
 

@@ -1,4 +1,4 @@
-"""Joints: what each keeps at zero, and the forces that its reaction exerts.
+"""Joints: their constraint residuals, and the forces of their reactions.
 
 Every kind is a list of parts. A joint in the plane is the joint in space whose axis is z, or whose slide lies in z = 0.
 """
@@ -11,7 +11,7 @@ from jets import Jet, atan2, cross, dot, jet, length, scaled, without_turns
 from scene import Z
 
 
-# Parts of the kinds that are made of points, axes and normals.
+# Parts of the kinds of joints, from points, axes and normals.
 PARTS = {
     "revolute": ("point", "axes"),
     "spherical": ("point",),
@@ -35,7 +35,7 @@ PARTS = {
 
 @dataclass
 class Residual:
-    """What a joint keeps at zero: an angle or a length. Of teeth between moving wheels only rates are known."""
+    """A quantity that a joint keeps at zero, an angle or a length. For teeth between moving wheels only its rates are known."""
 
     jet: Jet
     is_angle: bool
@@ -43,7 +43,7 @@ class Residual:
 
 
 def residuals(joint, motion):
-    """What a joint keeps at zero in every row."""
+    """The quantities that a joint keeps at zero, in every row."""
     found = []
     for part in PARTS[joint.kind]:
         for residual in PART_FUNCTIONS[part](joint, motion):
@@ -70,7 +70,7 @@ def points_coincide(joint, motion):
 
 
 def parallel(u, w):
-    """Two unit vectors that are parallel and not opposite."""
+    """Residuals of two parallel unit vectors of the same sense."""
     return [Residual(cross(u, w), True), Residual(1.0 - dot(u, w), True)]
 
 
@@ -95,7 +95,7 @@ def in_plane(joint, motion):
 
 
 def along_thread(joint, motion):
-    """The travel is the pitch times the revolutions; the turns of the rotation are those of the travel."""
+    """The travel is the pitch times the angle in revolutions. The travel decides the number of whole revolutions."""
     travel = dot(axis_of(joint, motion), gap_of(joint, motion))
     measure = motion.scene.measure_of(joint, "angle")
     pitch = joint.sizes["pitch"]
@@ -103,19 +103,19 @@ def along_thread(joint, motion):
 
 
 def keeps_length(joint, motion):
-    """Of a driven distance the actuator decides the length."""
+    """The length of a distance is constant; for a driven distance the actuator decides it."""
     wanted = joint.sizes.get("length")
     return [] if wanted is None else [Residual(length(gap_of(joint, motion)) - wanted, False)]
 
 
 def kept(quantity, turn=None):
-    """What stays as it is in the first row; wheels may mesh anew after whole revolutions."""
+    """A quantity keeps its value of the first row, except for whole revolutions of meshing wheels."""
     change = quantity - quantity.value[0]
     return change if turn is None else without_turns(change, turn)
 
 
 def gears_roll(joint, motion):
-    """Two wheels roll on each other, seen from the line of their centres."""
+    """Two wheels roll on each other, relative to their line of centres."""
     r, s = joint.sizes["radii"]
     s = -s if joint.sizes["internal"] else s
     gap = gap_of(joint, motion)
@@ -191,13 +191,13 @@ class Wrench:
         return Wrench(self.body, self.force * factor, self.point, self.couple * factor)
 
     def power(self, motion):
-        """Its power on the moving body."""
+        """The power of the wrench on the moving body."""
         frame = motion.frames[self.body]
         velocity = frame.origin.first + np.cross(frame.omega, self.point - frame.origin.value)
         return (self.force * velocity).sum(-1) + (self.couple * frame.omega).sum(-1)
 
     def power_terms(self, motion):
-        """The size of its power, whatever the directions are."""
+        """The size of the terms of the power, independent of the directions."""
         frame = motion.frames[self.body]
         speed = np.linalg.norm(frame.origin.first + np.cross(frame.omega, self.point - frame.origin.value), axis=-1)
         spin = np.linalg.norm(frame.omega, axis=-1)
@@ -205,13 +205,13 @@ class Wrench:
 
 
 def pair(bodies, force, point, couple):
-    """A force and couple of the first body on the second at a point, with their opposites."""
+    """A force and a couple of the first body on the second at a point, and the opposite ones on the first."""
     force, point, couple = np.broadcast_arrays(force, point, couple)
     return [Wrench(bodies[0], -force, point, -couple), Wrench(bodies[1], force, point, couple)]
 
 
 def along(motion, measure):
-    """A unit force along a coordinate, of its first body on its second: it does work where the coordinate grows."""
+    """A unit force along a coordinate, of its first body on its second: its work is positive if the coordinate increases."""
     a, b = (place.body for place in measure.places)
     if measure.kind == "length":
         line = motion.gap(measure.places).value
@@ -233,7 +233,7 @@ SPACE_COMPONENTS = ("x", "y", "z", "moment-x", "moment-y", "moment-z")
 
 
 def reaction_point(joint, motion):
-    """Where a reaction acts: the second body's point, or where teeth touch."""
+    """The point at which a reaction acts: the second body's point, or the pitch point of teeth."""
     return motion.point(joint.carrier or joint.places[1]).value
 
 
@@ -281,7 +281,7 @@ def coupling_reaction(joint, motion):
 
 
 def pitch_point(joint, motion):
-    """Where two gears in the plane touch, the direction of the tooth force, and the direction that parts them."""
+    """The pitch point of two gears in the plane, and the directions of the tooth force and of the separating force."""
     r, s = joint.sizes["radii"]
     line = gap_of(joint, motion).value
     line = line / np.linalg.norm(line, axis=1, keepdims=True)
@@ -290,7 +290,7 @@ def pitch_point(joint, motion):
 
 
 def separating(joint, motion):
-    """The unit force that parts teeth with a pressure angle, of the first on the second; none of other joints."""
+    """The unit separating force of teeth with a pressure angle, of the first body on the second; None for other joints."""
     slope = np.tan(joint.sizes.get("pressure", 0.0))
     if slope == 0.0:
         return None, 0.0

@@ -49,14 +49,14 @@ class Judge:
             worst.place = f"row {row}, {place}" if size.size > 1 else place
 
     def require(self, key, holds, reason):
-        """What must hold, whatever the numbers are."""
+        """Requires a condition that has no difference and no tolerance."""
         worst = self.worst(key)
         worst.count += 1
         if not holds and not worst.reason:
             worst.reason = reason
 
     def skip(self, what, reason):
-        """What cannot be judged is said."""
+        """Notes that something cannot be judged."""
         line = f"{self.file}: {what}: {reason}" if self.file else f"{what}: {reason}"
         if line not in self.skipped:
             self.skipped.append(line)
@@ -94,6 +94,6 @@ class Judge:
 
 
 def largest(*arrays):
-    """The largest absolute value, without what is not a number."""
+    """The largest absolute value, without NaN."""
     sizes = [np.nanmax(np.abs(a)) for a in map(np.asarray, arrays) if a.size and not np.all(np.isnan(a))]
     return max(sizes, default=0.0)

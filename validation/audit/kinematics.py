@@ -1,4 +1,4 @@
-"""Positions and their rates: joints, points, coordinates and laws of every row, and what changes between rows."""
+"""Positions and their rates: joints, points, coordinates and laws in every row, and the changes between rows."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ RATES = ("", " velocity", " acceleration")
 
 
 def closure(judge, motion):
-    """Points, joints, coordinates and travels of every row with the scene's text."""
+    """Compares points, joints, coordinates and travels of every row with the scene."""
     scene, rows = motion.scene, motion.rows
     size, speed, rate = motion.largest
     scales = (1.0, speed, rate)
@@ -52,7 +52,7 @@ def closure(judge, motion):
 
 
 def column_jet(rows, name):
-    """A column with its rates; none where it is not there. Columns that are not there are those of rest."""
+    """A column with its rates; None without the column. Missing rates are zero."""
     value = rows.get(name)
     if value is None:
         return None
@@ -60,7 +60,7 @@ def column_jet(rows, name):
 
 
 def laws(judge, motion, section):
-    """Prescribed coordinates of every row with their laws."""
+    """Compares prescribed coordinates in every row with their laws."""
     scene, time = motion.scene, motion.rows.get("t")
     if time is None:
         return
@@ -85,7 +85,7 @@ def laws(judge, motion, section):
 
 
 def switch_times(motion):
-    """Times of the rows between which something may switch; none of a file without a time."""
+    """The times of rows between which something may switch; empty for a file without a time."""
     time = motion.rows.get("t")
     return [] if time is None else switch_places(motion, time)
 
@@ -127,7 +127,7 @@ VALUES = ((("", ".velocity", ".acceleration"),), ((".angle", ".angular_velocity"
 
 
 def between_rows(judge, rows, corners=()):
-    """What a column changes by from row to row is the integral of its rate."""
+    """The change of a column from row to row is the integral of its rate."""
     time = rows.get("t")
     if time is None or len(time) < 5:
         return
@@ -150,7 +150,7 @@ def between_rows(judge, rows, corners=()):
 
 
 def even_rows(time, corners=()):
-    """Of the rows from the third to the last but two: whether they are at equal distances, and away from corners."""
+    """For the rows from the third to the last but two: whether they are equally spaced, and away from corners."""
     h = np.diff(time)
     windows = np.stack([h[k : len(h) - 3 + k] for k in range(4)])
     even = np.all(np.abs(windows - windows[1]) < 1e-6 * np.abs(windows[1]), axis=0)
@@ -166,20 +166,20 @@ def near(values, k):
 
 
 def hermite(time, y, v, a):
-    """What is left of y(+k) − y(−k) by the rule of sixth order with first and second derivatives, for k of 1 and 2."""
+    """The residual of y(+k) − y(−k) by the rule of sixth order with first and second derivatives, for k = 1 and 2."""
     h = near(np.append(np.diff(time), 0.0), 0)
     return [near(y, k) - near(y, -k) - k * h / 15.0 * (7.0 * (near(v, -k) + near(v, k)) + 16.0 * near(v, 0))
             - (k * h) ** 2 / 15.0 * (near(a, -k) - near(a, k)) for k in (1, 2)]
 
 
 def simpson(time, y, rate):
-    """What is left of y(+k) − y(−k) by Simpson's rule, for k of 1 and 2."""
+    """The residual of y(+k) − y(−k) by Simpson's rule, for k = 1 and 2."""
     h = near(np.append(np.diff(time), 0.0), 0)
     return [near(y, k) - near(y, -k) - k * h / 3.0 * (near(rate, -k) + 4.0 * near(rate, 0) + near(rate, k)) for k in (1, 2)]
 
 
 def beyond_estimate(once, twice, order):
-    """What a rule leaves beyond four times its error, estimated from twice the interval in the row and its neighbours."""
+    """The residual of a rule beyond four times its error, which is estimated from twice the interval in the row and its neighbours."""
     far = np.pad(np.abs(twice), 2)
     far = np.max([far[k : k + len(twice)] for k in range(5)], axis=0)
     excess = np.maximum(np.abs(once) - 4.0 * far / 2.0**order, 0.0)

@@ -10,7 +10,7 @@ from points import Unknown, eigenvalues, modes
 
 
 def read_matrices(text):
-    """A, B, C and D of `linearise` by the names of their rows and columns."""
+    """Reads A, B, C and D of `linearise` by the names of their rows and columns."""
     matrices, columns = {}, []
     for line in csv.reader(text.splitlines()):
         if line[0] == "matrix":
@@ -22,7 +22,7 @@ def read_matrices(text):
 
 
 def judge_linear(judge, scene, text, npz, summary, reduced, equilibria):
-    """Eigenvalues in the characteristic polynomial of the written A; matrices in both files; rows that are states."""
+    """Judges the eigenvalues by the characteristic polynomial of the written A, the matrices in both files, and the rows of states."""
     matrices = read_matrices(text)
     rates = list(matrices["A"])
     states = list(matrices["A"][rates[0]])
@@ -30,7 +30,7 @@ def judge_linear(judge, scene, text, npz, summary, reduced, equilibria):
         if npz is not None and name in npz:
             table = np.array([[rows[r][c] for c in rows[r]] for r in rows]).reshape(npz[name].shape)
             judge.compare("archive", (table - npz[name]).ravel(), 1.0, "SI", f"matrix {name}")
-    # A coordinate changes by its velocity, and an output that is a state is that state.
+    # The rate of a coordinate is its velocity; an output that is a state has a row of the unit matrix.
     for matrix, row, wanted in [("A", f"d({s.removesuffix('.velocity')})/dt", s) for s in states if s.endswith(".velocity")] + \
             [("C", s, s) for s in states if s in matrices["C"]]:
         entries = np.array([matrices[matrix][row][s] - (s == wanted) for s in states])
@@ -47,7 +47,7 @@ def judge_linear(judge, scene, text, npz, summary, reduced, equilibria):
         at, stated = (result(summary, f"equilibrium.{coordinate.name}{end}") for end in ("", ".from_start"))
         if None not in (start, at, stated):
             judge.compare("equilibria", stated - (at - start), max(1.0, abs(start)), "SI", f"{coordinate.name} from the start")
-        # At an equilibrium nothing moves.
+        # At an equilibrium all velocities are zero.
         is_initial = bool(eigenvalues(summary, "initial"))
         speed = (scene.initial("initial-velocity", coordinate) or 0.0) if is_initial else 0.0
         if (stated := result(summary, f"state.{coordinate.name}.velocity")) is not None:
@@ -76,7 +76,7 @@ def judge_linear(judge, scene, text, npz, summary, reduced, equilibria):
 
 
 def distance_of_root(a, value, size):
-    """How far a number is from a root of det(A − λ), by a step of Newton's method."""
+    """The distance of a number from a root of det(A − λ), by a step of Newton's method."""
     aside = 1e-6 * size * (1.0 + 1.0j)
     determinant = lambda at: np.linalg.det((a - at * np.eye(len(a))) / size)
     here = determinant(value)
@@ -85,7 +85,7 @@ def distance_of_root(a, value, size):
 
 
 def nearest(judge, values, summary, equilibria):
-    """About an equilibrium: the one of the table of `equilibria` that is nearest to the start, with its eigenvalues."""
+    """The operating point is the equilibrium in the table of `equilibria` nearest to the start, with the same eigenvalues."""
     names = [key.removeprefix("equilibrium.").removesuffix(".from_start") for key in summary["results"] if key.endswith(".from_start")]
     if equilibria is None or not names or any(".neutral" in key for key in equilibria["results"]):
         return
@@ -95,7 +95,7 @@ def nearest(judge, values, summary, equilibria):
     if not away:
         return
     best = f"equilibrium.{int(np.argmin(away)) + 1}"
-    # Of two at the same distance either is nearest.
+    # Two equilibria at the same distance are both accepted.
     excess = max(np.linalg.norm(of(summary, "equilibrium", ".from_start")) - min(away), 0.0)
     judge.compare("nearest", excess, max(1.0, min(away)), "SI", "distance of the equilibrium from the start")
     if len(away) == 1 or np.partition(away, 1)[1] > (1.0 + 1e-6) * min(away) or np.allclose(this, of(equilibria, best), rtol=0.0, atol=1e-6):
@@ -108,13 +108,13 @@ def nearest(judge, values, summary, equilibria):
             judge.compare("nearest", difference, scale, "1/s", f"eigenvalues of {best}")
 
 
-# By the reduced model.
+# Matrices from the reduced model.
 
 STENCIL = np.array([-2.0, -1.0, 1.0, 2.0]), np.array([1.0, -8.0, 8.0, -1.0]) / 12.0
 
 
 class States:
-    """Columns of states as a drive looks for them."""
+    """Columns of states under the names that a drive reads."""
 
     def __init__(self, values):
         self.values = values
@@ -155,7 +155,7 @@ def by_reduced(judge, matrices, state, reduced):
 
 
 def natural(state, name):
-    """A natural change of a state or an input."""
+    """A typical change of a state or an input."""
     return max(1.0, abs(state.get(name, 1.0)))
 
 
@@ -182,7 +182,7 @@ def slopes_by(reduced, state, name, is_input):
 
 
 def refuse_switches(reduced, values):
-    """No slope where a load or drive switches."""
+    """Rejects states at which a load or a drive switches, because there is no slope."""
     signals = lambda name: Jet(values[name]) if name in values else Jet(np.zeros(4)) if name == "t" else None
     for of in [*reduced.scene.loads, *reduced.scene.drives]:
         for switch in of.magnitude.switches if of.magnitude else []:

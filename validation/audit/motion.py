@@ -1,4 +1,4 @@
-"""How the bodies move in every row of a file, from one point and the rotation of each as they are written."""
+"""The motion of all bodies in every row of a file, from one point and the rotation of each body in the file."""
 
 import numpy as np
 
@@ -6,14 +6,14 @@ from jets import Jet, atan2, cross, dot, length, without_turns
 from scene import Z, across
 
 
-# Ends of the columns of a body and of its points, for each derivative: in the plane and in space.
+# Endings of the columns of a body and of its points, for each derivative, in the plane and in space.
 PLANE_ROTATION = ("angle", "angular_velocity", "angular_acceleration")
 SPACE_ROTATION = ("rotation", "angular_velocity", "angular_acceleration")
 POINT = ("", "v", "a")
 
 
 class Unplaced(Exception):
-    """A body has no columns that say where it is."""
+    """A body without columns that determine its position."""
 
 
 class Frame:
@@ -75,7 +75,7 @@ class Motion:
         return Frame(rotation_of(vectors[0]), omega, alpha)
 
     def written_point(self, body, point):
-        """A point as its columns have it, or none; a file without rates is one of rest."""
+        """A point from its columns, or None. In a file without rates the mechanism is at rest."""
         axes = "xy" if self.scene.is_plane else "xyz"
         orders = [self.rows.several(f"{body}.{point}.", [f"{end}{axis}" for axis in axes]) for end in POINT]
         if orders[0] is None:
@@ -85,7 +85,7 @@ class Motion:
         return Jet(*orders)
 
     def at_rest(self):
-        """The same positions without rates."""
+        """The positions with zero rates."""
         other = object.__new__(Motion)
         other.scene, other.rows, other.count, other.turns, other.has_rates = self.scene, self.rows, self.count, {}, False
         other.frames = []
@@ -95,7 +95,7 @@ class Motion:
             other.frames.append(still)
         return other
 
-    # Places, directions, rates.
+    # Positions, directions, rates.
 
     def direction(self, body, vector):
         return self.frames[body].turned(vector)
@@ -104,7 +104,7 @@ class Motion:
         return self.frames[place.body].origin + self.frames[place.body].turned(place.point)
 
     def gap(self, places):
-        """From the first place to the second."""
+        """The vector from the first place to the second."""
         return self.point(places[1]) - self.point(places[0])
 
     def center(self, body):
@@ -151,7 +151,7 @@ class Motion:
         return angle + 2.0 * np.pi * self.revolutions(measure, angle.value)
 
     def revolutions(self, measure, angle):
-        """Whole revolutions of an angle: by the angles of both bodies, by a coordinate's column, or by following the rows."""
+        """The whole revolutions of an angle: from the angles of both bodies, from a coordinate's column, or by continuity from row to row."""
         a, b = (place.body for place in measure.places)
         whole = lambda other: np.round((other - angle) / (2.0 * np.pi))
         if self.frames[a].angle is not None and self.frames[b].angle is not None:

@@ -1,4 +1,4 @@
-"""Rows, events and the summary of a free motion, as `simulate` writes them."""
+"""Rows, events and the summary of a free motion in the files of `simulate`."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from kinematics import beyond_estimate, even_rows, simpson
 
 
 def judge_motion(judge, motion, events):
-    """All rows of a motion."""
+    """Judges all rows of a motion."""
     rows, scene = motion.rows, motion.scene
     corners = [*kinematics.switch_times(motion), *event_times(events)]
     corners += [c for law, _ in scene.laws("motion").values() for c in law.corners]
@@ -64,7 +64,7 @@ def forces_of_rows(judge, motion):
 
 
 def drive_forces(judge, motion, balance, powers):
-    """The net forces of all drives with their columns; none where one has no value."""
+    """The net forces of all drives, compared with their columns; None if one has no value."""
     scene, rows, found = motion.scene, motion.rows, {}
     names = motion.names(motion.time())
     for drive in scene.drives:
@@ -87,7 +87,7 @@ def drive_forces(judge, motion, balance, powers):
 
 
 def add_stops(motion, balance, powers):
-    """Stops that yield push; the force of a rigid stop on which a coordinate rests is in no column."""
+    """Adds the forces of compliant stops. The force of a rigid stop on which a coordinate rests is in no column."""
     for stop in motion.scene.stops:
         measure = motion.scene.coordinate(stop["coordinate"]).measure
         unit = along(motion, measure)
@@ -102,7 +102,7 @@ def add_stops(motion, balance, powers):
 
 
 def rests(stop, motion):
-    """Rows in which the coordinate may rest on a rigid stop."""
+    """The rows in which the coordinate may rest on a rigid stop."""
     q = motion.measure(motion.scene.coordinate(stop["coordinate"]).measure)
     size, speed = largest(q.value) + 1e-300, largest(q.first) + 1e-300
     ends = [np.abs(q.value - stop[end]) <= 1e-9 * size for end in ("min", "max") if end in stop]
@@ -122,7 +122,7 @@ def stops_hold(judge, motion):
 
 
 def energies(judge, motion, forces, corners):
-    """Kinetic energy with the power of all forces, and the columns of energies and works."""
+    """Judges the kinetic energy with the power of all forces, and the columns of energies and works."""
     rows, time = motion.rows, motion.rows.get("t")
     if time is None or "energy.kinetic" not in rows:
         judge.skip("energies", "no columns of energies")
@@ -198,7 +198,7 @@ def potentials(judge, motion, names, potential, scale, key="energy-columns"):
 
 
 def states(judge, motion, drives, between):
-    """Currents and integrals of controllers change by their rates."""
+    """Judges currents and integrals of controllers by the integrals of their rates."""
     rows = motion.rows
     for name, of in drives.items():
         current, rate = rows.get(f"{name}.current"), of.current_rate
@@ -211,7 +211,7 @@ def states(judge, motion, drives, between):
 
 
 def motors(judge, motion, drives):
-    """Electrical power and efficiency of motors with voltage and current of the scene."""
+    """Judges the electrical power and the efficiency of motors, from voltage and current."""
     rows = motion.rows
     for name, of in drives.items():
         taken, efficiency = rows.get(f"{name}.electrical_power"), rows.get(f"{name}.efficiency")
@@ -238,7 +238,7 @@ def motors(judge, motion, drives):
 
 
 def judge_summary(judge, scene, rows, events, summary):
-    """Energies, the end and the events of the summary with rows and events."""
+    """Compares energies, end and events of the summary with the rows and the table of events."""
     time, kinetic = rows.get("t"), rows.get("energy.kinetic")
     events_stop = any(event.get("stop") for event in scene.keys.get("motion", {}).get("events", {}).values())
     duration = scene.keys.get("motion", {}).get("duration", time[-1] if summary.get("status") == 0 and not events_stop else None)
@@ -260,14 +260,14 @@ def judge_summary(judge, scene, rows, events, summary):
 
 
 def event_number(scene, summary, name):
-    """What stands for an event in the column `event`: its place in the scene, or as the summary says."""
+    """The number of an event in the column `event`: its position in the scene, or the number in the summary."""
     number = result(summary, f"event.{name}.number")
     wanted = list(scene.keys.get("motion", {}).get("events", {}))
     return wanted.index(name) + 1 if number is None and name in wanted else number
 
 
 def judge_event_counts(judge, scene, events, summary):
-    """The number of events of each kind, and the first of each."""
+    """Judges the number of events of each kind, and the first of each."""
     found = {k[6:-6]: result(summary, k) for k in summary["results"] if k.startswith("event.") and k.endswith(".count")}
     times, numbers = event_times(events), None if events is None else events.get("event")
     for name, count in found.items():
@@ -282,7 +282,7 @@ def judge_event_counts(judge, scene, events, summary):
 
 
 def missing_events(judge, scene, rows, events):
-    """Where a row is on one side of an event and the next on the other, the table has one between."""
+    """If two successive rows are on different sides of an event, the table has an event between them."""
     wanted = scene.keys.get("motion", {}).get("events", {})
     if scene.stops or not wanted:
         return
@@ -299,7 +299,7 @@ def missing_events(judge, scene, rows, events):
 
 
 def event_sides(scene, rows, event):
-    """The quantities whose sign an event is about, row by row."""
+    """The quantities whose changes of sign are events, in every row."""
     if "reverses" in event:
         column = rows.get(f"{event['reverses']}.velocity")
         return [] if column is None else [column]
@@ -319,7 +319,7 @@ def event_sides(scene, rows, event):
 
 
 def events_are_met(judge, scene, rows, events, summary):
-    """At each event its coordinate has the value of the scene, or no velocity; one that stops the motion is its end."""
+    """At each event the coordinate has the value of the scene, or zero velocity. A terminal event is the end of the motion."""
     if events is None:
         return
     for name, event in scene.keys.get("motion", {}).get("events", {}).items():

@@ -32,7 +32,7 @@ TOP = Path(__file__).resolve().parents[1]
 
 
 def column(end, name, change, *needed):
-    """Every column of a table whose name ends like this, changed."""
+    """Changes every column of a table whose name has this ending."""
 
     def plant(folder):
         rows = folder.csv(end)
@@ -43,7 +43,7 @@ def column(end, name, change, *needed):
 
 
 def all_columns(end, change, *needed):
-    """All columns of a table but its time, changed row by row."""
+    """Changes all columns of a table except the time, row by row."""
 
     def plant(folder):
         rows = folder.csv(end)
@@ -54,7 +54,7 @@ def all_columns(end, change, *needed):
 
 
 def number(command, name, factor, *needed):
-    """Numbers of a summary whose names end like this, times a factor."""
+    """Multiplies the numbers of a summary whose names have this ending by a factor."""
 
     def plant(folder):
         summary = copy.deepcopy(folder.summary(command))
@@ -71,7 +71,7 @@ def rounded(value, digits):
 
 
 def few_digits(folder):
-    """A summary whose numbers have three digits."""
+    """Rounds the numbers of a summary to three digits."""
     summary = copy.deepcopy(folder.summary("kinematics"))
     for entry in summary["extrema"]:
         for end in ("min", "max"):
@@ -109,7 +109,7 @@ def seven_digits(line):
 
 
 def a_for_b(values):
-    """Of each power the coefficients of b are those of a."""
+    """Replaces the coefficients of b by those of a."""
     blocks = values.reshape(8, -1)
     half = blocks.shape[1] // 2
     return np.hstack([blocks[:, :half]] * 2).ravel()

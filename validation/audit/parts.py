@@ -1,4 +1,4 @@
-"""Which files are judged by which checks."""
+"""Assigns the checks to the files."""
 
 import copies
 import kinematics
@@ -17,7 +17,7 @@ from scene import Scene
 
 
 def whole_file(judge, scene, folder, rows, end, command, corners=(), of_positions=None):
-    """What is judged of every table: its archive, its headings, and the extrema of its summary, away from corners."""
+    """The checks of every table: its archive, its headings, and the extrema of its summary, away from corners."""
     repeated.archive(judge, rows, folder.npz(end))
     abscissa = "t" if "t" in rows else scene.actuators[0].name if scene.actuators else ""
     repeated.ascends(judge, rows, abscissa)
@@ -156,7 +156,7 @@ PARTS = [pose_files, motion_files, reduced_files, point_files, sweep_files, copi
 
 
 def judge_folder(folder):
-    """Judges all files of a scene in a folder; none are there where the list of checks is empty."""
+    """Judges all files of a scene in a folder. The list of checks is empty if there are no files."""
     judge, scene = Judge(), Scene(folder.scene_text)
     for part in PARTS:
         judge.file = ""

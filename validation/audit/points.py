@@ -1,4 +1,4 @@
-"""Steady cycles and equilibria, as `cycle` and `equilibria` write them, by the reduced model of `reduce`."""
+"""Steady cycles and equilibria in the files of `cycle` and `equilibria`, judged by the reduced model of `reduce`."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from kinematics import beyond_estimate, even_rows, simpson
 
 
 class Unknown(Exception):
-    """A load or drive of which the reduced model does not say enough."""
+    """A load or drive that the reduced model does not determine."""
 
 
 # The reduced model between its rows.
@@ -25,7 +25,7 @@ class Reduced:
         self.is_whole = scene.actuators[0].measure.is_angle and abs(self.q[-1] - self.q[0] - 2.0 * np.pi) < 1e-9
 
     def at(self, column, q):
-        """Values and slopes at places; of a whole revolution also beyond it."""
+        """Values and slopes at coordinates; a model over a whole revolution is continued periodically."""
         values = self.rows.get(column)
         if values is None or len(self.q) < 8:
             raise Unknown(f"no column {column} of eight rows or more")
@@ -52,7 +52,7 @@ class Reduced:
         return total, terms
 
     def load_numbers(self, q, velocity, time):
-        """F of every load; of a damper the resistance, positive where it opposes growth; of a drag times |velocity| velocity."""
+        """F of every load. For a damper, F is the resistance, positive if it opposes growth; for a drag, the coefficient times |velocity| velocity."""
         signals, found = {self.name: q, f"{self.name}.velocity": velocity, "t": time}, {}
         for load in self.scene.loads:
             amount = known(load.magnitude, signals, q)
@@ -63,7 +63,7 @@ class Reduced:
         return found
 
     def drives(self, coordinate, time, rows, inputs=None):
-        """All drives on the coordinate; an input is added to their magnitudes."""
+        """The forces of all drives on the coordinate; an input is added to their magnitudes."""
         signals, found = {self.name: coordinate.value, f"{self.name}.velocity": coordinate.first, "t": time}, {}
         for drive in self.scene.drives:
             if drive.coordinate != self.name:
@@ -78,7 +78,7 @@ class Reduced:
 
 
 def known(magnitude, signals, q):
-    """A magnitude by the signals that are known along the coordinate."""
+    """A magnitude from the signals that are known along the coordinate."""
     try:
         return np.broadcast_to(magnitude(lambda name: Jet(signals[name]) if name in signals else None).value, q.shape)
     except (ValueError, AttributeError, TypeError) as error:
@@ -134,7 +134,7 @@ def judge_cycle(judge, scene, rows, summary, prefix, reduced):
 
 
 def without_flywheel(judge, summary):
-    """Where no flywheel is needed, the cycle with it is the one without."""
+    """If no flywheel is needed, the cycles with and without it are equal."""
     if result(summary, "flywheel.inertia") is None:
         return
     judge.compare("cycle", result(summary, "flywheel.inertia"), 1.0, "kg m2", "a flywheel without a file")
@@ -144,7 +144,7 @@ def without_flywheel(judge, summary):
 
 
 def states_of_cycle(judge, scene, rows, name, motion):
-    """Works, currents and integrals of drives change over the coordinate by what the scene says."""
+    """Judges the changes of works, currents and integrals of drives over the coordinate by the laws of the scene."""
     time, q = motion
     signals = {name: q.value, f"{name}.velocity": q.first, "t": time}
     for drive in (d for d in scene.drives if d.coordinate == name):
@@ -194,7 +194,7 @@ def cycle_equation(judge, reduced, rows, motion, added):
 
 
 def state_scale(scene, name, fastest):
-    """A natural size of a drive's state: the current of the induced voltage, or an integral of a revolution."""
+    """A typical size of a drive's state: the current from the induced voltage, or the integral over a revolution."""
     numbers = next(drive.numbers for drive in scene.drives if drive.name == name)
     if "resistance" in numbers:
         return abs(numbers["torque-constant"] * numbers["ratio"] * fastest / numbers["resistance"])
@@ -246,7 +246,7 @@ def judge_equilibria(judge, scene, rows, summary, reduced, statics):
 
 
 def table_row(judge, rows, k, summary, name, free):
-    """Coordinates, the largest real part and the modes of a row with the summary."""
+    """Compares coordinates, the largest real part and the modes of a row with the summary."""
     values = eigenvalues(summary, name)
     scale = max(map(abs, values), default=0.0) or 1.0
     for coordinate in free:
@@ -275,7 +275,7 @@ def table_row(judge, rows, k, summary, name, free):
 
 
 def from_start(judge, scene, rows, summary, name, free):
-    """Each coordinate less that of the start of the motion."""
+    """The difference of each coordinate from the start of the motion."""
     for coordinate in free:
         start = scene.initial("initial-coordinate", coordinate)
         start = scene.start_of(coordinate) if start is None else start
@@ -337,7 +337,7 @@ def static_forces(judge, scene, statics, summary, name):
 
 
 def sign_changes(judge, scene, places, statics, summary, name):
-    """Between two rows of `statics` with forces of different sign is an equilibrium."""
+    """Between two rows of `statics` with forces of different sign there is an equilibrium."""
     if statics is None or f"{name}.actuator_force" not in statics or scene.drives or scene.frictions or scene.stops:
         return
     q, force = statics.get(name), statics.get(f"{name}.actuator_force")

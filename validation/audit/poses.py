@@ -12,7 +12,7 @@ from scene import Z
 
 
 def loads(judge, motion, time):
-    """Wrenches of all loads by the scene's text, and their columns with them; by load."""
+    """The wrenches of all loads from the scene, compared with their columns; by load."""
     names, found = motion.names(time), {}
     for load in motion.scene.loads:
         magnitude = load_magnitude(load, motion, names)
@@ -31,7 +31,7 @@ def loads(judge, motion, time):
 
 
 def frictions(judge, motion, is_free):
-    """Friction of all joints by their reactions as written: wrenches by joint, or None where a reaction has no column."""
+    """The friction wrenches of all joints from the written reactions, by joint; None if a reaction has no column."""
     found = {}
     for friction in motion.scene.frictions:
         joint = motion.scene.joints[friction.joint]
@@ -46,7 +46,7 @@ def frictions(judge, motion, is_free):
 
 
 def judge_friction(judge, motion, forces, is_free):
-    """Dry friction as the law says where the surfaces move, within its limit where they hold; viscous friction."""
+    """Judges dry friction: by its law if the surfaces slide, and by its limit if they stick. Judges viscous friction."""
     rows, name, friction = motion.rows, forces.joint.name, forces.friction
     axial, about = forces.dry()
     kind = "moment" if forces.is_pin else "force"
@@ -72,7 +72,7 @@ def judge_friction(judge, motion, forces, is_free):
 
 
 def equilibrium(judge, motion, at_rest=False, is_loaded=True):
-    """The forces of a file of `statics` or `kinetostatics`; of `runs` without loads and friction."""
+    """Judges the forces in a file of `statics` or `kinetostatics`, or in a file of `runs`, which has no loads and no friction."""
     motion = motion.at_rest() if at_rest else motion
     of_loads = loads(judge, motion, motion.time()) if is_loaded else {}
     balance = Balance(motion)
@@ -98,7 +98,7 @@ def equilibrium(judge, motion, at_rest=False, is_loaded=True):
 
 
 def no_friction(judge, motion):
-    """At rest the files have no friction."""
+    """Files of a mechanism at rest contain no friction."""
     for friction in motion.scene.frictions:
         name = motion.scene.joints[friction.joint].name
         for what in ("friction", "viscous"):
@@ -115,7 +115,7 @@ def varying_is_known(judge, motion):
 
 
 def known_reactions(judge, motion):
-    """Reactions that the scene gives over the angle of a body."""
+    """The reactions that the scene states as functions of the angle of a body."""
     for body, frame in zip(motion.scene.bodies, motion.frames):
         if body.varying:
             for name, values in body.varying.reactions_at(frame.angle, frame.omega[:, 2], frame.alpha[:, 2]).items():
@@ -144,7 +144,7 @@ def kinetic(motion):
 
 
 def shaking(motion, of_loads):
-    """What the ground feels: loads from outside less the rate of momentum; with the size of the terms."""
+    """The wrench on the ground: external loads minus the rate of momentum, with the size of the terms."""
     force, moment = np.zeros((motion.count, 3)), np.zeros((motion.count, 3))
     sizes = [np.zeros(motion.count), np.zeros(motion.count)]
 
@@ -173,7 +173,7 @@ def shaking(motion, of_loads):
 
 
 def totals(judge, motion, of_loads, of_friction, actuator_powers, drives=()):
-    """Shaking force and moment, powers and energies with sums over bodies and loads."""
+    """Compares shaking force and moment, powers and energies with sums over bodies and loads."""
     rows, scene = motion.rows, motion.scene
     joint_force = largest(*(v for j in scene.joints for v in [rows.get(f"{j.name}.magnitude")] if v is not None))
     force, moment, sizes = shaking(motion, of_loads)
@@ -204,7 +204,7 @@ def totals(judge, motion, of_loads, of_friction, actuator_powers, drives=()):
 
 
 def repeated(judge, motion):
-    """Magnitudes, directions and other components of joint forces, and powers of friction."""
+    """Compares magnitudes, directions and other components of joint forces, and powers of friction."""
     rows, scene = motion.rows, motion.scene
     vectors = {}
     for joint in scene.joints:
@@ -241,7 +241,7 @@ def repeated(judge, motion):
 
 
 def determined_parts(rows, name):
-    """Force and moment in space whose magnitudes are columns: components without a column are then zero."""
+    """Force and moment in space whose magnitudes have columns; components without a column are then zero."""
     count, found = rows.count, []
     for end, components in (("magnitude", SPACE_COMPONENTS[:3]), ("moment-magnitude", SPACE_COMPONENTS[3:])):
         columns = [rows.get(f"{name}.{c}") for c in components]

@@ -16,7 +16,7 @@ from motions import potentials
 
 
 def judge_reduced(judge, scene, rows, moving, summary):
-    """The rows of `reduce` by the motion of the same positions in another file."""
+    """Judges the rows of `reduce` by the motion in another file at the same positions."""
     name = scene.actuators[0].name
     q = rows.get(name)
     judge.compare("wanted", np.diff(q) - (q[-1] - q[0]) / max(len(q) - 1, 1), max(1.0, largest(q)), "SI", f"steps of {name}")
@@ -46,7 +46,7 @@ def potential_terms(scene, motion):
 
 
 def rows_of_positions(rows, other, name):
-    """Of both files the rows of the same positions."""
+    """The rows of both files at the same positions."""
     q, at = rows.get(name), other.get(name)
     if q is None or at is None:
         return None
@@ -59,7 +59,7 @@ def rows_of_positions(rows, other, name):
 
 
 def unit_motion(scene, rows, other, name):
-    """The motion with unit speed and no acceleration at rows of `reduce`, from a file that moves there; or none."""
+    """The motion with unit speed and zero acceleration at the rows of `reduce`, from a file with a motion there; or None."""
     found = None if other is None else rows_of_positions(rows, other, name)
     if found is None or len(found[0]) < 3:
         return None
@@ -78,7 +78,7 @@ def taken(rows, which):
 
 
 def scaled_to_unit_speed(motion, q):
-    """Velocities over the speed; of accelerations what is left without that of the coordinate, over its square."""
+    """Velocities divided by the speed; accelerations without the part of q̈, divided by the square of the speed."""
     speed, acceleration = q.first[:, None], q.second[:, None]
     unit = lambda first, second: (first / speed, (second - first / speed * acceleration) / speed**2)
     frames = []
@@ -92,7 +92,7 @@ def scaled_to_unit_speed(motion, q):
 
 
 def channels(motion):
-    """What acts with a number of 1 in each column of w and c: loads, friction, and what parts teeth; by name."""
+    """The unit wrenches of the columns of w and c: loads, friction and separating forces; by name."""
     scene, found = motion.scene, {}
     for load in scene.loads:
         factor = coefficient(load, motion)
@@ -113,7 +113,7 @@ def channels(motion):
 
 
 def sums(judge, motion):
-    """m, ½m′ and w by sums over bodies."""
+    """Judges m, ½m′ and w by sums over bodies."""
     rows = motion.rows
     energy, rate, terms = poses.kinetic(motion)
     columns = [("m", 2.0 * energy, 2.0 * energy, "kg m2"), ("half_dm", rate, terms, "kg m2")]
@@ -127,7 +127,7 @@ def sums(judge, motion):
 
 
 def bodies(judge, motion):
-    """a, b and c in the equations of every body."""
+    """Judges a, b and c in the equations of every body."""
     rows, scene = motion.rows, motion.scene
     drive = along(motion, scene.actuators[0].measure)
     reactions = [name for name in rows.columns if name.endswith(".a")]
@@ -150,7 +150,7 @@ def bodies(judge, motion):
 
 
 def known_coefficients(judge, motion):
-    """a and b of the reactions that the scene gives over the angle of a body."""
+    """a and b of the reactions that the scene states as functions of the angle of a body."""
     for body, frame in zip(motion.scene.bodies, motion.frames):
         if not body.varying:
             continue
@@ -163,7 +163,7 @@ def known_coefficients(judge, motion):
 
 
 def slopes(judge, scene, rows, name, motion):
-    """m and V with the integrals of 2·½m′ and −Σ w F between rows, away from corners of couplings."""
+    """Compares m and V with the integrals of 2·½m′ and −Σ w F between rows, away from corners of couplings."""
     q = rows.get(name)
     if len(q) < 5 or "m" not in rows:
         return
@@ -195,7 +195,7 @@ def extent(judge, rows, summary):
 
 
 def uniform(judge, run, name):
-    """A run has one acceleration, and time, coordinate and speed are those of it."""
+    """A run has constant acceleration; time, coordinate and speed agree with it."""
     time, q, speed, acceleration = (run.get(n) for n in ("t", name, f"{name}.velocity", f"{name}.acceleration"))
     if any(column is None for column in (time, q, speed, acceleration)):
         return
@@ -207,7 +207,7 @@ def uniform(judge, run, name):
 
 
 def judge_runs(judge, rows, run_i, run_ii, name):
-    """m and ½m′, a and b in the file of `runs` with the forces of both runs, and its columns with each other."""
+    """Compares m and ½m′, a and b in the file of `runs` with the forces of both runs, and its columns with each other."""
     both = [("m_1", "half_m_1q1", "m", "half_dm", f"{name}.actuator_force")]
     both += [(f"{n}.m_e1", f"{n}.m_e2", f"{n}.a", f"{n}.b", n) for n, _ in rows.ending(".m_e1")]
     is_moment = lambda force: force.endswith("_force") or ".moment" in force

@@ -1,4 +1,4 @@
-"""The same numbers in several places: archives, extrema of the summary, headings, quotients and extents of columns."""
+"""Numbers that occur in several files: archives, extrema of the summary, headings, quotients and extents of columns."""
 
 import numpy as np
 
@@ -33,7 +33,7 @@ POSITIONS = ("rad", "m", "rad/s", "m/s", "rad/s2", "m/s2", "")  # units of what 
 
 
 def extrema(judge, rows, summary, corners=(), of_positions=()):
-    """Extrema of the summary: no row is beyond them, and a polynomial through rows reaches them where it is said."""
+    """Judges the extrema of the summary: no row is beyond them, and a polynomial through rows reaches them at the stated positions."""
     if not summary or not summary.get("extrema"):
         return
     events = [event["t"] for event in summary.get("events") or [] if isinstance(event.get("t"), float)]
@@ -55,7 +55,7 @@ def extrema(judge, rows, summary, corners=(), of_positions=()):
 
 
 def extremum(judge, curve, entry, side, scale, corners, is_zero):
-    """One end of one column."""
+    """Judges the minimum or the maximum of a column."""
     (x, y), (end, sign), quantity = curve, side, entry["quantity"]
     value, at, place = entry[end]["value"], entry[end]["at"], f"{end} of {quantity}"
     judge.compare("extrema", max(np.nanmax(sign * (y - value)), 0.0), scale, entry["unit"], f"a row beyond {place}")
@@ -88,7 +88,7 @@ def extremum(judge, curve, entry, side, scale, corners, is_zero):
 
 
 def through(x, y, at, k, half, corners):
-    """Value and slope over one row of the polynomial through the rows around a place; none where it is not smooth."""
+    """Value and slope (per row) of the polynomial through the rows around a position; None if the column is not smooth."""
     start = int(np.clip(k - half, 0, len(x) - 2 * half))
     rows = slice(start, start + 2 * half)
     xs, ys = x[rows], y[rows]
@@ -107,13 +107,13 @@ def through(x, y, at, k, half, corners):
 
 
 def ascends(judge, rows, name):
-    """The abscissa of a table grows from row to row, or falls."""
+    """The abscissa of a table is monotone."""
     steps = np.diff(rows.get(name)) if name in rows else np.zeros(0)
     judge.require("order", bool(np.all(steps >= 0.0) or np.all(steps <= 0.0)), f"{name} neither grows nor falls all the time")
 
 
 def summary_of_table(judge, rows, summary):
-    """The number of rows and columns, where they begin and end, and extremes of transmission angles."""
+    """Judges the number of rows and columns, the first and the last abscissa, and the extremes of transmission angles."""
     over = (summary.get("extrema_over") or {}).get("name")
     found = {"positions": rows.count, "columns": len(rows.columns) + len(rows.words)}
     if over in rows:
@@ -132,7 +132,7 @@ def summary_of_table(judge, rows, summary):
 
 
 def quotients(judge, motion):
-    """Velocity ratios and transmission angles."""
+    """Judges velocity ratios and transmission angles."""
     rows, scene = motion.rows, motion.scene
     if not scene.actuators:
         return
@@ -155,7 +155,7 @@ def quotients(judge, motion):
 
 
 def lines_from(motion, pin, place):
-    """Lines of a body from its pin: to its other pins, and along the normals of its slides."""
+    """The lines of a body from its pin: to its other pins, and along the normals of its slides."""
     found, scene = [], motion.scene
     for joint in (j for j in scene.joints if j is not pin):
         for k, other in enumerate(joint.places):
@@ -168,7 +168,7 @@ def lines_from(motion, pin, place):
 
 
 def angle_between(u, v):
-    """From 0 to π."""
+    """The angle between two lines, 0 to π."""
     return np.arctan2(np.linalg.norm(np.cross(u, v), axis=1), (u * v).sum(-1))
 
 
@@ -184,7 +184,7 @@ def ratios_between_rows(judge, rows, q):
 
 
 def extents(judge, rows, summary):
-    """By how much bodies turn and slides travel, and where a body dwells, with the rows."""
+    """Compares the ranges of body angles and travels, and the dwell of a body, with the rows."""
     results = (summary or {}).get("results", {})
     for key, entry in results.items():
         name = key.removesuffix(".range")
@@ -231,7 +231,7 @@ UNITS = (
 
 
 def headings(judge, scene, rows):
-    """Units of columns with what their names say."""
+    """Compares the units of columns with their names."""
     wanted = {"t": ("s",)}
     for coordinate in scene.coordinates:
         unit = "rad" if coordinate.measure.is_angle else "m"

@@ -1,4 +1,4 @@
-"""Scenes that request everything and move, and the product's commands on them, for `case.py` and the self-test."""
+"""Scenes with a motion and all requests, and the commands of the program on them, for `case.py` and the self-test."""
 
 import json
 import os
@@ -26,7 +26,7 @@ def without_section(text, name):
 
 
 def forced(text):
-    """The scene with a prescribed motion of every actuator where it prescribes none."""
+    """The scene with a prescribed motion of every actuator, if it prescribes none."""
     scene = Scene(text)
     if "prescribed" in scene.keys or "coordinate-sweep" in scene.keys:
         return text
@@ -56,7 +56,7 @@ def toml_text(value, top=True):
 
 
 def requested_sections(scene):
-    """Internal forces of two links of a scene in the plane, for its end; they leave all columns as they are."""
+    """Requests for internal forces of two links, appended to a scene in the plane. They change no column."""
     if not scene.is_plane:
         return ""
     links = [(b.name, *list(b.points)[:2]) for b in scene.bodies if b.mass > 0.0 and len(b.points) > 1]
@@ -65,7 +65,7 @@ def requested_sections(scene):
 
 
 def run(program, command, scene, folder, *options):
-    """Runs a command; its status, and what it printed."""
+    """Runs a command; returns its status and its output."""
     pictures = [] if command == "check" else ["--pictures", "none"]
     arguments = [str(program), command, str(scene), *options, "--out", str(folder), *pictures]
     done = subprocess.run(arguments, capture_output=True, text=True, check=False, env=environment())
@@ -77,7 +77,7 @@ def environment():
 
 
 def prepare(program, scene_path, folder):
-    """The files of all commands on a scene, in folders `forced`, `plain` and `free`; the scene of each is beside them."""
+    """Writes the files of all commands on a scene to the folders `forced`, `plain` and `free`, each with its scene."""
     scene_path, folder = Path(scene_path), Path(folder)
     name = scene_path.parent.name if scene_path.name == "scene.toml" else scene_path.stem
     text = without_section(scene_path.read_text(encoding="utf-8"), "requests")
@@ -102,7 +102,7 @@ def prepare(program, scene_path, folder):
 
 
 def varied_masses(scene):
-    """Up to three masses that vary: by a normal and an even distribution and by a grid."""
+    """Sweep options for up to three masses: with a normal distribution, a uniform distribution and a grid."""
     masses = [(body.name, body.mass / scene.mass) for body in scene.bodies if body.mass > 0.0 and not body.is_ground]
     kinds = (lambda m: f"~normal({m!r},{0.03 * m!r})", lambda m: "±5%", lambda m: f"={0.8 * m!r}:{1.3 * m!r}:3")
     return [part for (body, mass), kind in zip(masses, kinds) for part in ("--vary", f"{body}.mass{kind(float(mass))}")]

@@ -1,7 +1,7 @@
-"""A scene as the audit reads it: bodies, joints, coordinates, loads, friction, drives and stops in SI units.
+"""The audit's reader of scenes: bodies, joints, coordinates, loads, friction, drives and stops in SI units.
 
 A scene in the plane is lifted into space: points get z = 0, axes are z, angles are about z, a moment of inertia is I_zz.
-After this file nothing but the names of columns depends on the dimension.
+Outside this file, only the names of columns depend on the dimension.
 """
 
 import tomllib
@@ -44,7 +44,7 @@ class Place:
 
 @dataclass
 class Joint:
-    """A joint of two bodies. What a kind does not have is None."""
+    """A joint of two bodies. Fields that a kind does not have are None."""
 
     name: str
     kind: str
@@ -127,7 +127,7 @@ class Drive:
 
 
 class Scene:
-    """All of a scene that decides numbers."""
+    """The parts of a scene that affect numbers."""
 
     def __init__(self, text):
         self.keys = keys = tomllib.loads(text) if isinstance(text, str) else text
@@ -213,7 +213,7 @@ class Scene:
         self.joints += [self.read_coupling(name, table) for name, table in tables if "coupling" in table]
 
     def read_plane_joint(self, name, table):
-        """The joints of a pin; one of any other kind. Axes of slides are in the plane, all others are z."""
+        """The joints of a pin, which may connect several bodies; one joint for any other kind. Axes of slides lie in the plane, all others are z."""
         kind = next(kind for kind in PLANE_KINDS if kind in table)
         places = [self.place(place) for place in table[kind]]
         sizes = {"angle": table.get("angle", 0.0) * self.angle, "pressure": table.get("pressure-angle", 0.0) * self.angle}
@@ -272,7 +272,7 @@ class Scene:
         return Measure(kind, joint.places, joint.axes, joint.normals, joint.name)
 
     def angle_between(self, bodies):
-        """Of two bodies in the plane."""
+        """The relative angle of two bodies in the plane."""
         return Measure("angle", [Place(self.body_index(b), np.zeros(3)) for b in bodies], [Z, Z], [X, X])
 
     def distance(self, points):
@@ -281,7 +281,7 @@ class Scene:
     # Loads, friction, drives, stops.
 
     def read_magnitude(self, value, unit=1.0):
-        """A magnitude; of a number or the values of a table the unit is given, expressions are in SI units."""
+        """A magnitude. Numbers and values of tables have the stated unit; expressions are in SI units."""
         if isinstance(value, str):
             expression = Expression(value)
             return Magnitude(expression, expression.switches, not expression.names - {"pi", "tau"})
@@ -324,7 +324,7 @@ class Scene:
         return Load(name, "along", measure=measure, source=source, magnitude=magnitude(amount), free=free)
 
     def read_friction(self, name, table):
-        """The friction of a joint; that of a pin of several bodies holds for each of its joints."""
+        """The friction of a joint. Friction of a pin through several bodies applies to each of its joints."""
         names = [joint.name for joint in self.joints]
         meant = [name] if name in names else [n for n in names if n.startswith(f"{name}-") and n not in self.keys["joints"]]
         for k, joint in enumerate(self.joints):
@@ -368,7 +368,7 @@ class Scene:
     # Motions.
 
     def start_of(self, coordinate):
-        """The value of an actuator at assembly, or else where its motion starts; none of a length that the scene does not give."""
+        """The value of an actuator at assembly, else at the start of its motion; None for a length that the scene does not state."""
         name = coordinate.name
         initial = self.initial("initial-coordinate", coordinate)
         usual = initial if initial is not None or coordinate.measure.kind == "length" else 0.0
@@ -376,7 +376,7 @@ class Scene:
         return usual if isinstance(given, dict) or given is None else given * self.unit_of(coordinate.measure)
 
     def initial(self, key, coordinate):
-        """A number of `[motion]` of a coordinate, or none; a number without a name is that of the only free actuator."""
+        """The number of a coordinate in `[motion]`, or None. A number without a name belongs to the only free actuator."""
         given = self.keys.get("motion", {}).get(key)
         given = given.get(coordinate.name) if isinstance(given, dict) else given
         return None if given is None else given * self.unit_of(coordinate.measure)
@@ -394,7 +394,7 @@ class Scene:
         return found
 
 
-# Kinds of loads along a measure, by their key: what they measure and where their magnitude comes from.
+# Kinds of loads along a measure, by their key: the measure and the source of the magnitude.
 ALONG = {
     "point-to-point-force": ("length", "given"),
     "slide-force": ("travel", "given"),

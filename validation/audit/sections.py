@@ -11,12 +11,12 @@ from kinematics import rows_of
 
 
 GAUSS = ((-np.sqrt(0.6), 5.0 / 9.0), (0.0, 8.0 / 9.0), (np.sqrt(0.6), 5.0 / 9.0))  # exact for the cubic of the moment
-# Stations that differ by less than this part of the length are one.
+# Stations that differ by less than this fraction of the length are equal.
 SAME = 1e-11
 
 
 def judge_sections(judge, motion, folder, summary, command):
-    """All links that the scene requests."""
+    """Judges all links that the scene requests."""
     for section in motion.scene.keys.get("requests", {}).get("sections", []):
         body, start, end = section["body"], section["from"], section["to"]
         stem = f"{command}-internal-forces-{body}.{start}.{end}"
@@ -41,7 +41,7 @@ def judge_sections(judge, motion, folder, summary, command):
 
 
 class Link:
-    """A link in one row: forces by their feet on its line, and what its mass does."""
+    """A link in one row: forces at their projections on its line, and the inertia and weight of its mass."""
 
     def __init__(self, origin, direction, length):
         self.origin, self.direction, self.length = origin, direction, length
@@ -49,7 +49,7 @@ class Link:
         self.bar = None  # mass per length, and accelerations less gravity at both ends
 
     def parts(self, vector):
-        """Along and across the line."""
+        """The components along and across the line."""
         return vector @ self.direction, np.cross(self.direction, vector)[2]
 
     def add(self, force, point, couple):
@@ -58,7 +58,7 @@ class Link:
         self.applied.append((station, axial, across, couple - offset * axial))
 
     def beyond(self, station, side):
-        """What the part beyond a cut does to the other one; a cut is before (−1) or behind (1) the forces at its station."""
+        """Force and moment of the part beyond a cut on the other part. A cut is before (−1) or behind (1) the forces at its station."""
         slack, total = SAME * self.length, np.zeros(3)
         for at, axial, across, couple in self.applied:
             # What is beyond the far end acts at it, and nothing in front of the near one is beyond a cut.
@@ -75,7 +75,7 @@ class Link:
 
 
 def forces_on(motion, name, ends, row):
-    """The forces on a link in a row; none where one is not known."""
+    """The forces on a link in a row; None if one of them is unknown."""
     scene = motion.scene
     k = scene.body_index(name)
     body = scene.bodies[k]
@@ -106,7 +106,7 @@ def forces_on(motion, name, ends, row):
 
 
 def wrenches_of(motion):
-    """Pairs of what joints, actuators, loads but weights, and friction exert; none where a reaction has no column."""
+    """The pairs of wrenches of joints, actuators, loads except weights, and friction; None if a reaction has no column."""
     scene, names, found = motion.scene, motion.names(motion.time()), []
     for joint in scene.joints:
         for component, pair in unit_reactions(joint, motion).items():
@@ -126,7 +126,7 @@ def wrenches_of(motion):
 
 
 def only_joint(scene, bodies):
-    """The only joint between two bodies, at which a couple between them acts; or none."""
+    """The only joint between two bodies, at which a couple between them acts; or None."""
     joints = [joint for joint in scene.joints if sorted(p.body for p in joint.places) == sorted(bodies)]
     return joints[0] if len(joints) == 1 else None
 
@@ -137,7 +137,7 @@ def judge_cuts(judge, cuts, link, name):
     moment = max((abs(couple) for *_, couple in link.applied), default=0.0)
     scales = [force or 1.0, force or 1.0, max(moment, force * link.length) or 1.0]
     for k, station in enumerate(stations):
-        # At a force there are two cuts: before and behind it.
+        # A station with a force has two cuts, before and behind it.
         same = lambda j: 0 <= j < len(stations) and abs(stations[j] - station) <= 1e-9 * link.length
         side = (1 if same(k - 1) else 0) - (1 if same(k + 1) else 0) or 1
         wanted = link.beyond(link.length if k == len(stations) - 1 else station, side)

@@ -67,7 +67,7 @@ class Altered(Folder):
 
 
 def is_found(folder):
-    """Whether the audit fails, or cannot even read what is there."""
+    """Whether the audit fails, or cannot read the files."""
     try:
         return judge_folder(folder).has_failed
     except Exception:
@@ -86,7 +86,7 @@ def faults_of(rows, name, rng):
     if same:
         found["another column"] = rows.get(rng.choice(same))
     for kind, other in found.items():
-        # What is hidden by rounding, or stays as it is, is no fault.
+        # A change hidden by rounding, or without effect, is no fault.
         if not np.array_equal(np.isnan(other), np.isnan(values)) or np.nanmax(np.abs(other - values), initial=0.0) > 2e-7 * scale:
             yield kind, other
 
@@ -118,7 +118,7 @@ def archive_faults(folder, rng):
 
 
 def text_faults(folder, rng):
-    """Numbers of the matrices."""
+    """Faults in the numbers of the matrices."""
     text = folder.text("linear.csv")
     if text is None:
         return
@@ -210,7 +210,7 @@ FAULTS = {"tables": table_faults, "archives": archive_faults, "matrices": text_f
 
 
 def changes_nothing(program, folder, keys):
-    """Whether the program writes the same tables of a changed scene, or refuses it: then no file could tell it."""
+    """Whether the program rejects the changed scene or writes the same tables for it, so that no file shows the fault."""
     with tempfile.TemporaryDirectory() as place:
         scene = Path(place) / f"{folder.name}.toml"
         scene.write_text(runs.toml_text(keys), encoding="utf-8")
@@ -226,7 +226,7 @@ def changes_nothing(program, folder, keys):
 
 
 def same_tables(rows, other):
-    """Whether all columns agree to 1e-9 of the largest of their unit: less is found by no check."""
+    """Whether all columns agree to 1e-9 of the largest of their unit; no check finds smaller differences."""
     if rows.count != other.count or set(rows.columns) != set(other.columns):
         return False
     largest = {}
@@ -237,7 +237,7 @@ def same_tables(rows, other):
 
 
 def test_folder(program, folder, kinds, rng, counts):
-    """All faults of a folder; what is neither found nor known to be unfindable is returned."""
+    """Tries all faults of a folder; returns those that are neither found nor known to be unfindable."""
     missed = []
     for kind in kinds:
         for name, altered in FAULTS[kind](folder, rng):

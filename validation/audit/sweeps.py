@@ -17,7 +17,7 @@ LOWER = 0xFFFFFFFF
 
 
 def uniform(seed, axis, sample):
-    """Two numbers between 0 and 1 of a sample of an axis: Philox4x32-10 (Salmon, Moraes, Dror and Shaw, 2011, table 2)."""
+    """Two uniform random numbers in (0, 1) for a sample of an axis: Philox4x32-10 (Salmon, Moraes, Dror and Shaw, 2011, table 2)."""
     block = [sample & LOWER, sample >> 32, axis, 0]
     for r in range(10):
         keys = [((seed >> (32 * k)) + r * WEYL[k]) & LOWER for k in (0, 1)]
@@ -52,7 +52,7 @@ def read_axis(text, scene):
 
 
 def steps(keys, path):
-    """The keys that lead to a number: of a body as in `calibrate`, else from the top of the scene."""
+    """The keys on the path to a number: from a body as in `calibrate`, else from the top of the scene."""
     parts = [p for p in re.split(r"[.\[\]]+", path) if p]
     parts = [int(p) if p.isdigit() else p for p in parts]
     return ["bodies", *parts] if parts[0] in keys["bodies"] else parts
@@ -78,7 +78,7 @@ def with_numbers(text, values):
 
 
 def judge_sweep(judge, scene, text, rows, study, summary, moving):
-    """All rows of a sweep."""
+    """Judges all rows of a sweep."""
     axes = [read_axis(axis, scene) for axis in study.get("axes", "").split("; ") if axis]
     if axes:
         drawn(judge, rows, axes, int(result(summary, "samples") or 1), int(result(summary, "seed") or 0))
@@ -138,7 +138,7 @@ def statistics(judge, rows, name, inputs, summary):
                 judge.compare("statistics", stated - expected, abs(expected) or 1.0, "", f"{name}.{end} at {path}")
 
 
-# Numbers of bodies that move nothing: with them the motion of the scene is that of its variants.
+# Numbers of bodies that do not affect the motion: the variants move as the scene does.
 INERT = re.compile(r"\.(mass|inertia|center)(\[\d+\])*$")
 VARIANTS = 12
 
@@ -168,7 +168,7 @@ def along_itself(scene, rows):
 
 
 def beyond_rows(values, extremum, sign):
-    """By how much an extremum is not between the highest row and twice a parabola's height above it."""
+    """The distance of an extremum from the interval between the highest row and twice a parabola's height above it."""
     heights = sign * values
     k = int(heights.argmax())
     bend = 2.0 * heights[k] - heights[k - 1 if k else -2] - heights[k + 1 if k + 1 < len(heights) else 1]

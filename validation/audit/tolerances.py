@@ -1,4 +1,4 @@
-"""The checks: what is compared, relative to what, how large a difference may be, and why."""
+"""The checks: the compared quantities, the scale, the tolerance, and its reason."""
 
 from typing import NamedTuple
 

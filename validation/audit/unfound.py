@@ -37,7 +37,7 @@ PATTERNS = [
 
 
 def reason(name, folder):
-    """Why a fault cannot be found; none where it should be."""
+    """The reason why a fault cannot be found; None if the audit must find it."""
     direction = re.match(r"([\w-]+): (.+)\.direction, ", name)
     if direction:
         table = folder.csv(direction[1])

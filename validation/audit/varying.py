@@ -1,4 +1,4 @@
-"""A moment of inertia that is a function of its body's angle, with reactions within what the body stands for."""
+"""A moment of inertia that is a function of its body's angle, with reactions within the mechanism that the body represents."""
 
 import numpy as np
 
@@ -22,7 +22,7 @@ class VaryingInertia:
 
     @property
     def is_known(self):
-        """Whether the audit knows the curve: without a half slope it would have to choose one."""
+        """Whether the scene determines the curve: without half slopes the audit would have to choose an interpolation."""
         return self.half_slope is not None or self.is_series
 
     def at(self, angle):

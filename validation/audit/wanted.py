@@ -1,4 +1,4 @@
-"""Where rows begin and end, and how fast: as the scene asks, unless its motion ends early."""
+"""Start, end and speed of the rows: those of the scene, unless its motion ends early."""
 
 import numpy as np
 
@@ -61,7 +61,7 @@ def motion(judge, scene, rows, events, summary):
 
 
 def impacts(judge, rows, events, stop, summary):
-    """A coordinate leaves a rigid stop with `restitution` times the speed with which it comes, by the rows before."""
+    """After an impact on a rigid stop, the speed of a coordinate is `restitution` times the speed in the rows before."""
     name, time = stop["coordinate"], rows.get("t")
     number = (summary or {}).get("results", {}).get(f"event.{stop['name']} is struck.number", {}).get("value")
     q, speed, all_times = (of.get(n) for of, n in ((rows, name), (rows, f"{name}.velocity"), (events, "t")))

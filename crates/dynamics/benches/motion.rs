@@ -1,10 +1,10 @@
-//! What a motion costs whose coordinate is within a given error at its end: by method, on the exact model
-//! and on a table that is built in the same time, and by quadrature.
+//! Time of a motion whose coordinate has a given error at its end: by method, on the exact model and on a table
+//! (including its construction), and by quadrature.
 //!
-//! Two free motions of ten periods, whose end is known: the crank has turned ten times. One machine under loads
-//! with a motor, whose end is that of the finest run. Of each way the loosest tolerance of a ladder is taken from
-//! which on all finer ones reach the error, so that none is met by luck. As in `reduced`, the subjects take turns
-//! within one process; times are the least, as ratios to one exact evaluation and to DOP853 on the exact model.
+//! Two free motions of ten periods, whose end is known: the crank has turned ten times. One machine under loads with a
+//! motor, whose end is that of the finest run. For each way, the loosest tolerance is chosen for which it and all finer
+//! ones reach the error, so that none succeeds by chance. As in `reduced`, the subjects take turns within one process;
+//! times are the least, as ratios to one exact evaluation and to DOP853 on the exact model.
 
 #[path = "../../kinetostatics/benches/bench/mod.rs"]
 mod bench;
@@ -21,7 +21,7 @@ use std::fmt::Display;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Errors of the coordinate that are asked for, rad.
+/// Required errors of the coordinate, rad.
 const REQUIRED_ERRORS: [f64; 3] = [1e-3, 1e-6, 1e-9];
 /// Tolerances that are tried, the finest first: tenfold looser each.
 const MIN_TOLERANCE: f64 = 1e-13;
@@ -33,12 +33,13 @@ const REPETITIONS: usize = 60;
 const PERIODS: f64 = 10.0;
 /// A table is built to this part of the tolerance, but to no better than rounding lets it be.
 const TABLE_TOLERANCE_FACTOR: f64 = 0.1;
-/// Times at which a rule of quadrature is compared with that of all digits: at whole periods it is at its best.
+/// Number of times at which a quadrature is compared with the converged one, because its error is smallest at whole
+/// periods.
 const COMPARED_TIMES: u32 = 23;
-/// What two methods may differ by where the finest run is the truth, rad: a tenth of the least error.
+/// Allowed difference of two methods if the finest run is the reference, rad: a tenth of the least error.
 const AGREEMENT: f64 = 1e-10;
 
-/// What moves.
+/// The moving system.
 #[allow(clippy::large_enum_variant, reason = "there are three")]
 enum Plant {
     Free(ExactModel),
@@ -62,7 +63,7 @@ enum Computation {
     Quadrature,
 }
 
-/// Where a computation came to, and by what work.
+/// The end of a computation, and its work.
 struct RunResult {
     q: f64,
     statistics: Statistics,
@@ -214,7 +215,7 @@ impl MotionCase {
         }
     }
 
-    /// What a computation is off by at the end; a rule of quadrature at some times before it, too.
+    /// The error of a computation at the end; for a quadrature, also at some times before it.
     fn tolerance_run(&self, computation: Computation, tolerance: f64) -> ToleranceRun {
         let RunResult { q, statistics } = or_stop(self.case, self.run(computation, tolerance));
         let mut error = (q - self.reference).abs();
@@ -266,7 +267,7 @@ struct Row {
     required_error: f64,
     computation: Computation,
     run: ToleranceRun,
-    /// Of all turns, s.
+    /// Least time of all turns, s.
     min_time: f64,
 }
 

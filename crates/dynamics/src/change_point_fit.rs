@@ -46,7 +46,7 @@ pub enum ChangePointFitError {
     /// Friction depends on reactions that grow beyond all bounds there.
     #[error("friction depends on reactions that are not determined at the change point")]
     Friction,
-    /// It has couplings, which count whole revolutions.
+    /// The mechanism has couplings, which count whole revolutions.
     #[error("a motion with gears or couplings cannot pass a change point")]
     Couplings,
     /// The branches come close there, but do not meet.
@@ -76,7 +76,7 @@ pub enum ChangePointFitError {
 pub struct ChangePointFit {
     /// The change point, rad or m.
     pub center: f64,
-    /// Half the window in which the fit takes the place of the plan, rad or m.
+    /// Half the window in which the fit replaces the plan, rad or m.
     pub half_width: f64,
     /// How far the fit is good to either side, rad or m.
     pub fit_radius: f64,
@@ -87,7 +87,7 @@ pub struct ChangePointFit {
     pub mobility: usize,
     /// The reactions that the loads do not determine there.
     pub indeterminate: Vec<Reaction>,
-    /// The branch before and behind, by the coordinate, with all the reactions that are shown.
+    /// The models of the branches below and above in the coordinate, with all requested reactions.
     pub(crate) branches: [Model; 2],
     pub(crate) polynomials: PolynomialFit,
 }
@@ -96,12 +96,12 @@ pub struct ChangePointFit {
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitWindow {
     pub(crate) fit: Arc<ChangePointFit>,
-    /// Index of the crossing it belongs to, and whether the machine is that of the branch above.
+    /// Index of its crossing, and whether the machine is that of the branch above.
     pub(crate) crossing: usize,
     pub(crate) above: bool,
-    /// From and to, from the change point.
+    /// Bounds of the window, as distances from the change point, rad or m.
     pub(crate) bounds: [f64; 2],
-    /// The period after which the branches before and behind follow each other again, rad.
+    /// The period after which the branches below and above repeat, rad.
     pub(crate) period: Option<f64>,
 }
 
@@ -124,7 +124,7 @@ impl FitWindow {
         passed(ends[0]) != passed(ends[1]) || ends.iter().any(|q| self.offset_within(*q).is_some())
     }
 
-    /// Whether a coordinate is so far behind the window that the machine of the branch there goes on.
+    /// Whether a coordinate is so far beyond the window that the motion continues on the machine of the branch there.
     pub(crate) fn has_passed(&self, q: f64) -> bool {
         let half_width = self.fit.half_width;
         let offset = self.offset_within(q);
@@ -160,7 +160,7 @@ pub(crate) fn half_width_for(plan: &Plan, tolerance: f64) -> f64 {
     half_width_of_groups(plan.group_methods().len(), tolerance)
 }
 
-/// The same of so many groups.
+/// The half-width for a number of groups.
 pub(crate) fn half_width_of_groups(groups: usize, tolerance: f64) -> f64 {
     let groups = groups as f64;
     let tolerance = tolerance.clamp(MIN_TOLERANCE, MAX_TOLERANCE);
@@ -187,7 +187,7 @@ fn sample_pose(
     Ok(found)
 }
 
-/// The angles of all bodies at a distance `x` behind a change point at `center`, from the poses between
+/// The angles of all bodies at a distance `x` beyond a change point at `center`, from the poses between
 /// the distances `from` and `to` before it; `upwards` if it lies above them.
 pub(crate) fn extrapolate(
     model: &Model,
@@ -277,7 +277,7 @@ impl ChangePointFit {
         Ok(PolynomialFit::new(&nodes, &samples, fit_radius, MAX_DEGREE))
     }
 
-    /// What moves at the change point, and which reactions are determined there.
+    /// Finds the motions at the change point, and the reactions that are determined there.
     fn analyse_center(&mut self, mechanism: &Mechanism) {
         let plan = self.branches[0].plan();
         let mut workspace = FitWorkspace::new(&self.branches[0]);

@@ -26,8 +26,8 @@ pub(crate) trait ConservativeSystem {
     /// Its inertia, potential and force at `q` (rad or m).
     fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms>;
 
-    /// For each frame or hinge at the last `q`: its angle (rad, but for whole revolutions) and the derivative of this angle with respect to
-    /// the coordinate; none where positions are not known.
+    /// For each frame or hinge at the last `q`: its angle (rad, except for whole revolutions) and the derivative of this angle with respect
+    /// to the coordinate; empty if positions are unknown.
     fn turns(&self) -> Vec<[f64; 2]>;
 
     /// The range of the coordinate.

@@ -1,14 +1,14 @@
-//! Surfaces that hold and slide: dry friction in the joints of a machine.
+//! Surfaces that stick and slide: dry friction in the joints of a machine.
 //!
-//! A friction without regularisation speed slides with its coefficient µ, against the direction in which it moves, or it
-//! holds: then its force is whatever keeps its surfaces at rest, up to µₛ times the force that presses on them. Which of
-//! both it does is its [mode](ContactMode), a part of the machine's state that the right-hand side keeps and that changes
-//! between two integrations only: where surfaces come to rest, or where the force of those that hold reaches its limit.
+//! A friction without regularisation speed slides with its coefficient µ, against the direction in which it moves, or it sticks: its force
+//! keeps its surfaces at rest, up to µₛ times the normal force. Its [mode](ContactMode) says which. The mode is a part of the machine's
+//! state. It is constant in the right-hand side, and changes only between two integrations: when surfaces come to rest, or when the force
+//! of sticking surfaces reaches its limit.
 //!
 //! End stops limit a coordinate: one that meets its stop rebounds, or rests on it until a force lifts it off (`stop`).
 //!
-//! `mode` names the modes, `relations` collects what a unit of each force does, `held` solves for the forces at given
-//! modes (with the contacts that are `independent`), and `search` finds the modes of surfaces at rest. Their events are in `contact_events`.
+//! `mode` names the modes, `relations` collects the effect of a unit of each force, `held` solves for the forces at given modes (with the
+//! contacts that are `independent`), and `search` finds the modes of surfaces at rest. Their events are in `contact_events`.
 
 mod held;
 mod independent;
@@ -34,16 +34,16 @@ pub(crate) struct Contact<F = CoordinateFunction> {
     pub(crate) dependent: usize,
     /// Its index among all loads.
     pub(crate) load: usize,
-    /// Of surfaces that slide.
+    /// Coefficient of sliding surfaces.
     pub(crate) coefficient: f64,
-    /// Of surfaces at rest.
+    /// Coefficient of surfaces at rest.
     pub(crate) static_coefficient: f64,
     /// The coordinate whose speed is that of the surfaces.
     pub(crate) coordinate: F,
 }
 
 impl<F> Contact<F> {
-    /// Those of a model.
+    /// The frictions of a model.
     pub(crate) fn of_model<M: MachineModel<CoordinateFunction = F>>(model: &M) -> Vec<Self> {
         let each = model.frictions().enumerate();
         let sticking = each.filter_map(|(dependent, load)| {

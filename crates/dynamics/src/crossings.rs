@@ -29,7 +29,7 @@ pub(crate) fn first_of<E>(
 }
 
 /// When a margin falls below zero up to the last point of it, known at two earlier ones, the latest first: between the points, it may
-/// also fall and rise again. Before the root is looked for, it is evaluated where it should be below zero.
+/// also fall and rise again. Before the search for the root, it is evaluated where it should be below zero.
 pub(crate) fn fall_below_zero(
     earlier: [(f64, f64); 2],
     last: (f64, f64),
@@ -51,8 +51,8 @@ pub(crate) fn fall_below_zero(
     root::find(margin_at, from.0, end)
 }
 
-/// A time soon after the start of an interval at which a margin is positive, and a later one at which it is not: what is soon passed again, a
-/// short rebound or a narrow window, lies between two points of a step.
+/// A time soon after the start of an interval at which a margin is positive, and a later one at which it is not: a short rebound or a
+/// narrow window, which the motion soon passes again, lies between two points of a step.
 pub(crate) fn first_inside(
     [start, end]: [f64; 2],
     mut margin_at: impl FnMut(f64) -> Result<f64>,
@@ -73,8 +73,8 @@ pub(crate) fn first_inside(
     Ok(None)
 }
 
-/// When the margin of a switch that was not positive at the start of an interval, and is negative at its end, is passed: within a rounding at
-/// the start, soon behind it, or where what has rested on zero leaves it.
+/// When the margin of a switch that was not positive at the start of an interval, and is negative at its end, is passed: within a rounding
+/// at the start, soon after it, or where a margin that rested on zero leaves it.
 pub(crate) fn passed_soon(
     over: [f64; 2],
     mut margin_at: impl FnMut(f64) -> Result<f64>,
@@ -90,8 +90,8 @@ pub(crate) fn passed_soon(
     root::find(side_at, start, end)
 }
 
-/// Where the parabola through three points has its minimum, between the outer ones; none where it does not come near
-/// zero, or starts from there.
+/// The time of the minimum of the parabola through three points, between the outer ones; `None` if it does not come
+/// near zero, or starts from there.
 fn vertex([(t0, m0), (t1, m1), (t2, m2)]: [(f64, f64); 3]) -> Option<f64> {
     let (before, after) = ((m1 - m0) / (t1 - t0), (m2 - m1) / (t2 - t1));
     let curvature = (after - before) / (t2 - t0);

@@ -1,5 +1,5 @@
-//! The steady cycle of a rotating machine: after a cycle (one or more revolutions) the speed and the drive states are
-//! what they were before,
+//! The steady cycle of a rotating machine: after a cycle (one or more revolutions) the speed and the drive states
+//! return to their values,
 //!
 //! ```text
 //! φ(z) = z,    z = (q̇, states of the drives) at one position                    (1)
@@ -7,8 +7,8 @@
 //! (S − I) δz = z − φ(z)                                                        (3)
 //! ```
 //!
-//! The coordinate is the independent variable, so that a cycle ends at a known value of it and no event is looked
-//! for; the sensitivity S is integrated with the state, and Newton's method (3) converges quadratically. The
+//! The coordinate is the independent variable, so that a cycle ends at a known value of it, without a search for
+//! events; the sensitivity S is integrated with the state, and Newton's method (3) converges quadratically. The
 //! eigenvalues of S are the Floquet multipliers: the factors of a small disturbance after a cycle.
 
 mod initial_transient;
@@ -34,7 +34,7 @@ const NO_CYCLE: &str = "a return map of a motion that holds and lets go is not s
 /// Highest number of steps of Newton's method, and of halvings of a step.
 const MAX_NEWTON_STEPS: usize = 30;
 const MAX_HALVINGS: usize = 8;
-/// Newton's method ends with a step below so many tolerances.
+/// Newton's method ends with a step below this multiple of the tolerance.
 const NEWTON_TOLERANCE_FACTOR: f64 = 10.0;
 /// Phases, as parts of a revolution, at which a machine is compared with itself.
 const PHASE_FRACTIONS: [f64; 5] = [0.0, 0.192, 0.417, 0.583, 0.877];
@@ -61,7 +61,7 @@ pub struct Cycle {
     pub mean_speed: f64,
     /// Coordinate (rad) and speed (rad/s) where the speed is least.
     pub slowest: [f64; 2],
-    /// The same where it is greatest.
+    /// The coordinate and the speed at which the speed is greatest.
     pub fastest: [f64; 2],
     /// Coefficient of fluctuation: the difference of these speeds over the mean speed.
     pub fluctuation: f64,
@@ -84,8 +84,8 @@ impl Cycle {
     }
 }
 
-/// The steady cycle of a machine of one free angle, from a state near it: its coordinate is where the
-/// cycle begins, its speed gives the direction.
+/// The steady cycle of a machine of one free angle, from a state near it. The coordinate of this state is the start of
+/// the cycle, its speed gives the direction.
 ///
 /// # Errors
 /// [`DynamicsError::NoCycle`], [`DynamicsError::ComesToRest`] where the guess does not complete a cycle, and as of
@@ -320,8 +320,8 @@ impl<'m, M: MovingModel> CycleProblem<'m, M> {
         Ok(multipliers.all(|[re, im]| (re - 1.0).hypot(*im) > map_error))
     }
 
-    /// The sum of the magnitudes of what all sources do in a cycle, J: of a single source, whose work is zero in a steady cycle,
-    /// what it does in one part and undoes in another.
+    /// The sum of the magnitudes of the works of all sources in a cycle, J. For a single source, whose work is zero in a steady
+    /// cycle, it is the sum of its positive and negative parts.
     fn work_done_and_undone(&self, cycle: &Cycle) -> Result<f64> {
         let mut ode = MachineOde::new(self.machine, 0.0, &cycle.initial_state)?;
         let mut rates = vec![0.0; self.machine.state_count()];

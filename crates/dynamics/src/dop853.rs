@@ -6,9 +6,9 @@
 //! ```
 //!
 //! (Hairer, Nørsett and Wanner 1993, eq. II.10.17.) diffsol's explicit methods have at most 8 stages and one error
-//! formula, so this one has a step loop of its own, behind the same `integrate` and with the same observers. An
-//! evaluation that fails shortens the step, and ends the motion where no step is short
-//! enough. Three more stages are evaluated where dense output is needed within a step.
+//! formula, so this method has its own step loop, which `integrate` calls with the same observers. A failed
+//! evaluation shortens the step, and ends the motion if no step is short enough. Three more stages are evaluated if
+//! dense output is needed within a step.
 
 mod coefficients;
 mod interpolation;
@@ -26,7 +26,7 @@ use interpolation::Interpolant;
 const ALL_STAGES: usize = 16;
 /// The stage at the end of a step.
 const END_STAGE: usize = 12;
-/// A new step is this part of what the error allows, within these multiples of the last.
+/// A new step is this fraction of the step that the error allows, within these multiples of the last step.
 const SAFETY: f64 = 0.9;
 const MIN_FACTOR: f64 = 1.0 / 3.0;
 const MAX_FACTOR: f64 = 6.0;
@@ -38,9 +38,10 @@ const PREVIOUS_ERROR_EXPONENT: f64 = 0.04;
 const MIN_ERROR: f64 = 1e-4;
 /// h |λ| up to which the method is stable on the real axis (Hairer and Wanner 1996, IV.2).
 const STABILITY_LIMIT: f64 = 6.1;
-/// h |λ| above which a step is repeated, shorter: (2) was seen to show less than such a step errs by (decision 52).
+/// h |λ| above which a step is repeated with a shorter length, because (2) may be smaller than the error of such a step
+/// (decision 52).
 const MAX_STIFFNESS: f64 = 4.0;
-/// No decay is this stiff in a step that (2) accepts: here the rounding of two states that hardly differ is measured.
+/// No decay is this stiff in a step that (2) accepts; a larger value is the rounding of two states that hardly differ.
 const ROUNDING_STIFFNESS: f64 = 9.0;
 /// The factor of a step in which an evaluation failed.
 const FAILURE_REDUCTION: f64 = 0.25;
@@ -79,7 +80,7 @@ struct Stepper<'s> {
     stages: Stages<'s>,
     /// Relative, and absolute by state.
     tolerance: (f64, &'s [f64]),
-    /// Where the step begins and ends.
+    /// Start and end of the step.
     from: OdeState,
     to: OdeState,
     min_step: f64,
@@ -141,7 +142,7 @@ impl Stepper<'_> {
         })
     }
 
-    /// Takes one step of about `h`, or less, and returns what the next may be.
+    /// Takes one step of length `h` or less, and returns the length of the next.
     fn step(&mut self, mut h: f64, end: Option<f64>) -> Result<f64> {
         let t = self.from.t;
         let mut max_factor = MAX_FACTOR;
@@ -240,9 +241,9 @@ struct Stages<'s> {
     /// By state: the increment of the step, and the rounding of earlier sums.
     increment: Vec<f64>,
     compensation: Vec<f64>,
-    /// The same with that of the last step.
+    /// The compensation after the step.
     next_compensation: Vec<f64>,
-    /// The state at a stage, that of the twelfth, and rates.
+    /// The state at a stage, the state at the twelfth stage, and rates.
     stage_state: Vec<f64>,
     stage_12_state: Vec<f64>,
     rhs: Vec<f64>,

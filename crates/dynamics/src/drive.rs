@@ -11,7 +11,7 @@ use dwell_numerics::Scalar;
 pub struct DriveError {
     /// Index of the drive.
     pub drive: usize,
-    /// What is wrong with it.
+    /// The fault.
     pub what: &'static str,
 }
 
@@ -21,7 +21,7 @@ pub(crate) struct CompiledDrive<M: MachineModel = Model> {
     /// Its load in the model.
     pub(crate) load: usize,
     pub(crate) measured: M::CoordinateFunction,
-    /// Its state (current in A, or integral in rad or m), by its place among the drives' states.
+    /// Its state (current in A, or integral in rad or m), by its index among the drives' states.
     pub(crate) state: Option<usize>,
     /// N² J, kg m² or kg.
     pub(crate) reflected_inertia: f64,
@@ -119,7 +119,7 @@ impl<M: MachineModel> CompiledDrive<M> {
         })
     }
 
-    /// At which values of its two [switching functions](Self::switch_values) the drive switches.
+    /// The values of its two [switching functions](Self::switch_values) at which the drive switches.
     pub(crate) fn switch_kinds(&self) -> Vec<SwitchKind> {
         match self.law {
             DriveLaw::AppliedForce | DriveLaw::Motor(_) => Vec::new(),
@@ -130,8 +130,8 @@ impl<M: MachineModel> CompiledDrive<M> {
         }
     }
 
-    /// Of a speed controller: the torque or force without its limit, and the error of the speed. They are linear: of the rates of the
-    /// arguments, these are their rates.
+    /// For a speed controller: the torque or force without its limit, and the error of the speed. Both are linear, so that the rates
+    /// of the arguments give their rates.
     pub(crate) fn switch_values(&self, input: f64, speed: f64, state: Option<f64>) -> [f64; 2] {
         match self.law {
             DriveLaw::AppliedForce | DriveLaw::Motor(_) => [f64::NAN; 2],

@@ -1,16 +1,16 @@
-//! The eigenvalues of a small matrix, and how far they are known.
+//! The eigenvalues of a small matrix, and their errors.
 //!
 //! The matrix is balanced first: its rows and columns are scaled by powers of two, which changes no eigenvalue and no
-//! digit, until each column is as large as its row. What rounding and the errors of its entries leave of the
-//! eigenvalues is measured, by changing every entry by as much as it may be wrong; this holds for multiple eigenvalues
-//! too, where first derivatives do not exist.
+//! digit, until each column is as large as its row. The effect of rounding and of the errors of its entries on the
+//! eigenvalues is measured by changing every entry by its error. This also holds for multiple eigenvalues, for which
+//! first derivatives do not exist.
 
 use crate::error::{DynamicsError, Result};
 use dwell_numerics::dense::Matrix;
 
 /// Numbers of changed matrices whose eigenvalues are compared.
 const CHANGES: usize = 12;
-/// The largest effect of so many changes of random signs is seldom below a third of the largest possible one.
+/// The largest effect of these random changes of sign is seldom below a third of the largest possible effect.
 const SAFETY_FACTOR: f64 = 3.0;
 /// Backward error of the computed eigenvalues, relative to the norm of the balanced matrix.
 const BACKWARD_ERROR: f64 = 4.0 * f64::EPSILON;
@@ -35,7 +35,7 @@ fn of_balanced(matrix: &[f64], n: usize) -> Result<Vec<[f64; 2]>> {
     Ok(values)
 }
 
-/// The same, each with its estimated error, where every entry may err by so much.
+/// The eigenvalues, each with its estimated error, for given errors of the entries.
 pub(crate) fn eigenvalues_with_errors(
     matrix: &[f64],
     entry_errors: &[f64],

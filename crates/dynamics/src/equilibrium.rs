@@ -1,5 +1,5 @@
 //! Equilibria of a loaded machine: states with the coordinates at rest and constant drive states. Coulomb friction is
-//! regularised here and vanishes at rest, so it keeps nothing in place.
+//! regularised here and vanishes at rest, so it cannot hold the machine.
 
 mod around;
 mod at_rest;
@@ -19,7 +19,7 @@ pub enum Stability {
     Centre,
     /// A small disturbance grows.
     Unstable,
-    /// Equilibria go on along some directions, in which nothing brings it back; no other disturbance grows.
+    /// There is no restoring force along some directions, in which equilibria continue; no other disturbance grows.
     Neutral,
     /// The linearised motion does not decide, within its error.
     Undecided,
@@ -57,7 +57,7 @@ pub struct Mode {
 pub struct NeutralDirection {
     /// By free coordinate: its part of the direction, rad or m.
     pub direction: Vec<f64>,
-    /// Of a single coordinate: from where to where every position is an equilibrium, rad or m.
+    /// For a single coordinate: the interval in which every position is an equilibrium, rad or m.
     pub extent: Option<[f64; 2]>,
 }
 
@@ -81,7 +81,7 @@ pub struct Equilibrium {
 }
 
 impl Equilibrium {
-    /// Its vibration modes, the lowest frequency first. An imaginary part within its error is none.
+    /// Its vibration modes, the lowest frequency first. An imaginary part within its error counts as zero.
     pub fn modes(&self) -> Vec<Mode> {
         let mode = |(&[re, im], &error): (&[f64; 2], &f64)| {
             let angular_frequency = re.hypot(im);

@@ -68,9 +68,9 @@ pub enum DynamicsError {
     NearBranches {
         /// The time of the last state before, s.
         t: f64,
-        /// Where they are nearest, rad or m.
+        /// The coordinate at which they are nearest, rad or m.
         q: f64,
-        /// The part of the coordinate within which they differ from those of a change point, rad or m.
+        /// The half-width of the coordinate within which they differ from those of a change point, rad or m.
         half_width: f64,
     },
     /// An option, such as a tolerance, that cannot be used.
@@ -78,12 +78,12 @@ pub enum DynamicsError {
     BadOption {
         /// Which option.
         what: &'static str,
-        /// What its value must be.
+        /// The condition on its value.
         must: &'static str,
         /// Its value.
         value: f64,
     },
-    /// Its user has had enough: see [`interruption`](crate::interruption).
+    /// The user interrupted the computation: see [`interruption`](crate::interruption).
     #[error("the computation was interrupted")]
     Interrupted,
     /// The integrator produced a state that is not finite.
@@ -113,10 +113,10 @@ pub enum DynamicsError {
         needed: f64,
         /// The number of steps allowed.
         max_steps: usize,
-        /// Where switches are counted: the load of the last one (those of the drives last).
+        /// If switches are counted: the index of the load of the last switch (those of the drives last).
         switching: Option<usize>,
     },
-    /// More events happen than are kept.
+    /// There are more events than can be stored.
     #[error("more than {max_occurrences} events happen: up to t = {t} s these are all")]
     TooManyEvents {
         /// The time of the last one kept, s.
@@ -124,12 +124,12 @@ pub enum DynamicsError {
         /// The number of occurrences that are kept.
         max_occurrences: usize,
     },
-    /// A step goes through so many revolutions that events within it are not looked for.
+    /// A step covers so many revolutions that events within it are not searched for.
     #[error("events cannot be found in a step from t = {t} s through {angle} rad")]
     StepTooLongForEvents {
-        /// Where the step begins, s.
+        /// Start of the step, s.
         t: f64,
-        /// What it goes through, rad.
+        /// Change of the angle in the step, rad.
         angle: f64,
     },
     /// Something varies so fast in time that more steps are needed than allowed.
@@ -137,7 +137,7 @@ pub enum DynamicsError {
         "a function of time varies within {width:.1e} s near t = {t} s, for which more steps are needed than the {max_steps} allowed"
     )]
     VariesTooFast {
-        /// Which: the index of a load (those of the drives last), or behind them of a prescribed actuator.
+        /// Its index: that of a load (those of the drives last), or, after all loads, of a prescribed actuator.
         source_index: usize,
         /// The time over which it varies, s.
         width: f64,
@@ -150,7 +150,7 @@ pub enum DynamicsError {
     /// a brake at rest does.
     #[error("the load of index {source_index} switches back and forth without end at t = {t} s")]
     Chatters {
-        /// Which: the index of a load (those of the drives last).
+        /// The index of the load (those of the drives last).
         source_index: usize,
         /// The time reached, s.
         t: f64,
@@ -161,7 +161,7 @@ pub enum DynamicsError {
         "the load of index {source_index} holds the motion at its switch together with others at t = {t} s"
     )]
     SlidesOnSeveral {
-        /// Which: the index of a load (those of the drives last).
+        /// The index of the load (those of the drives last).
         source_index: usize,
         /// The time reached, s.
         t: f64,
@@ -189,7 +189,7 @@ pub enum DynamicsError {
         /// The coordinate, rad or m.
         q: f64,
     },
-    /// An analysis of smooth motions was asked for, and there is an end stop.
+    /// An analysis of smooth motions was requested, and there is an end stop.
     #[error("end stop {stop}: {what}")]
     Stops {
         /// Which end stop.
@@ -197,7 +197,7 @@ pub enum DynamicsError {
         /// Why that is no subject of the analysis.
         what: &'static str,
     },
-    /// An analysis of smooth motions was asked for, and dry friction holds.
+    /// An analysis of smooth motions was requested, and dry friction sticks.
     #[error("friction {source_index} holds at rest: {what}")]
     Sticks {
         /// Which: the index of a load.
@@ -274,7 +274,7 @@ pub enum DynamicsError {
         /// The equilibrium, rad or m.
         q: f64,
     },
-    /// As far as the motion was followed it has neither a turning point nor a period.
+    /// The motion has neither a turning point nor a period in the part that was followed.
     #[error(
         "the motion continues beyond q = {q} and has neither a turning point nor a period up to there"
     )]
@@ -282,7 +282,7 @@ pub enum DynamicsError {
         /// How far it was followed, rad or m.
         q: f64,
     },
-    /// There is no isolated equilibrium where one was looked for.
+    /// The search found no isolated equilibrium.
     #[error("no equilibrium: {what}")]
     NoEquilibrium {
         /// Why not.
@@ -340,7 +340,7 @@ pub enum DynamicsError {
     },
 }
 
-/// That an option cannot be used.
+/// The error for an invalid option.
 pub(crate) fn bad_option<T>(what: &'static str, must: &'static str, value: f64) -> Result<T> {
     Err(DynamicsError::BadOption { what, must, value })
 }

@@ -11,7 +11,7 @@ const MAX_TRIALS: usize = 40;
 const FLUCTUATION_TOLERANCE: f64 = 1e-9;
 
 impl<M: MovingModel> Machine<M> {
-    /// The same machine with a flywheel (kg m² or kg) along a free coordinate, in place of any it had there.
+    /// This machine with a flywheel (kg m² or kg) along a free coordinate, which replaces any flywheel there.
     #[must_use]
     pub fn with_flywheel(mut self, free: usize, inertia: f64) -> Self {
         self.flywheels[free] = inertia;
@@ -27,7 +27,7 @@ impl<M: MovingModel> Machine<M> {
 /// A flywheel for a wanted fluctuation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flywheel {
-    /// Moment of inertia to be added along the coordinate, kg m²; zero where none is needed.
+    /// Moment of inertia to be added along the coordinate, kg m²; zero if none is needed.
     pub inertia: f64,
     /// The cycle with it.
     pub cycle: Cycle,

@@ -1,10 +1,10 @@
 //! Integration in time, by diffsol behind one guarded loop, or by DOP853.
 //!
-//! diffsol's own `solve` has no limit of steps and does not check for finite states, and its explicit methods accept
-//! a step whose error is NaN (`f64::max` discards it). So every step is taken here, and
-//! after each one the state, the number of steps and the errors of evaluations are checked. An evaluation
-//! that fails stores its error in a cell and NaN in the derivative: the integrator then shortens
-//! its step or fails, and the caller gets the error of that evaluation.
+//! diffsol's own `solve` has no limit of steps and does not check for finite states, and its explicit methods accept a
+//! step whose error is NaN (`f64::max` discards it). Therefore every step is taken here, and after each one the state,
+//! the number of steps and the errors of evaluations are checked. A failed evaluation stores its error in a cell and
+//! NaN in the derivative: the integrator then shortens its step or fails, and the caller gets the error of that
+//! evaluation.
 
 mod impasse;
 mod step_loop;
@@ -30,9 +30,9 @@ type Solver = NalgebraLU<f64>;
 
 /// Smallest step, s, at a rate of 1 per s or less; at a higher one, in proportion shorter.
 const MIN_STEP: f64 = 1e-17;
-/// The part of a step that could not be evaluated with which a method begins anew.
+/// After a failed step, a method restarts with this fraction of its length.
 const FAILURE_REDUCTION: f64 = 0.1;
-/// An event this near to the end, as a part of its time, is at the end.
+/// An event this near to the end, relative to the time of the end, counts as at the end.
 const END_ROUNDING: f64 = 256.0 * f64::EPSILON;
 
 /// Integrates a system from `start` until `end` (s), or without an end until the observer stops it. The
@@ -96,8 +96,8 @@ fn integrate_segments(
     parts.whole.ok_or(DynamicsError::DurationTooShort)
 }
 
-/// Integrates while nothing switches in time, from one switch of the state to the next: in between, its pieces are
-/// held.
+/// Integrates while nothing switches in time, from one switch of the state to the next: between switches, the pieces
+/// are held.
 // Long because it is one loop: what ends an integration decides how the next one begins.
 fn integrate_held(
     system: &mut dyn OdeSystem,
@@ -200,11 +200,11 @@ fn integrate_held(
     parts.whole.ok_or(DynamicsError::DurationTooShort)
 }
 
-/// What ends an integration on held pieces.
+/// The event that ends an integration on held pieces.
 enum HeldEvent {
     /// Switches of loads are passed.
     Switch(Crossing),
-    /// Contacts change their modes; by contact, whether it is one of those that do.
+    /// Contacts change their modes; by contact, whether it changes.
     Contacts(OdeState, Vec<bool>),
 }
 
@@ -224,7 +224,7 @@ impl HeldEvent {
     }
 }
 
-/// Goes over to the pieces and modes behind an event; the state there.
+/// Changes to the pieces and modes after an event; returns the state there.
 fn pass_event(
     shared: &SharedSystem<'_>,
     monitor: &mut SwitchMonitor,

@@ -1,4 +1,4 @@
-//! An integration that ends at each switch and begins again behind it, as one.
+//! Joins the parts of an integration that ends at each switch and starts again after it.
 
 use crate::error::{DynamicsError, Result, bad_option};
 use crate::ode::{OdeState, Termination};
@@ -16,7 +16,7 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// Its duration, or a second where it has no end.
+    /// Its duration, s; 1 s without an end.
     pub(crate) fn span(&self) -> f64 {
         let span = self.end.map_or(f64::INFINITY, |end| end - self.start.t);
         if span.is_finite() { span } else { 1.0 }
@@ -26,7 +26,7 @@ impl Part {
 /// An integration in parts.
 pub(crate) struct Parts {
     pub(crate) whole: Option<Termination>,
-    /// Where the next part begins, with what is left for it.
+    /// The next part: its start, and the remaining steps.
     pub(crate) next: Part,
     max_steps: usize,
 }
@@ -40,7 +40,7 @@ impl Parts {
         }
     }
 
-    /// Adds a part, at whose end the next begins; whether an error ended it.
+    /// Adds a part, at whose end the next starts; returns whether an error ended it.
     ///
     /// # Errors
     /// That of the first part.

@@ -24,8 +24,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Highest number of improvements of the turning points.
 const MAX_REFINEMENTS: usize = 60;
-/// Samples at which the work of the force is compared with the potential, and by what part of the largest difference of potentials, or so many
-/// times the last coefficients of the force, it may differ.
+/// Samples at which the work of the force is compared with the potential, and the allowed difference, relative to the largest difference of
+/// potentials, or as a multiple of the last coefficients of the force.
 const COMPARED_WORKS: usize = 16;
 const WORK_ERROR: f64 = 1e-6;
 const LEFT_OUT: f64 = 100.0;
@@ -63,7 +63,7 @@ pub(crate) struct SampledLibration {
 }
 
 impl SampledLibration {
-    /// Without points yet.
+    /// A libration without sample points.
     pub(crate) fn new(turning_points: [f64; 2]) -> Self {
         Self {
             turning_points,
@@ -164,9 +164,9 @@ impl SampledLibration {
         series.check_between(size, |part| terms_at(part).map(|(terms, _)| terms.force))
     }
 
-    /// The largest difference between the work of the series of the force and that of the potential, as a part of the largest
-    /// potential difference, where it is more than the series leaves out. A force that acts within a small part of the phase is at
-    /// no sample, but its work is.
+    /// The largest difference between the work of the series of the force and that of the potential, relative to the largest
+    /// potential difference, if it exceeds the truncation error of the series. A force that acts within a small part of the phase
+    /// may be at no sample, but its work shows.
     fn missed_work(&self) -> Option<f64> {
         let n = self.samples.len();
         let upwards = self.samples[..=n / 2].iter();
@@ -225,8 +225,8 @@ impl SampledLibration {
         [moved[0].min(q), moved[1].max(q)]
     }
 
-    /// G of (1) with F_m from `fejer`, the `first` of which is 1 but for a factor of all; `mirrored` from the upper
-    /// end.
+    /// G of (1) with F_m from `fejer`, the `first` of which is 1 except for a common factor; `mirrored` counts from the
+    /// upper end.
     fn sum(&self, mirrored: bool, first: f64, fejer: impl Fn(usize) -> f64) -> f64 {
         let sign = |k: usize| if mirrored && k % 2 == 1 { -1.0 } else { 1.0 };
         let mut sum = self.force_series.mean * first;
@@ -313,7 +313,8 @@ impl SampledLibration {
     }
 }
 
-/// The phase at which a libration between two turning points passes `q` upwards, or that of the nearer one.
+/// The phase at which a libration between two turning points passes `q` upwards, or the phase of the nearer turning
+/// point.
 pub(crate) fn nearest_phase(q: f64, turning_points: [f64; 2]) -> f64 {
     let middle = 0.5 * (turning_points[0] + turning_points[1]);
     phase_of(q, turning_points).unwrap_or(if q < middle { 0.0 } else { PI })

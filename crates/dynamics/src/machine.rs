@@ -69,13 +69,13 @@ pub struct Machine<M: MovingModel = Model> {
     nonconservative_sources: Vec<NonconservativeSource>,
     /// The loads of [`NonconservativeSource::Loads`].
     pub(crate) summed_loads: Vec<usize>,
-    /// Where it crosses change points.
+    /// The windows in which it crosses change points.
     pub(crate) fit_windows: Vec<M::FitWindow>,
     /// Frictions that hold at rest.
     pub(crate) contacts: Vec<Contact<M::CoordinateFunction>>,
     /// The sides of the end stops.
     pub(crate) stops: Vec<Stop>,
-    /// By free coordinate: inertia along it beside that of the bodies and rotors, kg m² or kg.
+    /// By free coordinate: inertia along it in addition to that of the bodies and rotors, kg m² or kg.
     pub(crate) flywheels: Vec<f64>,
 }
 
@@ -178,8 +178,8 @@ impl<M: MovingModel> Machine<M> {
         is_prescribed_in_time || loads.any(|load| load.magnitude.signals().contains(&Signal::Time))
     }
 
-    /// The works that the loads can do over the size of the mechanism, or a turn of one radian, from one time to another
-    /// (s), in sum: J. Of magnitudes that depend on the motion only functions of time count; dampers do not.
+    /// The sum of the works that the loads can do over the size of the mechanism, or over one radian, between two times
+    /// (s), J. Of magnitudes that depend on the motion, only functions of time count. Dampers do not count.
     pub fn largest_work(&self, from: f64, to: f64) -> f64 {
         let drives = self.drives.iter().map(|drive| {
             // A voltage or a wanted speed is no force, but of the order of what it makes.
@@ -441,7 +441,7 @@ impl<M: MovingModel> Machine<M> {
     }
 }
 
-/// The functions of time among loads (those of the drives last), inputs of drives and prescribed motions; of a program's own the breakpoints.
+/// The functions of time of loads (those of the drives last), inputs of drives and prescribed motions; breakpoints of a program's functions.
 fn time_features<M: MovingModel>(
     model: &M,
     drives: &[CompiledDrive<M>],

@@ -22,7 +22,7 @@ pub struct MachineOde<'m, M: MovingModel = Model> {
     dual_workspace: DualWorkspace<MachineWorkspace<Dual, M>>,
     error_weights: Vec<f64>,
     held: Vec<HeldSource>,
-    /// The variables of the loads that switch, where they were looked at last.
+    /// The variables of the loads that switch, at the last check.
     seen: Vec<f64>,
     contact_events: Vec<ContactEvent>,
     modes: SharedModes,
@@ -40,8 +40,8 @@ impl<'m, M: MovingModel> MachineOde<'m, M> {
         Ok(ode)
     }
 
-    /// The same, where the works that loads can do until `end` (s) are a scale of the works too: at an equilibrium the
-    /// energies show nothing of what comes.
+    /// As [`MachineOde::new`], but the works that loads can do until `end` (s) are also a scale of the works. At an
+    /// equilibrium, the energies are no measure of the motion that follows.
     ///
     /// # Errors
     /// As [`MachineOde::new`].
@@ -58,8 +58,8 @@ impl<'m, M: MovingModel> MachineOde<'m, M> {
         Ok(ode)
     }
 
-    /// The speeds of a motion that is slow are accurate by its own measure: one unit of its coordinates over its span, s. It is slow by
-    /// its speeds, and by what its accelerations become over the span.
+    /// The speeds of a motion that is slow are accurate by its own measure: one unit of its coordinates over its span, s. A motion is
+    /// slow if both its speeds and its accelerations times the span are small.
     fn scale_speeds(&mut self, (t, y): (f64, &[f64]), span: f64) -> Result<()> {
         let machine = self.machine;
         let state = machine.evaluate(t, y, &mut self.workspace)?;
@@ -73,7 +73,7 @@ impl<'m, M: MovingModel> MachineOde<'m, M> {
         Ok(())
     }
 
-    /// A machine whose works have no scale, where none is integrated.
+    /// A machine whose works have no scale, because no works are integrated.
     pub(crate) fn unscaled(machine: &'m Machine<M>) -> Self {
         Self {
             machine,
@@ -97,7 +97,7 @@ impl<'m, M: MovingModel> MachineOde<'m, M> {
         &self.modes
     }
 
-    /// The same that records its modes elsewhere.
+    /// This system, which records its modes in `modes`.
     pub(crate) fn in_modes(mut self, modes: &SharedModes) -> Self {
         self.modes = modes.clone();
         self
@@ -109,7 +109,7 @@ const SLOW: f64 = 1e-3;
 /// The part of the largest work below which a work does not count.
 const SMALL_WORK: f64 = 1e-6;
 
-/// The scale of works at the start, J, or that of the largest work to come where it is larger.
+/// The scale of works at the start, J, or that of the largest later work, if it is larger.
 pub(crate) fn with_later_works(scale: f64, largest_work: f64) -> f64 {
     let later = SMALL_WORK * largest_work;
     if later.is_finite() {

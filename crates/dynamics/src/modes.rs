@@ -1,8 +1,8 @@
-//! On what a motion is from one event to the next: the pieces of its loads and drives, the switch that it slides along, and the state with
-//! which it begins there.
+//! The mode of a motion from one event to the next: the pieces of its loads and drives, the switch along which it slides, and the state
+//! with which the mode starts.
 //!
-//! At an event a switching function is zero but for rounding, and the sign of that rounding says nothing. So a row there is evaluated on the
-//! pieces that the motion takes from there on, and the end of what leads up to it on those before.
+//! At an event a switching function is zero within rounding, and its sign is meaningless. Therefore a row after the event is evaluated on
+//! the pieces after it, and a row before the event on the pieces before it.
 
 use crate::crossings::are_together;
 use crate::ode::OdeState;
@@ -10,7 +10,7 @@ use crate::sliding::Sliding;
 use std::borrow::Cow;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The modes of a motion, in order of time: none where nothing switches and no surfaces or end stops touch.
+/// The modes of a motion, in order of time; empty if nothing switches and no surfaces or end stops are in contact.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MotionModes {
     /// The state with which each begins, and along which switch it slides.
@@ -28,12 +28,12 @@ pub(crate) struct Mode<'m> {
     pub(crate) sliding: Option<&'m Sliding>,
 }
 
-/// On which side of an event a state at its time is meant.
+/// The side of an event to which a state at its time belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EventSide {
-    /// As the end of what leads up to it.
+    /// The end of the motion before the event.
     Before,
-    /// As the beginning of what follows.
+    /// The start of the motion after the event.
     After,
 }
 
@@ -65,7 +65,7 @@ impl MotionModes {
         found.is_ok()
     }
 
-    /// The number of the mode at a time (s) on a side of an event; none where there are no modes.
+    /// The number of the mode at a time (s) on a side of an event; `None` if there are no modes.
     fn number_at(&self, t: f64, side: EventSide) -> Option<usize> {
         let has_begun = |at: f64| match side {
             EventSide::Before => at < t,
@@ -90,7 +90,7 @@ impl MotionModes {
         }
     }
 
-    /// The mode at a time (s) on a side of an event; none where there are no modes.
+    /// The mode at a time (s) on a side of an event; `None` if there are no modes.
     pub(crate) fn mode_at(&self, t: f64, side: EventSide) -> Option<Mode<'_>> {
         let number = self.number_at(t, side)?;
         let pieces = self.pieces.iter().map(|changes| {
@@ -104,7 +104,7 @@ impl MotionModes {
     }
 }
 
-/// The modes of a motion while it is integrated: what observes it sees them, too.
+/// The modes of a motion during its integration, shared with its observers.
 #[derive(Debug, Clone, Default)]
 pub struct SharedModes(Arc<Mutex<MotionModes>>);
 

@@ -7,7 +7,7 @@
 //!
 //! It has a turning point where (1) falls to zero, is asymptotic where (1) just reaches zero at a maximum of V, and a
 //! rotation where (1) stays positive over a period. The coordinate is scanned in steps; the derivative −V′ at their
-//! ends shows a maximum of V within a step. Several steps are one where E_c follows the cubic through its values and slopes at
+//! ends shows a maximum of V within a step. Several steps are joined if E_c follows the cubic through its values and slopes at
 //! the ends so closely that neither it nor its slope can have a zero between them: the error of the cubic is known at the middle.
 
 use crate::conservative::{ConservativeSystem, EnergyTerms, LoadedSystem, limits};
@@ -20,7 +20,7 @@ use std::f64::consts::TAU;
 
 /// Steps of a period or of a limited range.
 const SCAN_STEPS: usize = 512;
-/// So many of them may be one where nothing happens in them.
+/// Numbers of steps that may be joined if they contain no event.
 const STEPS_AT_ONCE: [usize; 4] = [16, 8, 4, 2];
 /// How many times the error of the cubic at the middle the energy and its slope must be from zero.
 const CUBIC_ERRORS: f64 = 16.0;
@@ -41,7 +41,7 @@ const LIMIT_TOLERANCE: f64 = 1e-9;
 pub enum MotionClass {
     /// The coordinate passes the highest potential and grows by a period each time.
     Rotation {
-        /// Where the potential is highest, rad.
+        /// The coordinate at which the potential is highest, rad.
         potential_maximum_at: f64,
         /// Kinetic energy there, J.
         kinetic_at_maximum: f64,
@@ -67,7 +67,7 @@ pub enum MotionClass {
     },
     /// Neither a turning point nor a full period was found as far as the coordinate was scanned.
     Undecided {
-        /// Where the scan ended, rad or m.
+        /// The coordinate at which the scan ended, rad or m.
         to: f64,
     },
 }
@@ -83,21 +83,21 @@ pub fn motion_class<M: MovingModel>(
     Ok(EnergyScan::new(&mut LoadedSystem::new(machine)?, start)?.1)
 }
 
-/// What a scan to one side finds first.
+/// The first result of a scan to one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum ScanResult {
     TurningPoint(f64),
-    /// What decides the class of the motion.
+    /// The class of the motion is decided.
     Class(MotionClass),
 }
 
 /// A point of a scan: coordinate (rad or m), kinetic energy (J), and force in the direction of the scan.
 type ScanPoint = (f64, f64, f64);
 
-/// The points of a scan to one side by equal steps, the coordinates of which do not depend on those before.
+/// The points of a scan to one side by equal steps. The coordinates do not depend on earlier points.
 struct EqualSteps {
     from: f64,
-    /// With the sign of the direction.
+    /// Length of a step, rad or m, with the sign of the direction.
     step: f64,
     known: BTreeMap<usize, ScanPoint>,
     count: usize,
@@ -325,8 +325,8 @@ impl<'a> EnergyScan<'a> {
         Ok((q, kinetic, force * direction))
     }
 
-    /// The most steps behind the `k`-th that are one, with the point at their end; none where something may happen in the next two,
-    /// or they lead to the end of the range.
+    /// The largest number of steps after the `k`-th that may be joined, with the point at their end; `None` if the next two may
+    /// contain an event, or lead to the end of the range.
     fn uneventful_steps(
         &mut self,
         steps: &mut EqualSteps,

@@ -1,4 +1,4 @@
-//! Systems of ordinary differential equations, and what their integration hands to an observer.
+//! Systems of ordinary differential equations, and the data that their integration passes to an observer.
 
 use crate::contact::ContactStep;
 use crate::error::{DynamicsError, Result};
@@ -66,17 +66,17 @@ pub trait OdeSystem {
     /// As [`OdeSystem::rhs`].
     fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()>;
 
-    /// Where the right-hand side, as a function of time, switches and varies.
+    /// The times at which the right-hand side switches, and its time scales.
     fn time_features(&self) -> Option<Arc<Features>> {
         None
     }
 
-    /// The index of the first load that a program computes, of which only its breakpoints are known.
+    /// The index of the first load given as a function of a program, of which only breakpoints are known.
     fn own_function(&self) -> Option<usize> {
         None
     }
 
-    /// At which values the functions of the state switch on which pieces of the right-hand side depend.
+    /// The values at which the switching functions switch, on which pieces of the right-hand side depend.
     fn switch_kinds(&self) -> &[SwitchKind] {
         &[]
     }
@@ -91,8 +91,8 @@ pub trait OdeSystem {
         false
     }
 
-    /// Where nothing switches: the variables, among [`OdeSystem::read_signals`], that must turn for a load to vary there; none where that
-    /// is not all.
+    /// The variables among [`OdeSystem::read_signals`] that must reverse for a load to vary between the points of a step, if nothing
+    /// switches; `None` if other causes exist.
     fn followed_signals(&self) -> Option<Vec<usize>> {
         None
     }
@@ -100,7 +100,8 @@ pub trait OdeSystem {
     /// The variables of the loads where [`OdeSystem::switch_values`] were evaluated last.
     fn read_signals(&self, _out: &mut Vec<f64>) {}
 
-    /// What loads do first between five equally spaced points of a step, with these variables, on these pieces.
+    /// The first hidden feature of the loads between five equally spaced points of a step, with these variables, on
+    /// these pieces.
     fn hidden_in(&self, _samples: &[Vec<f64>; 5], _pieces: &[Option<f64>]) -> Option<Hidden> {
         None
     }
@@ -133,14 +134,14 @@ pub trait OdeSystem {
         Ok(false)
     }
 
-    /// Called where the motion begins to slide along one of these switches, and where it leaves it.
+    /// Called when the motion begins to slide along one of these switches, and when it leaves it.
     fn record_sliding(&mut self, _at: &OdeState, _switch: usize, _sliding: Option<&Sliding>) {}
 
     /// Called where a mode of the motion begins: with the piece of each function, and along which switch it slides.
     fn record_mode(&mut self, _at: &OdeState, _pieces: &[Option<f64>], _sliding: Option<&Sliding>) {
     }
 
-    /// Holds one piece of each function, wherever the state is, until others are set; none: as the state says.
+    /// Holds one piece of each function, independent of the state, until others are set. `None`: the state decides.
     fn hold_pieces(&mut self, _pieces: &[Option<f64>]) {}
 
     /// Number of contacts whose surfaces hold or slide.
@@ -148,7 +149,7 @@ pub trait OdeSystem {
         0
     }
 
-    /// What is wrong where the modes of a contact change without end at one instant.
+    /// The error for modes of a contact that change without end at one instant.
     fn contact_without_mode(&self, _contact: usize) -> DynamicsError {
         DynamicsError::NoContactMode { source_index: 0 }
     }
@@ -159,8 +160,8 @@ pub trait OdeSystem {
         None
     }
 
-    /// By contact: how far it is from a change of its mode, negative beyond; not a number where none is near. Whether a
-    /// mode is not decided yet.
+    /// By contact: its margin to a change of its mode, negative beyond it; NaN if no change is near. Returns whether a
+    /// mode is still undecided.
     ///
     /// # Errors
     /// As [`OdeSystem::rhs`].
@@ -176,7 +177,8 @@ pub trait OdeSystem {
         Ok(())
     }
 
-    /// The kinetic energy, and the energies less the works, J, where they are known and nothing but works changes them.
+    /// The kinetic energy, and the energies minus the works, J; `None` if they are unknown, or if causes other than the
+    /// works change them.
     fn balance(&mut self, _at: &OdeState) -> Option<[f64; 2]> {
         None
     }
@@ -196,19 +198,19 @@ pub(crate) struct DualWorkspace<W> {
 }
 
 impl<W> DualWorkspace<W> {
-    /// For a number of states; `inner` is what the right-hand side needs.
+    /// Working memory for a number of states; `inner` is the memory of the right-hand side.
     pub(crate) fn new(inner: W, states: usize) -> Self {
         let y = vec![Dual::from_f64(0.0); states];
         let rates = y.clone();
         Self { inner, y, rates }
     }
 
-    /// What the right-hand side needs.
+    /// The memory of the right-hand side.
     pub(crate) fn inner(&mut self) -> &mut W {
         &mut self.inner
     }
 
-    /// A state as dual numbers whose derivatives are its rates, and what the right-hand side needs.
+    /// A state as dual numbers whose derivatives are its rates, and the memory of the right-hand side.
     pub(crate) fn along(&mut self, y: &[f64], rates: &[f64]) -> (&[Dual], &mut W) {
         for (dual, (&v, &d)) in self.y.iter_mut().zip(y.iter().zip(rates)) {
             *dual = Dual { v, d };
@@ -242,7 +244,7 @@ impl<W> DualWorkspace<W> {
     }
 }
 
-/// What an observer answers after a step.
+/// The answer of an observer after a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StepControl {
     /// Take another step.
@@ -277,10 +279,10 @@ impl Termination {
     }
 }
 
-/// The parts of a step between which a change of sign is looked for.
+/// The number of subintervals of a step in which a change of sign is searched for.
 const ROOT_SUBINTERVALS: usize = 4;
 
-/// The last step, with what is between its ends.
+/// The last step, with its dense output.
 pub(crate) struct Step<'s> {
     pub(crate) before: &'s OdeState,
     pub(crate) now: &'s OdeState,
@@ -299,7 +301,7 @@ impl Step<'_> {
         self.now.t - self.before.t
     }
 
-    /// The ends of the subintervals in which roots are looked for; the last is the step's own.
+    /// The ends of the subintervals in which roots are searched for; the last is the end of the step.
     pub(crate) fn root_subintervals(&self) -> impl Iterator<Item = f64> + use<> {
         self.subinterval_ends(ROOT_SUBINTERVALS)
     }
@@ -326,7 +328,7 @@ impl Step<'_> {
         Ok(state)
     }
 
-    /// The same, at its start the very state before it.
+    /// The state at a time within the step; at its start, exactly the state before the step.
     pub(crate) fn state_from_start(&mut self, t: f64) -> Result<OdeState> {
         match t > self.before.t {
             true => self.state_at(t),

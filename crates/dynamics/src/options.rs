@@ -102,11 +102,12 @@ pub struct Statistics {
     pub steps: usize,
     /// Steps rejected for their error.
     pub rejected_steps: usize,
-    /// Of the steps taken by DOP853, those whose length only stability limits.
+    /// Number of steps of DOP853 whose length only stability limits.
     pub stiff_steps: usize,
     /// Evaluations of the equation of motion.
     pub evaluations: usize,
-    /// Further ones for the events of contacts and of switches: to notice them, to locate them, and to go on behind them.
+    /// Further evaluations for the events of contacts and switches: to detect and locate them, and to continue after
+    /// them.
     pub event_evaluations: usize,
     /// Evaluations of its Jacobian.
     pub jacobians: usize,

@@ -1,6 +1,6 @@
 //! The conservative motion of a mechanism of one degree of freedom, by quadrature: no integrator.
 //!
-//! Its kinetic energy E_c(q) follows from its coordinate. Of a phase s that grows by 2π in a period,
+//! Its kinetic energy E_c(q) follows from its coordinate. With a phase s that grows by 2π in a period,
 //!
 //! ```text
 //! rotation   q = q₀ + P s/2π             dt/ds = (P/2π) √(m / 2E_c)        (1)
@@ -10,11 +10,10 @@
 //! T = ∮ dt/ds ds = 2π c₀                                                  (4)
 //! ```
 //!
-//! with P the angle after which everything repeats itself, a and b the turning points, and c_k, s_k the Fourier
-//! coefficients of dt/ds. Both kinds of dt/ds are smooth and periodic, so that the trapezoid rule has all
-//! digits of (4) and (3) all of the time history. Where dt/ds is too sharp for equally spaced points, next to a
-//! maximum of V or where the inertia is small, it is integrated on panels. So it is where a body swings between two points by more than
-//! its rates say: its peak of m may be at no point.
+//! with P the angle after which the motion repeats, a and b the turning points, and c_k, s_k the Fourier coefficients of dt/ds. Both
+//! kinds of dt/ds are smooth and periodic, so that (4) by the trapezoidal rule has all digits, and so has the time history (3). Where
+//! dt/ds is too sharp for equally spaced points, next to a maximum of V or where the inertia is small, it is integrated on panels.
+//! The same is done if a body turns between two points by more than its rates predict, because a peak of m may lie between them.
 
 use crate::close_branches::is_too_close;
 use crate::conservative::{ConservativeSystem, LoadedSystem, UnloadedSystem};
@@ -39,7 +38,7 @@ const MAX_NEWTON_STEPS: usize = 100;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Orbit {
     initial_state: ReducedState,
-    /// Time of one period, s.
+    /// Duration of one period, s.
     pub period: f64,
     /// Kinetic and potential energy, J.
     pub energy: f64,
@@ -47,7 +46,8 @@ pub struct Orbit {
     pub max_kinetic: f64,
     /// Points of the rule that resolved it.
     pub points: usize,
-    /// The last Fourier coefficients as a part of the mean: where it is resolved, what rounding leaves in a point.
+    /// The last Fourier coefficients relative to the mean. If the orbit is resolved, they are at the level of rounding
+    /// of a point.
     pub tail: f64,
     /// Whether more points would change roundings only.
     pub is_resolved: bool,
@@ -80,8 +80,8 @@ impl Orbit {
         Self::to_accuracy(model, start, 0.0)
     }
 
-    /// The same to an accuracy: with the fewest points whose truncation error is below this part of the mean, so that
-    /// times err by about this part of a period.
+    /// The orbit to an accuracy: with the fewest points whose truncation error is below this fraction of the mean, so
+    /// that the error of times is about this fraction of a period.
     ///
     /// # Errors
     /// As [`Orbit::new`].
@@ -168,7 +168,7 @@ impl Orbit {
     }
 
     /// The first time (s), not before the start, at which the coordinate is `q` (rad or m), by (3); of a rotation
-    /// also a time before the start. None where a libration never reaches `q`.
+    /// also a time before the start. `None` if a libration never reaches `q`.
     pub fn time_at(&self, q: f64) -> Option<f64> {
         match self.kind {
             OrbitKind::Rotation(angle_per_period) => {
@@ -250,14 +250,14 @@ impl Orbit {
     }
 }
 
-/// The orbits of one motion by more and more points, for the error of one is its difference from the next.
+/// The orbits of one motion with increasing numbers of points. The error of one is its difference from the next.
 pub struct OrbitSequence<M: MovingModel = Model> {
     system: LoadedSystem<M>,
     samples: SampledOrbit,
 }
 
 impl<M: MovingModel> OrbitSequence<M> {
-    /// Of a machine, as [`Orbit::loaded`].
+    /// The sequence for a machine, as [`Orbit::loaded`].
     ///
     /// # Errors
     /// As [`Orbit::loaded`].
@@ -267,8 +267,8 @@ impl<M: MovingModel> OrbitSequence<M> {
         Ok(Self { system, samples })
     }
 
-    /// The orbit by twice as many points as the one before. A motion too sharp for equally spaced points is resolved on
-    /// panels, unless what is left of its rule is below an accuracy (a part of the period).
+    /// The orbit with twice as many points as the previous one. A motion too sharp for equally spaced points is
+    /// resolved on panels, unless the truncation error of its rule is below the accuracy (relative to the period).
     ///
     /// # Errors
     /// As [`Orbit::loaded`].

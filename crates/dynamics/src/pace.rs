@@ -1,36 +1,38 @@
-//! Whether an integration comes to its end in the steps that are allowed.
+//! The pace of an integration: whether it reaches its end within the allowed steps.
 //!
-//! Steps are counted in windows. Where one window has led so short a way that the rest would take many times the steps allowed, the
-//! integration ends at once: it would end there a little later, after the last step allowed. A long window shows a motion that is too slow.
-//! A short one shows one that makes no progress: at a jump that nobody has named, as of a load that a program computes, the error control of
-//! every method makes its steps so short that the end would never be reached, while each of them is kept.
+//! Steps are counted in windows. If a window advances so little that the rest would take many times the allowed steps, the integration ends
+//! at once instead of after the last allowed step. A long window shows a motion that is too slow. A short window shows a motion that makes
+//! no progress: at an unnamed jump, as of a load given as a function of a program, the error control of every method makes the accepted
+//! steps so short that the end is never reached.
 
 use crate::error::{DynamicsError, Result};
 use crate::integration_parts::Part;
 
-/// The steps allowed are so many long windows.
+/// Number of long windows in the allowed steps.
 const WINDOWS: usize = 40;
-/// The pace of fewer steps shows nothing.
+/// Least number of steps of a window.
 const MIN_WINDOW: usize = 5;
-/// A pace at which the rest takes so many times the steps allowed is too slow: what only begins slowly becomes faster by less.
+/// A pace at which the rest takes this multiple of the allowed steps is too slow: a motion that only starts slowly accelerates
+/// by less.
 const TOO_MANY: f64 = 20.0;
 /// Steps of a short window, without a load that a program computes and with one: that is expected to jump.
 const STEPS: [usize; 2] = [10_000, 1000];
-/// The same of short windows: what is stiff or moves fast for a while needs less.
+/// The multiple for short windows; a motion that is stiff or fast for a while stays below it.
 const HOPELESS: f64 = 1000.0;
 /// Switches of a window where switches are counted instead of steps: next to where they accumulate there is one in each step.
 const SWITCHES: usize = 2000;
-/// As `TOO_MANY`, of switches, each of which costs more than a step; and where they come so many times as often as on the average before,
-/// as where they accumulate.
+/// As `TOO_MANY`, for switches, each of which costs more than a step; and for switches that come more and more often, as where they
+/// accumulate.
 const TOO_MANY_SWITCHES: [f64; 2] = [1.0, 0.05];
 const MORE_OFTEN: f64 = 3.0;
 
 /// Steps between two evaluations of the energy balance.
 const LOOKED_AT: usize = 1000;
-/// A balance that changes between two looks by more than this part of the largest kinetic energy is lost: beyond singular positions it was
-/// seen to change by 0.3 to 10 times that energy.
+/// A balance that changes between two checks by more than this fraction of the largest kinetic energy is lost: beyond singular positions,
+/// changes by 0.3 to 10 times that energy were observed.
 const BROKEN: f64 = 0.1;
-/// A change below this part of the balance itself says nothing: a small oscillation may have a large potential energy.
+/// A change below this fraction of the balance itself is ignored, because a small oscillation may have a large
+/// potential energy.
 const ENERGY_ROUNDING: f64 = 1e-9;
 
 /// The steps of an integration, and how far the last of them have led.
@@ -39,16 +41,17 @@ pub(crate) struct Pace {
     end: f64,
     max_steps: usize,
     steps: usize,
-    /// The first load that a program computes; where switches are counted, that of the last one.
+    /// The first load given as a function of a program; if switches are counted, the load of the last switch.
     function: Option<usize>,
-    /// Steps of a short and of a long window; none where it is not looked at.
+    /// Steps of a short and of a long window; `None` if the window is not checked.
     windows: [Option<usize>; 2],
     /// When the windows began, s.
     from: [f64; 2],
     start: f64,
-    /// As `TOO_MANY`, of what is counted: at a pace that may become faster, and where it has become slower and slower.
+    /// As `TOO_MANY`, for the counted quantity: at a pace that may become faster, and at one that becomes slower and
+    /// slower.
     too_many: [f64; 2],
-    /// The largest kinetic energy and the balance, J, where the energies were looked at last.
+    /// The largest kinetic energy and the balance at the last check, J.
     looked_at: Option<[f64; 2]>,
     /// Whether the balance was lost at the last look.
     seems_lost: bool,
@@ -57,7 +60,7 @@ pub(crate) struct Pace {
 }
 
 impl Pace {
-    /// Of an integration that begins; `function` is the first load that a program computes.
+    /// The pace at the start of an integration; `function` is the first load given as a function of a program.
     pub(crate) fn new(of: &Part, function: Option<usize>) -> Self {
         let max_steps = of.options.max_steps;
         // Where the user has set the longest step, that says how many there are.
@@ -99,7 +102,7 @@ impl Pace {
         self.steps
     }
 
-    /// Whether the rest, from a time (s), takes more than so many times the steps allowed if some steps lead on by `advance`, s.
+    /// Whether the rest, from a time (s), takes more than `times` the allowed steps if `steps` advance the time by `advance`, s.
     pub(crate) fn is_too_slow(&self, (t, times): (f64, f64), steps: usize, advance: f64) -> bool {
         (self.end - t) * steps as f64 > advance * times * self.max_steps as f64
     }
@@ -134,9 +137,9 @@ impl Pace {
         Ok(())
     }
 
-    /// After a step to a time, s: whether the kinetic energy, and the energies less the works (`balance`, J), are still those of the mechanism. They
-    /// are evaluated once in many steps; where they seem to be lost, at each step up to the next look, for the largest kinetic energy may have
-    /// been between the looks, as of an oscillation that is slow whenever it is looked at.
+    /// Checks after a step to a time, s, whether the kinetic energy, and the energies minus the works (`balance`, J), are still those of
+    /// the mechanism. They are evaluated once in many steps. If they seem to be lost, they are evaluated at each step up to the next check,
+    /// because the largest kinetic energy may have been between the checks.
     ///
     /// # Errors
     /// [`DynamicsError::LostBalance`].
@@ -191,7 +194,7 @@ impl Pace {
         })
     }
 
-    /// Of a window that ends with a step to a time (s), its steps and how far they have led, s.
+    /// The steps of a window that ends with a step to a time (s), and the time that they have covered, s.
     fn full(&mut self, which: usize, t: f64) -> Option<(usize, f64)> {
         let window = self.windows[which].filter(|window| self.steps.is_multiple_of(*window))?;
         let advance = t - std::mem::replace(&mut self.from[which], t);
@@ -204,7 +207,7 @@ mod tests {
     use super::*;
     use crate::{Method, OdeState, Options};
 
-    /// Whether energies are taken for those of the mechanism over so many looks, at a tolerance.
+    /// Whether the check accepts these energies, at a tolerance.
     fn are_kept(rtol: f64, energies: impl Fn(usize) -> [f64; 2]) -> bool {
         let part = Part {
             start: OdeState {

@@ -41,8 +41,8 @@ impl<'a, R: ReducedModel> ReducedOde<'a, R> {
         }
     }
 
-    /// The same with an initial speed (rad/s) as the error weight of speeds: without loads a speed only
-    /// scales time.
+    /// This equation with an initial speed (rad/s) as the error weight of speeds: without loads a speed only scales
+    /// time.
     #[must_use]
     pub fn with_speed_scale(mut self, q_dot: f64) -> Self {
         if q_dot.abs().is_normal() {

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use std::f64::consts::TAU;
 
-/// Revolutions after which what has not repeated itself counts as not periodic.
+/// Revolutions after which a motion without repetition counts as not periodic.
 const MAX_REVOLUTIONS: u32 = 8;
 /// Numbers that differ by less, relatively, count as equal: solutions of large groups differ by some rounding.
 pub(crate) const PERIODICITY_TOLERANCE: f64 = 1e-9;

@@ -1,4 +1,4 @@
-//! A rotation of which the kinetic energy is known: dt/ds = (P/2π) √(m / 2E_c), q = q₀ + P s/2π.
+//! A rotation with known kinetic energy: dt/ds = (P/2π) √(m / 2E_c), q = q₀ + P s/2π.
 
 use crate::conservative::{ConservativeSystem, EnergyTerms};
 use crate::error::{DynamicsError, Result};
@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// A rotation sampled at equally spaced phases.
 pub(crate) struct SampledRotation {
-    /// Where it is at phase zero, rad.
+    /// Its coordinate at phase zero, rad.
     first: f64,
     pub(crate) angle_per_period: f64,
     /// Kinetic and potential energy at the start, J.
@@ -17,7 +17,7 @@ pub(crate) struct SampledRotation {
 }
 
 impl SampledRotation {
-    /// From a coordinate with its kinetic and potential energy (J); without points yet.
+    /// A rotation from a coordinate with its kinetic and potential energy (J), without sample points.
     pub(crate) fn new(q: f64, energies: [f64; 2], angle_per_period: f64) -> Self {
         Self {
             // The same position without its whole revolutions, which would cost digits.

@@ -5,7 +5,7 @@
 pub struct Sliding {
     /// Below the switch and above it: the piece of every switch of the system.
     pub(crate) sides: [Vec<Option<f64>>; 2],
-    /// The switches that the motion slides along; the first decides, the others switch where it does.
+    /// The switches along which the motion slides. The first decides; the others switch with it.
     pub(crate) switches: Vec<usize>,
     /// The value at which the first one switches.
     pub(crate) value: f64,
@@ -23,25 +23,25 @@ impl Sliding {
 /// The value and the rate of a switching function on both sides of its switch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SideRates {
-    /// Of the lower side and of the upper one: value and rate.
+    /// Value and rate on the lower side, and on the upper side.
     pub(crate) sides: [[f64; 2]; 2],
 }
 
 impl SideRates {
-    /// The part α of the upper side that keeps the function where it is (Filippov 1988, §4): in a sliding motion between 0
-    /// and 1.
+    /// The weight α of the upper side that keeps the function constant (Filippov 1988, §4), between 0 and 1 in a sliding
+    /// motion.
     pub(crate) fn upper_part(&self) -> f64 {
         let [[_, lower], [_, upper]] = self.sides;
         lower / (lower - upper)
     }
 
-    /// The same, with a distance from the switch that decays.
+    /// The weight with which a distance from the switch decays.
     pub(crate) fn returning_part(&self, sliding: &Sliding) -> f64 {
         let [[value, lower], [_, upper]] = self.sides;
         (lower + sliding.decay * (value - sliding.value)) / (lower - upper)
     }
 
-    /// How far the motion is from leaving the switch, as a part; negative where one side leads away.
+    /// The margin of the motion to leaving the switch, as a fraction; negative if one side leads away.
     pub(crate) fn margin(&self) -> f64 {
         let [[_, lower], [_, upper]] = self.sides;
         if lower - upper > 0.0 {
@@ -52,8 +52,8 @@ impl SideRates {
         }
     }
 
-    /// Whether a motion that leaves the switch does so upwards: where the rates of both sides lead there, or one does and the other is next
-    /// to zero. Where a side has changed, the part α says nothing: it is negative where both lead upwards and the upper one does so faster.
+    /// Whether a motion that leaves the switch does so upwards: the rates of both sides lead upwards, or one does and the other is nearly
+    /// zero. After a change of a side, α does not decide: it is negative if both lead upwards and the upper one is faster.
     pub(crate) fn leaves_upward(&self) -> bool {
         let [[_, lower], [_, upper]] = self.sides;
         lower + upper > 0.0

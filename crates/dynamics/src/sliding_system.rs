@@ -18,7 +18,7 @@ use std::cell::{Cell, RefCell, RefMut};
 /// Step of the difference quotients of (1), as a part of a state.
 const DIFFERENCE: f64 = 1e-7;
 
-/// A system that is integrated and, between its steps, looked at.
+/// A system that is integrated and, between its steps, inspected.
 pub(crate) struct SharedSystem<'s> {
     kinds: Vec<SwitchKind>,
     inner: RefCell<&'s mut dyn OdeSystem>,
@@ -58,7 +58,7 @@ pub(crate) struct BothSides {
 }
 
 impl BothSides {
-    /// Those of a state; none where the rates of the functions are not known.
+    /// The values and rates of the functions at a state; `None` if the rates are unknown.
     pub(crate) fn at(
         sides: &[Vec<Option<f64>>; 2],
         system: &mut dyn OdeSystem,
@@ -114,7 +114,7 @@ impl<'s, 'i> SlidingSystem<'s, 'i> {
         }
     }
 
-    /// Evaluates both sides, with what they do to the switching function; none where it does not slide.
+    /// Evaluates both sides, and the rates of the switching function on them; `None` if the motion does not slide.
     ///
     /// # Errors
     /// [`DynamicsError`](crate::DynamicsError) where the state cannot be evaluated.
@@ -130,8 +130,8 @@ impl<'s, 'i> SlidingSystem<'s, 'i> {
         Ok(Some(self.sides.of(first)))
     }
 
-    /// By side: how far each function whose piece the side decides, beside the switch itself, is within its piece there, and whether it
-    /// would leave it upwards.
+    /// By side: the margin of each other function whose piece the side decides within this piece, and whether it would leave it
+    /// upwards.
     ///
     /// # Errors
     /// As [`side_rates`](Self::side_rates).

@@ -1,8 +1,8 @@
 //! The solution of an initial-value problem: its steps, equally spaced samples, and events.
 //!
-//! An event is the passage of a function of the state through a value. It is looked for in several subintervals of
-//! each step's dense output, so that two in one step are found, and located there to rounding; the error of the dense
-//! output itself is that of the integration. On an orbit, which is known at every time, it is looked for in one period.
+//! An event is the passage of a function of the state through a value. It is searched for in several subintervals of
+//! each step's dense output, so that two in one step are found, and located to rounding. The error of the dense output
+//! itself is that of the integration. On an orbit, which is known at every time, the search covers one period.
 
 mod event;
 mod excursion;
@@ -31,13 +31,13 @@ use tracker::EventTracker;
 pub struct Solution {
     /// The start and the end of each step; a terminal event ends the last one.
     pub steps: Vec<OdeState>,
-    /// Equally spaced samples, if asked for; [`Solution::sample_end`] adds the end.
+    /// Equally spaced samples, if requested; [`Solution::sample_end`] adds the end.
     pub samples: Vec<OdeState>,
     /// The events that happened, in order of time.
     pub event_occurrences: Vec<EventOccurrence>,
     /// Where surfaces with dry friction came to rest or let go, and end stops were met, in order of time.
     pub contact_events: Vec<ContactEvent>,
-    /// On what it was from each event to the next.
+    /// The modes of the motion from each event to the next.
     pub modes: MotionModes,
     /// Whether a terminal event ended it.
     pub terminated_by_event: bool,
@@ -86,7 +86,7 @@ impl Solution {
         self.event_occurrences.retain(|o| o.state.t <= end.t);
     }
 
-    /// Ends it at its last sample up to a time, s: what follows is not known.
+    /// Ends the solution at its last sample up to a time, s, because the motion after it is unknown.
     pub fn end_at(&mut self, t: f64) {
         let end = self.samples.iter().rfind(|sample| sample.t <= t).cloned();
         self.steps.retain(|step| step.t <= t);
@@ -116,7 +116,7 @@ impl Solution {
 /// that events name.
 ///
 /// # Errors
-/// [`DynamicsError`] where not even the start can be evaluated, or an option cannot be used. An error that
+/// [`DynamicsError`] if the start cannot be evaluated, or an option is invalid. An error that
 /// ends the motion later is in [`Solution::error`].
 pub fn solve<M: MovingModel>(
     machine: &Machine<M>,
@@ -130,7 +130,8 @@ pub fn solve<M: MovingModel>(
     record_machine((machine, output_model), recorder_state, start, end, options)
 }
 
-/// The same of a motion that began at t = 0 in another coordinate: its samples go on at multiples of their interval.
+/// As [`solve`], for a motion that started at t = 0 in another coordinate: its samples continue at multiples of their
+/// interval.
 ///
 /// # Errors
 /// As [`solve`].
@@ -186,8 +187,8 @@ pub fn solve_system<O: Observed>(
     solve_with_limits(system, observed, start, end, options, [events, &[]])
 }
 
-/// The same with further events behind the others, whose values are limits: they need not be passed by more than the
-/// error of the motion.
+/// As `solve`, with further events after the others whose values are limits: the motion need not pass them by more than
+/// its error.
 pub(crate) fn solve_with_limits<O: Observed>(
     system: &mut dyn OdeSystem,
     observed: O,
@@ -222,7 +223,7 @@ fn record<O: Observed>(
     Ok(solution)
 }
 
-/// What a recording keeps when the motion passes from one system to the next.
+/// The state of a recording, kept when the motion passes from one system to the next.
 pub(crate) struct RecorderState<'e, C = CoordinateFunction> {
     events: Vec<(&'e Event<C>, TouchTolerance)>,
     trackers: Vec<EventTracker<C>>,
@@ -242,7 +243,7 @@ impl<'e, C: Copy> RecorderState<'e, C> {
         }
     }
 
-    /// The same of a motion that has its samples up to a time, s.
+    /// The state for a motion whose samples up to a time, s, exist.
     fn sampled_until(mut self, t: f64, options: &Options) -> Self {
         if let Some(interval) = options.sample_interval {
             self.sample_count = (t / interval).floor() as usize + 1;
@@ -250,7 +251,7 @@ impl<'e, C: Copy> RecorderState<'e, C> {
         self
     }
 
-    /// The same with further events that happen where their value is touched.
+    /// The state with further events that occur when their value is touched.
     fn with_limits(mut self, limits: &'e [Event<C>]) -> Self {
         let exact = limits.iter().map(|event| (event, TouchTolerance::NONE));
         self.events.extend(exact);

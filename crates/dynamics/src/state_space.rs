@@ -40,7 +40,7 @@ pub fn linearise<M: MovingModel>(machine: &Machine<M>, t: f64, y: &[f64]) -> Res
     linearise_where_it_holds(machine, t, y)
 }
 
-/// The same, where friction that holds keeps everything at rest.
+/// The linearisation at a state in which sticking friction holds everything at rest.
 pub(crate) fn linearise_where_it_holds<M: MovingModel>(
     machine: &Machine<M>,
     t: f64,
@@ -96,7 +96,7 @@ pub(crate) fn linearise_where_it_holds<M: MovingModel>(
 
 /// A rate below this part of the terms that it is the sum of is zero.
 const RATE_TOLERANCE: f64 = 64.0 * f64::EPSILON;
-/// A rate is zero, too, if it is less than so many times its rounding.
+/// A rate below this multiple of its rounding counts as zero, too.
 const ROUNDINGS: f64 = 8.0;
 
 /// Whether a state about which a machine was linearised is an equilibrium: each rate is zero within the rounding of the
@@ -164,9 +164,9 @@ const ENTRY_ROUNDINGS: f64 = 4.0;
 /// Signs by which neighbouring states are changed, for the errors of A.
 const SIDES: [[f64; 2]; 4] = [[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]];
 
-/// The eigenvalues of a linearised motion, 1/s, as real and imaginary parts, the largest real part first; and the
-/// estimated error of each. The state is known to `state_errors`, and to rounding: what this changes in A, and what else is
-/// rounding in it, is compared.
+/// The eigenvalues of a linearised motion, 1/s, as real and imaginary parts, the largest real part first; and the estimated
+/// error of each. The state is known to `state_errors`, and to rounding: both this change of A and its other rounding are
+/// included.
 ///
 /// # Errors
 /// [`DynamicsError::NoEigenvalues`](crate::DynamicsError::NoEigenvalues).

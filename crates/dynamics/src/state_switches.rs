@@ -28,7 +28,7 @@ struct SwitchSource {
     signals: usize,
 }
 
-/// What happens between the points of a step, at parts of its duration.
+/// A feature between the points of a step, at fractions of its duration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Hidden {
     /// A switch is passed: at least up to there and not long before.
@@ -59,7 +59,7 @@ pub(crate) type SwitchingSource<'a, M> = (
 );
 
 impl StateSwitches {
-    /// Of magnitudes with the index of each load, and the drives whose inputs they are.
+    /// The switches of magnitudes, given with the index of each load, and of the drives whose inputs they are.
     pub(crate) fn of<'a, M: MachineModel>(
         sources: impl IntoIterator<Item = SwitchingSource<'a, M>>,
     ) -> Self {
@@ -91,7 +91,7 @@ impl StateSwitches {
         all
     }
 
-    /// At which values each function switches.
+    /// The values at which each function switches.
     pub(crate) fn kinds(&self) -> &[SwitchKind] {
         &self.kinds
     }
@@ -128,8 +128,8 @@ impl StateSwitches {
             .any(|source| source.magnitude.may_hide())
     }
 
-    /// Where nothing switches: the variables, among those of [`StateSwitches::values`], that must turn for a load to vary there; none
-    /// where that is not all.
+    /// The variables among those of [`StateSwitches::values`] that must reverse for a load to vary between the points of a step, if
+    /// nothing switches; `None` if other causes exist.
     pub(crate) fn followed(&self) -> Option<Vec<usize>> {
         let (mut all, mut first) = (Vec::new(), 0);
         for source in &self.sources {
@@ -140,8 +140,9 @@ impl StateSwitches {
         self.kinds.is_empty().then_some(all)
     }
 
-    /// What loads do first between five equally spaced points, where their variables are `samples` ([`StateSwitches::values`]),
-    /// on these pieces: pulses before all passages, as a step across one does not show when a switch is passed.
+    /// The first hidden feature of the loads between five equally spaced points with the variables `samples`
+    /// ([`StateSwitches::values`]), on these pieces. Pulses come before all passages, because a step across a pulse does not
+    /// show when a switch is passed.
     pub(crate) fn hidden_in(
         &self,
         held: &[HeldSource],
@@ -177,7 +178,7 @@ impl StateSwitches {
         first.map(|(_, hidden)| hidden)
     }
 
-    /// Holds one piece for each function, or none: `set` gets the load's index and its pieces.
+    /// Holds one piece for each function, or `None`: `set` gets the load's index and its pieces.
     pub(crate) fn hold(
         &self,
         mut pieces: &[Option<f64>],

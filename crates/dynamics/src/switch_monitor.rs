@@ -42,7 +42,8 @@ pub(crate) struct SwitchMonitor {
     /// The length of the motion, s.
     span: f64,
     between: Option<Between>,
-    /// Where the values, and the last sample between, are those on the pieces that are held: a step begins where the last one ended.
+    /// The state at which the values, and the last sample between, are those on the held pieces: a step starts at the end of the
+    /// last one.
     seen_at: Option<OdeState>,
 }
 
@@ -51,18 +52,18 @@ struct MonitoredSwitch {
     kind: SwitchKind,
     /// The switches whose pieces its value depends on: its operands', which come before it.
     inner: Vec<usize>,
-    /// The piece that is held; none where it is not.
+    /// The piece that is held; `None` if it is not.
     piece: Option<f64>,
     /// Whether the piece has held since the integration began: at its start a switch may be within a rounding.
     is_inside: bool,
     /// Whether the motion has just left it after sliding along it: its function grows from zero with a rate of zero, and below its
-    /// rounding the rate alone says to which side.
+    /// rounding only the rate decides the side.
     is_leaving: bool,
-    /// When it switched last.
+    /// Time of its last switch, s.
     switched: Option<f64>,
-    /// Where it is not held: its piece, for how many steps, and for how many it must be.
+    /// If it is not held: its piece, the number of steps on this piece, and the number that is required.
     observed: (Option<f64>, u32),
-    /// Steps since its own pieces led back to it; none where they do not.
+    /// Steps since its own pieces led back to it; `None` if they do not.
     chatter: Option<u32>,
     patience: u32,
     /// Distances from the nearest bound at the last points of the step, the latest first.
@@ -74,16 +75,16 @@ pub(crate) struct Crossing {
     pub(crate) state: OdeState,
     /// The switches, and whether each passes its upper bound.
     passed: Vec<(usize, bool)>,
-    /// What changes of a motion that slides along a switch.
+    /// The change of a motion that slides along a switch.
     slide: Option<SlideChange>,
 }
 
-/// What changes of a motion that slides along a switch.
+/// The change of a motion that slides along a switch.
 #[derive(Debug, Clone, Copy)]
 enum SlideChange {
     /// It leaves the switch, upwards or not.
     Leaves(bool),
-    /// Another switch is passed, upwards or not, on one side alone: what the load would be there changes.
+    /// Another switch is passed, upwards or not, on one side alone: the load on that side changes.
     PassesBeside {
         side: usize,
         switch: usize,
@@ -100,7 +101,7 @@ impl Crossing {
 }
 
 impl MonitoredSwitch {
-    /// How far the value is within the bounds of the piece; negative beyond one. None where it is not watched.
+    /// How far the value is within the bounds of the piece; negative beyond one. `None` if it is not watched.
     fn margin(&self, value: f64) -> Option<f64> {
         let [low, high] = self.kind.bounds(self.piece?);
         let margin = (value - low).min(high - value);
@@ -157,8 +158,8 @@ impl SwitchMonitor {
         self.sliding.as_ref()
     }
 
-    /// After the speeds or the modes have jumped between two states of one time: the switches begin anew where one of
-    /// them has jumped, too, or no longer holds the motion.
+    /// Called after speeds or modes have jumped between two states of one time: the switches start again if one of them
+    /// has jumped, too, or no longer holds the motion.
     ///
     /// # Errors
     /// Where a state cannot be evaluated.
@@ -196,8 +197,7 @@ impl SwitchMonitor {
         self.switches.iter().map(|s| s.piece).collect()
     }
 
-    /// Where the integration begins anew because of what happened in a step: a switch was passed, or one that was not
-    /// held now is.
+    /// The state at which the integration restarts after a step, because a switch was passed, or a switch becomes held.
     ///
     /// # Errors
     /// Where a state cannot be evaluated.
@@ -221,7 +221,7 @@ impl SwitchMonitor {
         Ok(Some(Crossing::begin_anew(step.now.clone())))
     }
 
-    /// Where the first switch is passed in a step, if one is.
+    /// The first passage of a switch in a step, if there is one.
     fn first_crossing(
         &mut self,
         system: &mut dyn OdeSystem,
@@ -376,7 +376,7 @@ impl SwitchMonitor {
         Ok(())
     }
 
-    /// Does not hold a switch to which the motion comes back, nor what depends on it: that would hold what it has released.
+    /// Releases a switch to which the motion returns, and everything that depends on it.
     fn release(&mut self, crossing: &Crossing, rates: &[[f64; 2]]) {
         let t = crossing.state.t;
         let mut released = self.marked(std::iter::empty());
@@ -405,8 +405,8 @@ impl SwitchMonitor {
         }
     }
 
-    /// After a step: whether a switch that is not held has kept its side for so long that it is now held, so that the
-    /// integration begins anew.
+    /// Called after a step: whether a switch that is not held has kept its side for so long that it is held again, so
+    /// that the integration restarts.
     ///
     /// # Errors
     /// [`DynamicsError::Chatters`]; where the state cannot be evaluated.

@@ -4,10 +4,10 @@
 //! m q̈ + ½m′ q̇² = −V′ + Σ wₗ Fₗ(t, q, q̇)                              (1)
 //! ```
 //!
-//! m includes rotors and flywheels and follows from ½m′, the potential V of all conservative loads from ½V′. By load
-//! or drive without a potential, w is the generalised force of one unit of it. The force of a damper is
-//! F ds/dt, and w = −ds/dq, so its generalised force is −F w² q̇. A drive along s has w = ds/dq and the speed w q̇.
-//! Other coordinates on which magnitudes depend are tabulated as s(q), or as ds/dq where only their speed occurs.
+//! m includes rotors and flywheels and follows from ½m′, the potential V of all conservative loads from ½V′. For each
+//! load or drive without a potential, w is the generalised force of one unit of it. The force of a damper is F ds/dt,
+//! and w = −ds/dq, so its generalised force is −F w² q̇. A drive along s has w = ds/dq and the speed w q̇. Other
+//! coordinates on which magnitudes depend are tabulated as s(q), or as ds/dq where only their speed occurs.
 //!
 //! V and m are integrals of the terms of (1), piece by piece, so ½ m q̇² + V is constant on the table as on
 //! the mechanism: it does not drift, however coarse the table is.
@@ -38,7 +38,7 @@ use thiserror::Error;
 /// Why a machine has no table.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum TabulationError {
-    /// More or less than one coordinate, or one that is prescribed.
+    /// The number of coordinates is not one, or the coordinate is prescribed.
     #[error(
         "a tabulated machine needs one actuator, which must be free; this one has {actuators}, {free} of them free"
     )]
@@ -77,7 +77,7 @@ pub struct TabulatedMachine {
     column_count: usize,
     /// In the order of the works.
     tabulated_loads: Vec<TabulatedLoad>,
-    /// By load: the place of its work, or of the sum that it belongs to, among the works.
+    /// By load: the index of its work, or of the sum that contains it, among the works.
     work_places: Vec<usize>,
     work_count: usize,
     /// Number of the drives' states.
@@ -108,11 +108,11 @@ struct TabulatedLoad {
 enum LoadEffect {
     /// By a law on its unit response.
     Load(Strength),
-    /// It is the input of a drive.
+    /// The magnitude is the input of a drive.
     Drive(Box<CompiledDrive>),
 }
 
-/// What a magnitude depends on.
+/// A signal on which a magnitude depends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum TabulatedSignal {
     Time,
@@ -201,7 +201,7 @@ impl TabulatedMachine {
         self.bounds.iter().fold(0.0, |max, b| max.max(b.error))
     }
 
-    /// Cells of m, of V, of the columns; zero where there are none.
+    /// Cells of m, of V, of the columns; zero without columns.
     pub fn cells(&self) -> [usize; 3] {
         let potential = self.potential.as_ref().map_or(0, IntegratedCurve::cells);
         [self.inertia.cells(), potential, self.columns.cells()]
@@ -240,7 +240,7 @@ impl TabulatedMachine {
     }
 }
 
-/// The loads that do work, and by load the place of its work among the works.
+/// The loads that do work, and, by load, the index of its work.
 fn loads_and_works(machine: &Machine) -> (Vec<usize>, Vec<usize>) {
     let (mut loads, mut places) = (Vec::new(), Vec::new());
     for (place, &source) in machine.nonconservative_sources().iter().enumerate() {

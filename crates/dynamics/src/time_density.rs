@@ -20,7 +20,7 @@ pub(crate) struct ResolvedMotion {
 /// Angles that turn further between two points than their rates say by less than this are roundings of positions, rad.
 const ANGLE_ROUNDING: f64 = 1e-6;
 
-/// What is known of a point: the energy terms and the [turns](ConservativeSystem::turns).
+/// The data of a point: the energy terms and the [turns](ConservativeSystem::turns).
 pub(crate) type Sample = (EnergyTerms, Vec<[f64; 2]>);
 /// A point of a rule: its phase and its [turns](ConservativeSystem::turns).
 type Turns = (f64, Vec<[f64; 2]>);
@@ -71,8 +71,8 @@ pub(crate) fn hides_turns<'s>(
     hidden > 0.0
 }
 
-/// dt/ds on panels, in each of which the rates account for all turns, where these are known; `rate` is dq/ds by phase. What follows
-/// functions of the scene may be less smooth than rounding.
+/// dt/ds on panels, in each of which the rates account for all turns, if these are known; `rate` is dq/ds by phase. Positions that
+/// follow functions of the scene may not be smooth to rounding.
 pub(crate) fn watched_panels(
     system: &mut dyn ConservativeSystem,
     density: impl Fn(&mut dyn ConservativeSystem, f64) -> Result<f64>,
@@ -97,9 +97,9 @@ pub(crate) fn watched_panels(
 /// The time per phase of a motion, dt/ds, s/rad.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum TimeDensity {
-    /// From equally spaced points.
+    /// A Fourier series, from equally spaced points.
     Fourier(FourierSeries),
-    /// From panels, which have their points where the function is sharp.
+    /// Panels, whose points are dense where the function is sharp.
     Piecewise(Panels),
 }
 
@@ -112,7 +112,7 @@ impl TimeDensity {
         }
     }
 
-    /// What its last coefficients leave, as a part of the mean.
+    /// The last coefficients relative to the mean.
     pub(crate) fn tail(&self) -> f64 {
         match self {
             Self::Fourier(series) => series.tail,

@@ -1,8 +1,8 @@
 //! Integration across the switches and narrow features of functions of time.
 //!
-//! A step evaluates the loads at a few instants only. So the integration ends before each switch and starts again behind
-//! it, and no step is much longer than the time over which anything varies
-//! ([`Features`]). Longer steps are taken only where the user sets the longest step.
+//! A step evaluates the loads at a few instants only. Therefore the integration ends before each switch and restarts
+//! after it, and no step is much longer than the time over which a function varies ([`Features`]). Longer steps are
+//! taken only if the user sets the longest step.
 
 use crate::error::{DynamicsError, Result};
 use crate::options::Options;
@@ -15,13 +15,13 @@ const WIDTHS_PER_STEP: f64 = 7.0;
 const STEPS_PER_RESTART: f64 = 4.0;
 /// Pieces by which the number of steps is predicted.
 const PREDICTED_FROM: usize = 10_000;
-/// How far a motion without an end is looked at, s.
+/// The horizon for motions without an end, s.
 const HORIZON: f64 = 1e6;
 
-/// What limits the steps of an integration in time.
+/// The limits of the steps of an integration in time.
 pub(crate) struct TimePieces<'f> {
     switches: Scan<'f>,
-    /// None where the user sets the longest step.
+    /// `None` if the user sets the longest step.
     smooth: Option<Scan<'f>>,
     /// The pieces from the present time on.
     ahead: VecDeque<Piece>,
@@ -109,7 +109,7 @@ impl<'f> TimePieces<'f> {
     }
 }
 
-/// Refuses what needs more steps than allowed, judged by its first pieces.
+/// Rejects functions that need more than the allowed steps, judged by their first pieces.
 fn check_step_count(
     scan: Scan<'_>,
     [from, to]: [f64; 2],

@@ -38,7 +38,7 @@ fn chain(n: usize) -> Mechanism {
     chain
 }
 
-/// Its links turned by `q`.
+/// The chain with its links turned by `q`.
 fn chain_at(n: usize, q: f64) -> Setup {
     let chain = chain(n);
     let mut masses = vec![Mass::uniform_bar(1.0, 1.0); chain.bodies.len()];
@@ -142,7 +142,7 @@ fn a_flywheel_counts_on_a_fit() {
     }
 }
 
-/// It swings from beside one flat position to beside the other, within the windows and outside of them.
+/// The chain swings between neighbourhoods of both flat positions, within the windows and outside of them.
 #[test]
 fn a_chain_swings_as_its_pendulum() {
     for q in [0.05, 0.5] {

@@ -1,4 +1,4 @@
-//! Motions that come to a place behind which nothing can be evaluated, and motions that only come near it.
+//! Motions that reach a position beyond which nothing can be evaluated, and motions that only come near it.
 #![allow(clippy::expect_used, clippy::panic, reason = "tests")]
 
 use dwell_dynamics::{
@@ -93,7 +93,7 @@ fn motions_stop_at_the_end_of_what_can_be_evaluated() {
     println!("{:.1e} short, {} steps", worst.0, worst.1);
 }
 
-/// What turns back just in front of the end goes on: q = A sin t, whose trial steps go beyond it again and again.
+/// A motion that reverses just before the end continues: q = A sin t, whose trial steps repeatedly go beyond it.
 #[test]
 fn motions_that_turn_back_in_front_of_it_go_on() {
     for method in Method::ALL {

@@ -116,7 +116,7 @@ fn the_start_is_no_event() {
     );
 }
 
-/// A motion that ends where an event happens: whether that is a rounding before or behind the end is chance.
+/// A motion that ends at an event: rounding decides whether the event is just before or just after the end.
 #[test]
 fn an_event_at_the_end_happens() {
     let wheel = Watched::pendulum([0.0, 9.0]);

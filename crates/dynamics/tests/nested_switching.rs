@@ -1,5 +1,5 @@
 //! Loads whose decisions depend on each other: a function that rests on its threshold, and what happens in windows between the
-//! points of a step. A wheel passes 0.5 rad with a known work behind it.
+//! points of a step. A wheel passes 0.5 rad after a known work.
 #![allow(clippy::expect_used, clippy::panic, reason = "tests")]
 
 mod parts;
@@ -44,7 +44,7 @@ fn check(text: &str, speed: f64, end: f64, expected: [f64; 2], growth: f64) {
     }
 }
 
-/// The state at `end` behind 0.5 rad, up to which a couple acts.
+/// The state at `end`, beyond 0.5 rad, up to which a couple acts.
 fn behind(couple: f64, speed: f64, end: f64) -> [f64; 2] {
     let last = (speed * speed + 2.0 * couple / INERTIA * 0.5).sqrt();
     let duration = 2.0 * 0.5 / (speed + last);
@@ -203,7 +203,7 @@ fn a_speed_is_released_when_the_couple_beyond_its_switch_turns() {
     check(&text, 2.0, 2.0, end, 100.0);
 }
 
-/// Where the couple beyond a switch turns as that on this side of it vanishes, both drive the speed on: with t − 0.5 s behind the turn.
+/// If the couple beyond a switch reverses when that on this side vanishes, both drive the speed on, by t − 0.5 s after the reversal.
 #[test]
 fn a_speed_is_released_where_the_couple_that_held_it_turns() {
     for beyond in ["sign(q - 0.5)", "if(q < 0.5, -1, 1)"] {
@@ -232,7 +232,7 @@ fn what_an_angle_at_rest_decides_it_decides_as_it_moves() {
     }
 }
 
-/// What switches exactly where the motion begins has switched.
+/// A function that switches exactly at the start of the motion has switched.
 #[test]
 fn a_switch_at_the_start_has_switched() {
     let a = 1.0 / INERTIA;

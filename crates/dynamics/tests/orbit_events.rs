@@ -154,7 +154,7 @@ fn what_happens_after_a_million_periods() {
     );
 }
 
-/// More events than are kept are an error, not a shorter list.
+/// More events than can be stored are an error, not a shorter list.
 #[test]
 fn too_many_events_are_an_error() {
     let swing = Watched::pendulum([1.0, 0.0]);

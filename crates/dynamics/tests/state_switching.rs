@@ -118,7 +118,8 @@ fn every_stair_is_met() {
     check(&stepped, 1.0, machine_end, [q, v], 2.0);
 }
 
-/// From rest on a point of a table in steps, down the stairs and up: which couple holds is decided by where it leads.
+/// From rest on a jump of a table with steps, downwards and upwards: the direction of the motion decides which couple
+/// acts.
 #[test]
 fn an_angle_at_rest_on_a_point_of_a_table_is_decided_as_it_moves() {
     for [below, above] in [[-1.0, -2.0], [2.0, 1.0]] {
@@ -167,7 +168,7 @@ fn a_brake_stops_the_wheel() {
     }
 }
 
-/// Where the brake holds the wheel it rests, after few steps.
+/// If the brake holds the wheel, the wheel rests, after few steps.
 #[test]
 fn a_brake_at_rest_holds() {
     let machine = wheel(couple("-3*sign(v)"), &[]);

@@ -1,5 +1,5 @@
 //! Loads that switch, pulse and jump in time, on a wheel: its speed is the impulse over its inertia, its angle the
-//! impulse's moment, both by hand. From rest, where nothing announces what comes, and in motion.
+//! impulse's moment, both by hand. The wheel starts from rest or in motion.
 #![allow(clippy::expect_used, reason = "tests")]
 
 mod parts;
@@ -126,8 +126,8 @@ fn the_error_is_that_of_restarts_by_hand() {
     }
 }
 
-/// What varies too fast for the steps that are allowed is refused with its place, and followed where the longest step
-/// is given.
+/// A load that varies too fast for the limit on steps is rejected with its place, and followed if the longest step is
+/// given.
 #[test]
 fn what_varies_too_fast_is_refused() {
     let machine = wheel(expression("sin(1e6*t)"));

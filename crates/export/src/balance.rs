@@ -79,7 +79,7 @@ pub(crate) fn balance(cells: &mut [f64], stride: usize, index: &[u16], domain: D
     }
 }
 
-/// The change of one coefficient that leaves the least.
+/// The change of one coefficient that leaves the smallest remainder.
 #[derive(Debug, Default)]
 struct Change {
     rest: f64,

@@ -72,7 +72,7 @@ pub fn c_files(export: &Export) -> [(String, String); 2] {
     writer.files(&header, &writer.source())
 }
 
-/// What the code of one degree of freedom is, and what it is worth.
+/// A description of the code of one degree of freedom, with its errors.
 fn description(export: &Export) -> Vec<String> {
     let mut lines = describe(export);
     let [motion, all, step] = export.measured.operations;
@@ -113,7 +113,7 @@ pub(crate) struct CWriter<'a, E> {
     pub(crate) precision: Precision,
     /// A coordinate by its place.
     pub(crate) coordinate: fn(usize) -> String,
-    /// What lines of templates are marked with that belong to this machine, besides what its members say.
+    /// The marks of template lines for this machine, in addition to those from its members.
     pub(crate) marks: String,
 }
 
@@ -126,7 +126,7 @@ impl<'a, E> Deref for CWriter<'a, E> {
 }
 
 impl<E> CWriter<'_, E> {
-    /// A template with the lines of this machine, its numbers, and what stands at each `@name@`.
+    /// A template with the lines of this machine, its numbers, and the replacement of each `@name@`.
     pub(crate) fn fill(&self, template: &str, own: &[(&str, String)]) -> String {
         let mut marks = self.marks.clone();
         for (mark, holds) in [
@@ -148,8 +148,8 @@ impl<E> CWriter<'_, E> {
         })
     }
 
-    /// Header and source with the names put in: `@p@` for the prefix, `@U@` for it in capitals, `@arguments@` for what most
-    /// functions begin with.
+    /// Header and source with the names inserted: `@p@` for the prefix, `@U@` for the prefix in capitals, `@arguments@` for
+    /// the first arguments of most functions.
     pub(crate) fn files(&self, header: &str, source: &str) -> [(String, String); 2] {
         let (prefix, capitals) = (&self.names.prefix, &self.names.capitals);
         [("h", header), ("c", source)].map(|(ending, text)| {

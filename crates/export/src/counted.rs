@@ -1,4 +1,4 @@
-//! A number that counts what is done with it.
+//! A number type that counts operations.
 
 use dwell_numerics::Real;
 use std::cell::Cell;

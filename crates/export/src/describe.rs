@@ -1,8 +1,8 @@
-//! What an export is and what it is worth, in words.
+//! The description of an export and of its errors, in words.
 
 use crate::export::{Export, STATED_STEP};
 
-/// What the export of a machine is and what it is worth, line by line, for every target.
+/// The description of the export of a machine and of its errors, line by line, for every target.
 pub(crate) fn describe(export: &Export) -> Vec<String> {
     let (machine, measured) = (&export.machine, &export.measured);
     let domain = machine.domain;
@@ -47,7 +47,7 @@ pub(crate) fn describe(export: &Export) -> Vec<String> {
     lines
 }
 
-/// What was asked for, and the largest errors.
+/// The required accuracy, and the largest errors.
 fn accuracy(export: &Export) -> [String; 2] {
     let (machine, measured) = (&export.machine, &export.measured);
     let errors = measured.errors;

@@ -20,7 +20,7 @@ pub enum FitError<E> {
     /// A number is beyond single precision.
     #[error("{name} is too large for single precision")]
     TooLarge {
-        /// What it is of.
+        /// The name of its function.
         name: String,
     },
     /// The operations are not those of the functions over the whole domain.
@@ -42,7 +42,7 @@ pub enum FitError<E> {
         name: String,
         /// Where, rad or m.
         q: f64,
-        /// What was asked for.
+        /// The required accuracy.
         accuracy: f64,
     },
 }

@@ -1,5 +1,5 @@
-//! The exported code in Rust, operation by operation: with it the export measures its own errors, its step and its worst
-//! case before it is written, and its tests compare what is compiled.
+//! The exported code in Rust, operation by operation: with it the export measures its errors, its step and its worst
+//! case before it is written, and tests compare the compiled code with it.
 
 mod load;
 mod motion;
@@ -10,7 +10,7 @@ pub use motion::{Evaluator, MotionTerms, ReactionTerms, State};
 
 use dwell_numerics::Real;
 
-/// Why exported code has no value. Its outputs are zero then, and a state stays as it was.
+/// The reason why exported code has no value. Its outputs are then zero, and a state is not changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Status {
     /// The coordinate is outside the domain.

@@ -1,4 +1,4 @@
-//! A machine with its fitted parts and what was measured of them: all that a target needs.
+//! A machine with its fitted parts and their measured errors: all data that a target needs.
 
 mod measure;
 
@@ -14,10 +14,10 @@ use dwell_numerics::Real;
 use dwell_numerics::StraightLine;
 use measure::{measure, row};
 
-/// What is asked for.
+/// The requested export.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Request {
-    /// The accuracy of every function, relative to its largest value. Operations have that of their rounding.
+    /// The accuracy of every function, relative to its largest value. The error of operations is their rounding.
     pub accuracy: f64,
     /// The numbers.
     pub precision: Precision,
@@ -28,13 +28,13 @@ pub struct Request {
 pub struct Export {
     /// The machine.
     pub machine: MachineDescription,
-    /// What was asked for.
+    /// The request.
     pub request: Request,
     /// By part, in the order of [`PartKind::ALL`].
     pub parts: [Part; 3],
-    /// Of an exact export: by part its operations; then no part has cells.
+    /// For an exact export: the operations of each part; no part then has cells.
     pub code: Option<[StraightLine; 3]>,
-    /// What it states about itself.
+    /// The measured errors and counts, which the export states.
     pub measured: Measured,
 }
 
@@ -56,7 +56,7 @@ impl Export {
         }
     }
 
-    /// The largest error, if it is beyond this and beyond what rounding can be: what is fitted or recorded is another function then.
+    /// The largest error, if it exceeds this accuracy and possible rounding. Then the fitted or recorded functions are wrong.
     fn error_beyond(&self, accuracy: f64) -> Option<f64> {
         let rounding: f64 = match self.request.precision {
             Precision::Double => 1e-7,
@@ -66,12 +66,12 @@ impl Export {
         (error.is_nan() || error > rounding.max(accuracy)).then_some(error)
     }
 
-    /// Takes the operations of all functions of a machine, and measures them. By part in the order of [`PartKind::ALL`], the
-    /// outputs are value and half the slope of each [curve](MachineDescription::curves), then the
+    /// Records the operations of all functions of a machine, and measures them. By part in the order of [`PartKind::ALL`],
+    /// the outputs are value and half the slope of each [curve](MachineDescription::curves), then the
     /// [columns](MachineDescription::columns).
     ///
     /// # Errors
-    /// [`FitError`] where a function has no value, is not periodic, or where the operations are not those of the function.
+    /// [`FitError`] if a function has no value or is not periodic, or if the operations are not those of the function.
     pub fn exact<S: FunctionSampler>(
         machine: MachineDescription,
         precision: Precision,
@@ -90,7 +90,7 @@ impl Export {
         export.within_precision()
     }
 
-    /// Of a machine in cells of an accuracy, or as operations.
+    /// The export of a machine in cells of an accuracy, or as operations, with its measured errors.
     fn measured<S: FunctionSampler>(
         machine: MachineDescription,
         asked: (Option<f64>, Precision),
@@ -122,7 +122,7 @@ impl Export {
         Ok(export)
     }
 
-    /// Its code in Rust, in one kind of number.
+    /// Its code in Rust, in one number type.
     pub fn evaluator<R: Real>(&self) -> Evaluator<R> {
         let precision = self.request.precision;
         match &self.code {
@@ -139,7 +139,7 @@ impl Export {
         }
     }
 
-    /// What has a number beyond the precision, if there is any.
+    /// The name of a quantity whose numbers exceed the range of the precision, if there is any.
     fn too_large(&self) -> Option<String> {
         let fits = |value: f64| self.request.precision.round(value).is_finite();
         for part in &self.parts {
@@ -170,7 +170,8 @@ impl Export {
         (!starts).then(|| "the initial state".to_owned())
     }
 
-    /// Square roots, sines, cosines and angles of the terms of motion, and of those of motion and reactions; zero of cells.
+    /// Square roots, sines, cosines and angles of the terms of motion, and of those of motion and reactions; zero for
+    /// cells.
     pub fn functions(&self) -> [usize; 2] {
         let count = |part: usize| self.code.as_ref().map_or(0, |code| code[part].functions());
         [count(0), count(0) + count(1)]

@@ -11,7 +11,7 @@ use crate::part::{CURVE, Column, HEAD, Part, Precision, TERMS};
 
 /// Points at which the sizes of all functions are taken.
 const SIZE_POINTS: usize = 512;
-/// A function that varies by less than this part of what it comes to is a constant.
+/// A function that varies by less than this fraction of its reference size is a constant.
 const ROUNDING: f64 = 1e-13;
 /// A function is judged by its largest value, or by this part of the largest of its kind, if that is more.
 const KIND_FLOOR: f64 = 1e-3;
@@ -21,7 +21,7 @@ const PERIODICITY_TOLERANCE: f64 = 1e-9;
 const BINS: std::ops::RangeInclusive<u32> = 4..=13;
 /// Points of a cell at which its error is measured, the ends included.
 const CHECKS: usize = 3 * TERMS;
-/// Points of the domain at which the cells are searched for narrow peaks besides.
+/// Number of additional points of the domain at which cells are searched for narrow peaks.
 const SEARCH_POINTS: usize = 8192;
 /// Part of the accuracy that the errors at these points may reach.
 const SHARE: f64 = 0.5;
@@ -30,7 +30,7 @@ const SHARE: f64 = 0.5;
 pub(crate) struct FittedPart {
     /// The cells.
     pub(crate) part: Part,
-    /// Of value and half slope of the curves, then of the columns.
+    /// Scales of value and half slope of the curves, then of the columns.
     pub(crate) scales: Vec<f64>,
 }
 
@@ -62,11 +62,11 @@ struct Fitter<'a, S> {
     tolerances: Vec<f64>,
 }
 
-/// Fits a part of a machine to an accuracy relative to the largest value of each function. Without an accuracy it has no cells:
-/// its functions are operations.
+/// Fits a part of a machine to an accuracy relative to the largest value of each function. Without an accuracy it has no cells,
+/// because its functions are operations.
 ///
 /// # Errors
-/// [`FitError`] where there is no position, a function is not periodic, or the accuracy cannot be reached.
+/// [`FitError`] if there is no position, a function is not periodic, or the accuracy cannot be reached.
 pub(crate) fn fit<S: FunctionSampler>(
     machine: &MachineDescription,
     kind: PartKind,
@@ -197,7 +197,7 @@ impl<S: FunctionSampler> Fitter<'_, S> {
         best
     }
 
-    /// The function that a cell of one bin does not hold, and where.
+    /// The error for a function that a cell of one bin does not represent, with its coordinate.
     fn not_reached(&self, function: Function, q: f64) -> FitError<S::Error> {
         FitError::NotReached {
             name: self.machine.function_name(function),
@@ -206,10 +206,10 @@ impl<S: FunctionSampler> Fitter<'_, S> {
         }
     }
 
-    /// The part with cells over so many bins.
+    /// The part with cells over a number of bins.
     ///
     /// # Errors
-    /// [`FitError::NotReached`] where one bin is too wide.
+    /// [`FitError::NotReached`] if one bin is too wide.
     fn cells(&mut self, bins: usize) -> Result<Part, FitError<S::Error>> {
         let per_unit = bins as f64 / self.machine.domain.length();
         let mut part = Part {
@@ -309,7 +309,7 @@ impl<S: FunctionSampler> Fitter<'_, S> {
         Ok(rounded.collect())
     }
 
-    /// The first function that is not within so many of its tolerances.
+    /// The first function whose error exceeds this multiple of its tolerance.
     fn error_too_large(
         &self,
         numbers: &[f64],

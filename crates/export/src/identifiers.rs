@@ -6,9 +6,9 @@ use std::collections::HashSet;
 /// The identifiers of an export.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Identifiers {
-    /// What the names of functions and types begin with.
+    /// The prefix of the names of functions and types.
     pub prefix: String,
-    /// The same in capitals, for constants.
+    /// The prefix in capitals, for constants.
     pub capitals: String,
     /// By load.
     pub loads: Vec<String>,
@@ -19,7 +19,7 @@ pub struct Identifiers {
 }
 
 impl Identifiers {
-    /// Those of a machine.
+    /// The identifiers of a machine.
     pub fn new(machine: &MachineDescription) -> Self {
         Self::of(
             &machine.name,
@@ -29,7 +29,7 @@ impl Identifiers {
         )
     }
 
-    /// Those of a machine with this name and these parts.
+    /// The identifiers of a machine with this name and these parts.
     pub(crate) fn of(
         name: &str,
         loads: &[LoadDescription],
@@ -65,7 +65,7 @@ fn plain(name: &str) -> String {
     text
 }
 
-/// As [`plain`], with a number behind those that would be like another.
+/// As [`plain`], with a number appended to names that would be equal to others.
 pub(crate) fn distinct(names: &[&String]) -> Vec<String> {
     // How many there are is called `…_COUNT`.
     let mut used = HashSet::from(["COUNT".to_owned()]);

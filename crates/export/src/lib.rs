@@ -1,10 +1,9 @@
-//! Out of the workbench: the reduced model of a machine of one degree of freedom as source text that needs nothing.
+//! Export: the reduced model of a machine of one degree of freedom as source text without dependencies.
 //!
-//! Plain data and a sampler of exact functions come in; [`Export::new`] fits cells of uneven width and measures what they are
-//! worth, or [`Export::exact`] takes the operations of the exact functions, [recorded](dwell_numerics::record) once; each target then makes
-//! texts or bytes of them: [`c_files`], [`rust_files`], [`fmu_files`], [`matlab_files`]. The
-//! [`Evaluator`] is the exported code in Rust, operation by operation. A machine of several degrees of freedom has its equations of
-//! motion in C, by [`SeveralFreedomsExport`].
+//! Plain data and a sampler of exact functions come in; [`Export::new`] fits cells of uneven width and measures their errors, or
+//! [`Export::exact`] uses the operations of the exact functions, [recorded](dwell_numerics::record) once. Each target then generates texts or
+//! bytes: [`c_files`], [`rust_files`], [`fmu_files`], [`matlab_files`]. The [`Evaluator`] is the exported code in Rust, operation
+//! by operation. A machine of several degrees of freedom has its equations of motion in C, by [`SeveralFreedomsExport`].
 //!
 //! A crank whose inertia is 2 + cos q, kg m², as C in single precision:
 //!

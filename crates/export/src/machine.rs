@@ -1,4 +1,4 @@
-//! What is exported: the names of a machine, how its loads act, and its functions of the coordinate as a sampler.
+//! The exported machine: its names, the effects of its loads, and its functions of the coordinate as a sampler.
 
 /// A machine of one degree of freedom, as plain data.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,7 +13,7 @@ pub struct MachineDescription {
     pub version: String,
     /// The name of its coordinate.
     pub coordinate: String,
-    /// Whether the coordinate is an angle (rad), else a length (m).
+    /// Whether the coordinate is an angle (rad); otherwise it is a length (m).
     pub is_angle: bool,
     /// The interval of the coordinate.
     pub domain: Domain,
@@ -25,16 +25,16 @@ pub struct MachineDescription {
     pub reactions: Vec<(String, &'static str)>,
     /// The points whose positions are exported.
     pub points: Vec<String>,
-    /// What the functions come to, below which is rounding.
+    /// Reference sizes of the functions, which define rounding.
     pub sizes: ReferenceSizes,
-    /// Sentences about what the scene has and the export has not.
+    /// Sentences about the parts of the scene that are not exported.
     pub left_out: Vec<String>,
 }
 
 /// The interval of a coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Domain {
-    /// Its lower end, rad or m; zero of whole revolutions.
+    /// Its lower end, rad or m; zero for whole revolutions.
     pub from: f64,
     /// Its upper end, rad or m.
     pub to: f64,
@@ -48,7 +48,7 @@ impl Domain {
         self.to - self.from
     }
 
-    /// A coordinate at which there is no value: outside of it, or beyond so many revolutions.
+    /// A coordinate without a value: outside of the domain, or beyond the largest number of revolutions.
     pub(crate) fn outside(&self) -> f64 {
         match self.revolutions {
             0 => 2.0 * self.to.abs().max(self.from.abs()) + 1.0,
@@ -57,10 +57,10 @@ impl Domain {
     }
 }
 
-/// What the functions of a machine come to: a function far below is rounding.
+/// Reference sizes of the functions of a machine: a function far below is rounding.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReferenceSizes {
-    /// Of m, kg m² or kg.
+    /// Size of m, kg m² or kg.
     pub inertia: f64,
     /// A length of the mechanism, m.
     pub length: f64,
@@ -84,14 +84,14 @@ pub struct LoadDescription {
 pub enum Resistance {
     /// F = −d w q̇.
     Linear,
-    /// F = d |q̇| q̇, where w is that of the drag at unit speed.
+    /// F = d |q̇| q̇; w is that of the drag at unit speed.
     Quadratic,
 }
 
-/// How a load acts. F is what w and the c of the reactions are multiplied by.
+/// The effect of a load. F is the factor of w and of the c of the reactions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LoadEffect {
-    /// It has a potential; F is a parameter: acceleration of gravity, stiffness or force.
+    /// A load with a potential; F is a parameter: acceleration of gravity, stiffness or force.
     Conservative {
         /// The parameter's value in the scene.
         magnitude: f64,
@@ -200,7 +200,7 @@ impl LoadEffect {
     }
 }
 
-/// Which functions are looked up together.
+/// The functions that are looked up together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PartKind {
     /// m and ½m′; v and ½v′ of every conservative load; w of the others.
@@ -288,7 +288,8 @@ impl MachineDescription {
             .map(|(k, _)| k)
     }
 
-    /// Where the function of a load is in the part of motion: of a conservative one its curve, of others its column.
+    /// The index of the function of a load in the part of motion: of its curve for a conservative load, otherwise of
+    /// its column.
     pub(crate) fn place(&self, load: usize) -> usize {
         let conservative = self.loads[load].effect.is_conservative();
         let before = self.loads[..load].iter();
@@ -304,7 +305,7 @@ impl MachineDescription {
         columns.map(LoadEffect::has_rotor).collect()
     }
 
-    /// What a function is called in messages.
+    /// The name of a function in messages.
     pub fn function_name(&self, function: Function) -> String {
         let load = |k: usize| self.loads.get(k).map_or("", |load| load.name.as_str());
         let reaction = |k: usize| self.reactions.get(k).map_or("", |(name, _)| name.as_str());
@@ -322,7 +323,7 @@ impl MachineDescription {
         }
     }
 
-    /// What a function comes to, in its own unit: far below, it is rounding.
+    /// The reference size of a function, in its own unit; values far below are rounding.
     pub(crate) fn reference_size(&self, function: Function) -> f64 {
         let ReferenceSizes {
             inertia,

@@ -28,7 +28,7 @@ impl Precision {
         }
     }
 
-    /// In what errors are measured.
+    /// The unit in which errors are measured, in words.
     pub(crate) fn measured_in(self) -> &'static str {
         match self {
             Self::Double => "double precision",
@@ -48,9 +48,9 @@ impl Precision {
 /// Where a function is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Column {
-    /// It is a constant.
+    /// The column is a constant.
     Constant(f64),
-    /// It is the k-th of the cells' columns.
+    /// The column is the k-th of those in the cells.
     Tabulated(usize),
 }
 
@@ -61,7 +61,7 @@ pub struct Part {
     pub curves: Vec<Function>,
     /// The other functions, and where each is found.
     pub columns: Vec<(Function, Column)>,
-    /// By bin: its cell. Empty if nothing is in cells.
+    /// By bin: its cell. Empty without cells.
     pub index: Vec<u16>,
     /// By cell: [`HEAD`], then [`CURVE`] numbers for each curve, then [`TERMS`] for each tabulated column, all by rising powers.
     pub cells: Vec<f64>,
@@ -111,7 +111,7 @@ pub(crate) struct Wrapping {
 }
 
 impl Wrapping {
-    /// Of a periodic domain.
+    /// The wrapping of a periodic domain.
     pub(crate) fn new(domain: Domain, precision: Precision) -> Option<Self> {
         let period = domain.length();
         let (bits, periods) = match precision {

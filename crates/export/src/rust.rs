@@ -60,7 +60,7 @@ impl RustWriter<'_> {
         numbers.join(", ")
     }
 
-    /// What the code is and what it is worth.
+    /// The description of the code and of its errors.
     fn banner(&self) -> String {
         let mut text = String::new();
         for line in describe(self.export) {

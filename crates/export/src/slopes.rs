@@ -7,7 +7,7 @@ use dwell_numerics::{RecordedNumber, RecordingError, record};
 use std::convert::Infallible;
 use std::ops::{Add, Div, Mul, Sub};
 
-/// Appends to the outputs of a code the slopes of those from `first` on: of one that is not wanted, zero.
+/// Appends the slopes of the outputs from `first` on to the outputs of a code; zero for a slope that is not needed.
 pub(crate) fn with_slopes(code: &StraightLine, first: usize, wanted: &[bool]) -> StraightLine {
     let evaluate = |q: RecordedNumber| {
         let all = code.evaluate(&[Sloped::new(q, RecordedNumber::from_f64(1.0))]);

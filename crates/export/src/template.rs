@@ -1,6 +1,6 @@
 //! Templates of several texts.
 
-/// What lines may be marked with: `2` and `3` for versions of FMI; `1` for one degree of freedom and `n` for several, `l` for loads and `z`
+/// The marks of lines: `2` and `3` for versions of FMI; `1` for one degree of freedom and `n` for several, `l` for loads and `z`
 /// for none, `r` for reactions, `p` for points, `v` for potentials, `d` for derivatives of w, `o` for whole revolutions and `e` for ends.
 const MARKS: &str = "123delnoprvz";
 

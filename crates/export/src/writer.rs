@@ -1,4 +1,4 @@
-//! What the texts of all targets share: names, members, what there is, and how a load acts.
+//! Common parts of the texts of all targets: names, members, lists, and the effects of loads.
 
 use crate::export::Export;
 use crate::identifiers::{Identifiers, comment};
@@ -11,12 +11,12 @@ pub(crate) struct Members<'a> {
     pub(crate) reactions: &'a [(String, &'static str)],
     pub(crate) points: &'a [String],
     pub(crate) freedoms: usize,
-    /// The unit of the inertia that may be added along the coordinate; none where there are several.
+    /// The unit of the inertia that may be added along the coordinate; `None` if there are several.
     pub(crate) inertia_unit: Option<&'static str>,
 }
 
 impl<'a> Members<'a> {
-    /// Those of a machine of one degree of freedom.
+    /// The members of a machine of one degree of freedom.
     pub(crate) fn new(export: &'a Export) -> Self {
         let machine = &export.machine;
         Self {
@@ -71,14 +71,14 @@ impl<'a> Members<'a> {
         2 * self.freedoms + self.currents().len()
     }
 
-    /// The members of a state of one degree of freedom that change at rates.
+    /// The members of a state of one degree of freedom that have rates.
     pub(crate) fn state_members(&self) -> Vec<String> {
         let currents = self.currents().into_iter().map(|(_, name, _)| name);
         let first = ["q", "q_dot"].map(str::to_owned);
         first.into_iter().chain(currents).collect()
     }
 
-    /// Loads, reactions and points: what they are, and the name in capitals and the meaning of each.
+    /// Loads, reactions and points: the title of each list, and the name in capitals and the meaning of each entry.
     pub(crate) fn lists(&self) -> [(&'static str, Vec<[String; 2]>); 3] {
         let loads = self.loads.iter().map(|load| &load.name);
         let reactions = self.reactions.iter().map(|(name, _)| name);
@@ -147,7 +147,7 @@ impl<'a> Members<'a> {
     }
 }
 
-/// Names in capitals, with what they mean.
+/// Names in capitals, with their meanings.
 pub(crate) fn list<'a>(
     names: &[String],
     meanings: impl IntoIterator<Item = &'a String>,
@@ -163,12 +163,12 @@ pub(crate) struct Access {
     pub(crate) inputs: &'static str,
     pub(crate) state: &'static str,
     pub(crate) zero: &'static str,
-    /// What is before, between and behind a condition and its two values.
+    /// The text before, between and after a condition and its two values.
     pub(crate) choice: [&'static str; 4],
 }
 
 impl Access {
-    /// F of a load with this velocity, without that of a rotor.
+    /// F of a load with this velocity, without the force that accelerates a rotor.
     pub(crate) fn force(&self, effect: &LoadEffect, name: &str, velocity: &str) -> String {
         let Self {
             parameters: p,

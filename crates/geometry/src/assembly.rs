@@ -53,7 +53,8 @@ impl Plan {
         Ok(pose)
     }
 
-    /// Bodies of one orientation class may be whole revolutions apart: each counts from its own approximate angle.
+    /// Counts the revolutions of bodies in one orientation class. They may be whole revolutions apart, because each
+    /// counts from its own approximate angle.
     fn count_body_revolutions(&mut self, initial_guess: &InitialGuess) {
         let mut revolution_offsets = vec![0.0; self.lowered.bodies];
         for class in 0..self.frames.orientation_classes {

@@ -12,14 +12,14 @@ impl Plan {
         pose.rotation[orientation.frame].rotate(orientation.offset)
     }
 
-    /// The angle of a body's frame, rad: whole revolutions are counted where actuators turn it from the
-    /// ground or a coupling or load needs them, else it is in (−π, π].
+    /// The angle of a body's frame, rad. It counts whole revolutions if actuators turn the frame from the ground, or if
+    /// a coupling or load needs them. Otherwise it is in (−π, π].
     pub fn body_angle(&self, body: BodyId, pose: &Pose<f64>) -> f64 {
         let counted = self.counted_angle(body.0, pose);
         counted.unwrap_or_else(|| self.body_rotation(body, pose).angle())
     }
 
-    /// The angle of a body's frame with its whole revolutions, rad, where actuators turn it from the
+    /// The angle of a body's frame with its whole revolutions, rad; `None` unless actuators turn the frame from the
     /// ground or a coupling or load needs it.
     pub(crate) fn counted_angle<T: Scalar>(&self, body: usize, pose: &Pose<T>) -> Option<T> {
         let orientation = self.frames.orientations[body];

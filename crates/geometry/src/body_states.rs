@@ -22,8 +22,8 @@ pub struct BodyState<T = f64> {
     pub acceleration: Vec2<T>,
     /// Orientation of the body's frame, (cos, sin).
     pub rotation: Vec2<T>,
-    /// The angle of its frame with whole revolutions, rad, where they are counted: where actuators turn it
-    /// from the ground, or a coupling or a load needs it.
+    /// The angle of its frame with whole revolutions, rad. They are counted if actuators turn the frame from the
+    /// ground, or if a coupling or a load needs them; otherwise `None`.
     pub angle: Option<T>,
     /// Angular velocity ω, rad/s.
     pub angular_velocity: T,
@@ -55,7 +55,7 @@ impl<T: Scalar> BodyState<T> {
 /// A point of a body, in ground axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointState<T = f64> {
-    /// Where it is in the ground's frame, m.
+    /// Position in the ground's frame, m.
     pub position: Vec2<T>,
     /// Its velocity, m/s.
     pub velocity: Vec2<T>,
@@ -63,7 +63,7 @@ pub struct PointState<T = f64> {
     pub acceleration: Vec2<T>,
 }
 
-/// What separates two points: P₂ − P₁ and its derivatives, in ground axes.
+/// The separation of two points: P₂ − P₁ and its derivatives, in ground axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Separation<T = f64> {
     /// P₂ − P₁, m.
@@ -74,7 +74,7 @@ pub struct Separation<T = f64> {
     pub acceleration: Vec2<T>,
     /// The distance, m.
     pub length: T,
-    /// The unit vector from the first to the second; none where they coincide to the rounding of
+    /// The unit vector from the first to the second; `None` if they coincide to the rounding of
     /// their positions.
     pub direction: Option<Vec2<T>>,
 }
@@ -116,10 +116,10 @@ impl CoordinateFunction {
 /// The state of every body at a pose and a motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyStates<T = f64> {
-    /// The ground's joint origin, from which all positions are measured, so that differences of positions
-    /// do not depend on where the mechanism stands.
+    /// The ground's joint origin, from which all positions are measured. Differences of positions therefore do not
+    /// depend on the position of the mechanism.
     origin: Vec2,
-    /// By body, the ground included.
+    /// One state for each body, including the ground.
     bodies: Vec<BodyState<T>>,
 }
 
@@ -161,7 +161,7 @@ impl<T: Scalar> BodyStates<T> {
         self.fill_accelerations(plan, pose, motion);
     }
 
-    /// Positions and velocities from a pose and a motion; the accelerations stay what they were.
+    /// Positions and velocities from a pose and a motion; the accelerations are not changed.
     pub fn fill_velocities(&mut self, plan: &Plan, pose: &Pose<T>, motion: &Motion<T>) {
         for (moving_body, tree_joint) in plan.moving_bodies().iter().zip(&plan.tree().joints) {
             let body = moving_body.body;
@@ -251,7 +251,7 @@ impl<T: Scalar> BodyStates<T> {
         }
     }
 
-    /// What separates two points, each in its body's frame, m.
+    /// The separation of two points, m. Each point is given in its body's frame.
     pub fn separation(&self, bodies: [BodyId; 2], points: [Vec2; 2]) -> Separation<T> {
         let [one, two] = bodies.map(|b| self.body(b));
         let [a, b] = [one.moment_arm(points[0]), two.moment_arm(points[1])];
@@ -272,7 +272,7 @@ impl<T: Scalar> BodyStates<T> {
     }
 
     /// Angle of the second body's frame from the first's, rad, its speed (rad/s) and acceleration
-    /// (rad/s²). Whole revolutions are counted where they are for both bodies; else it is in (−π, π].
+    /// (rad/s²). Whole revolutions are counted if they are counted for both bodies. Otherwise the angle is in (−π, π].
     pub fn angle(&self, bodies: [BodyId; 2]) -> [T; 3] {
         let [one, two] = bodies.map(|b| self.body(b));
         let counted = one.angle.zip(two.angle).map(|(one, two)| two - one);
@@ -283,8 +283,8 @@ impl<T: Scalar> BodyStates<T> {
         ]
     }
 
-    /// Value, speed and acceleration of a coordinate: rad or m, per s, per s². Angles are
-    /// those of [`angle`](Self::angle). Where two points coincide, the derivatives of their length are those to the right.
+    /// Value, speed and acceleration of a coordinate: rad or m, per s, per s². Angles are those of [`angle`](Self::angle).
+    /// If two points coincide, the derivatives of their distance are one-sided, for increasing time.
     pub fn coordinate(&self, function: CoordinateFunction) -> [T; 3] {
         match function {
             CoordinateFunction::Angle(bodies) => self.angle(bodies),
@@ -313,7 +313,7 @@ impl<T: Scalar> BodyStates<T> {
 }
 
 impl<T: Scalar> Separation<T> {
-    /// The distance with its two derivatives, m, m/s, m/s²; those to the right where it is zero.
+    /// The distance with its two derivatives, m, m/s, m/s². At distance zero they are one-sided, for increasing time.
     fn length_derivatives(&self) -> [T; 3] {
         let Some(along) = self.direction else {
             // |v t + ½ a t²| just after t = 0.
@@ -341,8 +341,8 @@ impl Plan {
     }
 }
 
-/// The angle of a direction, in (−π, π] rad, in any number type: that of the values, corrected
-/// to first order by what remains when the direction is turned back by it.
+/// The angle of a direction, in (−π, π] rad, in any number type: the angle of the values, corrected to first order by
+/// the remainder after the direction is turned back by this angle.
 fn angle<T: Scalar>(direction: Vec2<T>) -> T {
     let values = vec2(direction.x.value(), direction.y.value());
     let found = values.angle();

@@ -13,15 +13,15 @@ use crate::plan::Pose;
 use crate::plan::{AssemblyConfiguration, Plan};
 use crate::plane::{Vec2, vec2};
 
-/// Redundant constraints that stay open by less than this part of the mechanism's size were meant to be consistent;
-/// if they stay open by more, the mechanism is over-constrained.
+/// Redundant constraints with a gap below this fraction of the mechanism's size are probably meant to be consistent.
+/// With a larger gap the mechanism is over-constrained.
 const NEARLY_CLOSED: f64 = 0.01;
 
-/// Gears mesh when their distance is that of their radii to this relative tolerance: a wrong radius differs by more,
-/// backlash by less.
+/// Gears mesh if their centre distance agrees with their radii to this relative tolerance: a wrong radius differs by
+/// more, backlash by less.
 const MESHING_TOLERANCE: f64 = 2e-3;
 
-/// The error of a mechanism whose best pose leaves a gap, m; `error` is what counting or matching found.
+/// The error of a mechanism whose best pose leaves a gap, m; `error` is the result of counting or matching.
 fn not_closed(found: &Mobility, gap: f64, error: AssemblyError) -> AssemblyError {
     // More actuators than degrees of freedom are not redundant joints.
     let over_actuated = (1..found.actuators).contains(&found.degrees_of_freedom());
@@ -93,8 +93,8 @@ impl Plan {
         }
     }
 
-    /// Compiles a mechanism that counting or matching refused: redundant constraints are solved together; what the rank
-    /// refuses too is an error, stated by rank.
+    /// Compiles a mechanism that counting or matching rejected: redundant constraints are solved together. If the rank
+    /// rejects it too, the error states the rank.
     fn compile_redundant(
         mechanism: &Mechanism,
         configuration: &AssemblyConfiguration,

@@ -5,11 +5,10 @@
 //! in the plane, and the angle of its frame. The ground stays at 0, 0, 0. The moving
 //! bodies follow each other in the order of [`Mechanism::bodies`].
 //!
-//! **Rows.** One per reaction component in the order of [`Mechanism::reactions`], then one per
-//! actuator. Row k reads Φₖ(x) − vₖ = 0. With the imposed value vₖ = 0 of a joint's row, the joint
-//! is closed; any other value is the joint really opened by that much, which is what releasing a
-//! constraint as a second coordinate means (Jordi, Zayas & Cardona 2008, figure 1). The value of
-//! an actuator's row is its coordinate q.
+//! **Rows.** One per reaction component in the order of [`Mechanism::reactions`], then one per actuator. Row k reads
+//! Φₖ(x) − vₖ = 0. With the imposed value vₖ = 0 of a joint's row, the joint is closed; any other value opens the joint
+//! by this amount, as if the released constraint were a second coordinate (Jordi, Zayas & Cardona 2008, figure 1). The
+//! value of an actuator's row is its coordinate q.
 //!
 //! With d = P2 − P1, t the first body's axis and n that axis turned +90°, all in the plane's
 //! directions, and ψ the direction of d:
@@ -28,12 +27,11 @@
 //! actuator   θ2 − θ1, or t·d, or |d|              (11) rad or m
 //! ```
 //!
-//! **Counting.** Rows (6) to (8), and (10) with an angle, feel whole revolutions of a body. A mechanism
-//! that has one of these is *counted*: its angles in x must be counted from the start on, and (11)
-//! takes an angle as it is. In any other mechanism a body's turn is no different from none, and
-//! (11) is taken to the nearest turn. ψ is counted with the body that holds both centres; where
-//! there is none, to the turn that leaves the row least open. The constant c is set by
-//! [`ConstraintRows::mesh`] at the start; until then it is zero.
+//! **Counting.** Rows (6) to (8), and (10) with an angle, depend on whole revolutions of a body. A mechanism that has
+//! one of these is *counted*: its angles in x must be counted from the start on, and (11) takes an angle as it is. In
+//! any other mechanism whole revolutions of a body have no effect, and (11) is taken modulo one revolution. ψ is
+//! counted with the body that holds both centres; where there is none, to the turn that leaves the row least open. The
+//! constant c is set by [`ConstraintRows::mesh`] at the start; until then it is zero.
 //!
 //! **Signs.** Since P2 enters with a plus, the multiplier λₖ of row k in Jᵀλ is the action of the
 //! first-named body on the second, as [`crate::Component`] says. In rows along an axis the
@@ -68,7 +66,7 @@ pub enum ConstraintRowsError {
     /// A joint, an actuator or a coupling names a body that does not exist.
     #[error("{what} {index} names body {body}, but there are {bodies} bodies")]
     NoBody {
-        /// What names it.
+        /// The kind of its owner: "joint", "actuator" or "coupling".
         what: &'static str,
         /// Which of them.
         index: usize,

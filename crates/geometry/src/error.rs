@@ -47,7 +47,7 @@ pub enum StructureError {
     /// fit the mechanism. No scene can cause this; a library caller can.
     #[error("the description of the mechanism is inconsistent: {reason}")]
     Malformed {
-        /// What is inconsistent.
+        /// The inconsistency, as a phrase.
         reason: &'static str,
     },
 }
@@ -82,7 +82,7 @@ pub enum AssemblyError {
     /// Redundant joints are inconsistent.
     #[error("redundant joints are inconsistent: a gap of {gap:.3e} m remains")]
     Inconsistent {
-        /// Those joints.
+        /// The redundant joints.
         joints: Vec<JointId>,
         /// How many constraints are too many.
         redundant_count: usize,
@@ -171,7 +171,7 @@ pub enum PositionError {
         /// Determinant relative to the lengths that make it.
         relative_determinant: f64,
     },
-    /// Newton's method closed the group on another branch than that of the assembly.
+    /// Newton's method closed the group on a branch other than that of the assembly.
     #[error("group {group} closes on another assembly branch at q = {q}")]
     OtherBranch {
         /// Index of the group in the plan.
@@ -211,7 +211,7 @@ pub enum PositionError {
         /// The end of its table that `x` is beyond, rad or m.
         end: f64,
     },
-    /// A coordinate, or what is computed from it, is not a finite number. It has no place to name.
+    /// A coordinate, or a value computed from it, is not finite. The error names no coordinate.
     #[error("a coordinate is not a finite number")]
     NotFinite,
     /// Several poses were requested at once ([`Lanes`](dwell_numerics::Lanes)), but a decision differs between their
@@ -224,7 +224,7 @@ pub enum PositionError {
 }
 
 impl PositionError {
-    /// The coordinate of the first actuator at which it occurred, rad or m; none of one that is not finite.
+    /// The coordinate of the first actuator at which it occurred, rad or m; `None` for [`PositionError::NotFinite`].
     pub fn coordinate(&self) -> Option<f64> {
         let (Self::NoAssembly { q, .. }
         | Self::Singular { q, .. }

@@ -19,16 +19,16 @@ use step_buffers::StepBuffers;
 
 /// Revolutions after which a branch that neither ends nor closes is no longer followed.
 const MAX_REVOLUTIONS: u32 = 8;
-/// A branch ends at a change point where a determinant has fallen to this part of its largest value
-/// so far: its rounding is eps over that part, so any closer noise would decide which branch follows.
+/// A branch ends at a change point where a determinant has fallen to this part of its largest value so far: its
+/// rounding error is eps over that part, so that closer to the change point rounding would decide which branch follows.
 const CHANGE_POINT_DETERMINANT: f64 = 1e-6;
 /// A change point is distinguished from a limit position by the product of the determinant and its slope: to
 /// the former it falls as the determinant itself, to the latter (a square root) it stays as it is.
 const CHANGE_POINT_PRODUCT: f64 = 1e-3;
-/// Behind a limit position with a smaller product another branch may be near.
+/// Beyond a limit position with a smaller product another branch may be near.
 const NEAR_PRODUCT: f64 = 0.1;
-/// A step is taken if the tangents of all determinants stay clear of zero over so many times its
-/// length: towards a limit position, where they fall as a square root, the distance left is halved.
+/// A step is taken if the tangents of all determinants stay clear of zero over this multiple of its length: towards a
+/// limit position, where they fall as a square root, the distance left is halved.
 const TANGENT_CLEARANCE: f64 = 4.0;
 /// Two poses are one if they differ by less: rad, or of the lengths of a group.
 const SAME_POSE: f64 = 1e-6;
@@ -216,7 +216,7 @@ impl Plan {
         })
     }
 
-    /// The limit at which a branch ends soon after a pose, in a direction of the coordinate; and the branch behind it, if
+    /// The limit at which a branch ends soon after a pose, in a direction of the coordinate, and the branch beyond it, if
     /// one is near. `margin` is that of the group that ends it.
     fn limit_near(
         &self,
@@ -272,7 +272,7 @@ impl Plan {
         found.iter().all(is_clear).then_some(found)
     }
 
-    /// The pose at `q` near another one, if every correction is small beside its prediction.
+    /// The pose at `q` near another one, if every correction is small relative to its prediction.
     fn corrected_pose(&self, from: &Pose<f64>, q: f64) -> Option<Pose<f64>> {
         let mut pose = from.clone();
         if self.is_explicit() {

@@ -55,7 +55,7 @@ pub struct Joint {
     pub bodies: [BodyId; 2],
     /// The joint's point on each body, in that body's frame, in m.
     pub points: [Vec2; 2],
-    /// Its kind: which relative motion it allows.
+    /// Its kind, which determines the allowed relative motion.
     pub kind: JointKind,
 }
 
@@ -64,7 +64,7 @@ pub struct Joint {
 pub struct Guide<V = Vec2> {
     /// The joint's bodies.
     pub bodies: [BodyId; 2],
-    /// Its point on each, m.
+    /// Its point on each body, in that body's frame, m.
     pub points: [V; 2],
     /// Unit vector t of its axis in the first body's frame.
     pub axis: V,
@@ -125,7 +125,7 @@ pub struct Actuator {
     pub kind: ActuatorKind,
 }
 
-/// What an actuator drives.
+/// The coordinate that an actuator drives.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum ActuatorKind {
     /// The angle of the second body's frame from the first's; τ is a couple, N·m.

@@ -52,7 +52,7 @@ impl Mobility {
 const RANK_TOLERANCE: f64 = 1e-8;
 /// A body or a row has a part in a null space of orthonormal vectors from here on.
 const NULL_SPACE_PART: f64 = 1e-6;
-/// The same where a position is known less precisely.
+/// The rank tolerance at a position that is known less precisely.
 const LOOSE_RANK_TOLERANCE: f64 = 1e-5;
 /// Closed: the residual relative to the size.
 const CLOSED: f64 = 1e-11;
@@ -75,7 +75,7 @@ struct DenseConstraints {
     rank_tolerance: f64,
 }
 
-/// Finds the mobility of a mechanism near its assembly; none where it is too large for dense matrices
+/// Finds the mobility of a mechanism near its assembly; `None` if it is too large for dense matrices
 /// or its rows cannot be written.
 pub fn mobility(mechanism: &Mechanism, configuration: &AssemblyConfiguration) -> Option<Mobility> {
     let mut constraints = DenseConstraints::new(mechanism, RANK_TOLERANCE)?;
@@ -98,7 +98,7 @@ pub fn mobility(mechanism: &Mechanism, configuration: &AssemblyConfiguration) ->
 }
 
 /// The mobility at one position, which may be singular: there may be more degrees of freedom than elsewhere, and fewer
-/// determinate reactions. None where the rows cannot be written.
+/// determinate reactions. `None` if the rows cannot be written.
 pub fn mobility_at(mechanism: &Mechanism, states: &BodyStates) -> Option<Mobility> {
     let constraints = DenseConstraints::new(mechanism, LOOSE_RANK_TOLERANCE)?;
     let mut x = vec![0.0; constraints.rows.columns()];
@@ -112,7 +112,7 @@ pub fn mobility_at(mechanism: &Mechanism, states: &BodyStates) -> Option<Mobilit
     Some(constraints.analyse(mechanism, &x))
 }
 
-/// How far the two points of a joint are apart, m; none where they meet or lie on a line of both bodies.
+/// How far the two points of a joint are apart, m; `None` if they meet or lie on a line of both bodies.
 fn points_apart(kind: JointKind) -> Option<f64> {
     kind.conditions().find_map(|condition| match condition {
         Condition::Together | Condition::OnLine { .. } | Condition::Turned { .. } => None,

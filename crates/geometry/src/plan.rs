@@ -22,12 +22,12 @@ use crate::structure::tree::{FrameVector, Tree};
 use dwell_numerics::{Constant, Lift, Scalar};
 use std::collections::HashMap;
 
-/// At which coordinates and in which assembly mode the mechanism is assembled.
+/// The coordinates and the assembly mode at which the mechanism is assembled.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AssemblyConfiguration {
     /// The coordinate of each actuator at assembly, rad or m.
     pub q: Vec<f64>,
-    /// Approximate angle of each body, where one is given, rad: picks the assembly branch.
+    /// Approximate angle of each body, rad; `None` without one. The angles select the assembly branch.
     pub initial_guess: Vec<Option<f64>>,
     /// By joint, an approximate coordinate where one is given: selects the assembly mode where the angles of the bodies
     /// do not. It is the travel of a prismatic joint or a slot, m, or the direction of a distance, rad
@@ -72,9 +72,9 @@ pub struct Plan<C = f64> {
     pub(crate) size: f64,
     pub(crate) assembly_coordinates: Vec<f64>,
     pub(crate) range: Range,
-    /// Where the range ends, downwards and upwards, if it does.
+    /// The lower and the upper end of the range, if there are any.
     pub(crate) range_limits: [Option<RangeLimit>; 2],
-    /// Where other branches come near this one, in the range as it was followed.
+    /// The places in the followed range where other branches come near this one.
     pub(crate) near_branches: Vec<NearBranch>,
     /// The pose at assembly.
     pub(crate) assembly_pose: Option<Box<Pose<f64>>>,
@@ -97,7 +97,7 @@ pub struct GroupModes {
     pub modes: Vec<Vec<f64>>,
 }
 
-/// What a kinematic pair does in the plan.
+/// The role of a kinematic pair in the plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PairRole {
     /// It connects a body with its parent in the tree: index in [`Plan::moving_bodies`].
@@ -119,7 +119,7 @@ pub struct MovingBody {
     pub frame: usize,
     /// The frame of its parent.
     pub parent_frame: usize,
-    /// The rotated vector from the parent's root to the joint; none where it has no length or
+    /// The rotated vector from the parent's root to the joint; `None` if it has no length or
     /// belongs to the ground itself. (A body that slides without turning carries moments by it.)
     pub joint_vector: Option<usize>,
     /// The slide of a prismatic joint: its index, and the rotated direction of its travel.
@@ -154,7 +154,7 @@ pub struct LoopClosure<C = f64> {
     pub axis: Option<(usize, usize)>,
 }
 
-/// A group with what its method of solution needs.
+/// A group with the data of its method of solution.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct AssurGroup<C = f64> {
     pub(crate) group: Group,
@@ -167,7 +167,7 @@ pub(crate) struct AssurGroup<C = f64> {
     pub(crate) size: f64,
     /// A power of two near `size`, m: the unit of travels in the Jacobian, so that pivots can be compared.
     pub(crate) scale: f64,
-    /// Where Newton's method starts, and where whole revolutions are counted from.
+    /// The start values of Newton's method, from which whole revolutions are also counted.
     pub(crate) stored_poses: StoredPoses,
     /// Whether revolutions are to be counted after a closed form.
     pub(crate) counts_revolutions: bool,
@@ -180,7 +180,8 @@ pub(crate) struct AssurGroup<C = f64> {
 }
 
 impl<C> AssurGroup<C> {
-    /// What the row of a coupling is multiplied by: one between angles is compared with loops by the size of its group.
+    /// The factor of the row of a coupling. A coupling of angles is multiplied by the size of its group, so that it
+    /// compares with the lengths of loops.
     pub(crate) fn coupling_weight<T: Scalar>(&self, coupling: &CouplingEquation) -> T {
         T::from_f64(if coupling.angular { self.scale } else { 1.0 })
     }
@@ -289,7 +290,7 @@ pub(crate) struct FactoredGroup {
 }
 
 impl FactoredGroup {
-    /// Room for its factors: those of a tall matrix keep a factor for each column beside it.
+    /// Number of stored values of its factors; a tall matrix has an additional factor for each column.
     pub(crate) fn factor_len(&self) -> usize {
         let heads = usize::from(self.is_overdetermined()) * self.columns;
         self.rows * self.columns + heads
@@ -356,12 +357,12 @@ impl<C: Constant> Plan<C> {
         self.range = Range::Unresolved(low.max(from), high.min(to));
     }
 
-    /// Where and why the range ends, downwards and upwards.
+    /// The lower and the upper end of the range, with their causes.
     pub fn range_limits(&self) -> [Option<RangeLimit>; 2] {
         self.range_limits
     }
 
-    /// What changes of the first actuator's coordinate are compared with: 1 rad, or the mechanism's size, m.
+    /// The unit with which changes of the first actuator's coordinate are compared: 1 rad, or the mechanism's size, m.
     pub fn coordinate_unit(&self) -> f64 {
         match self.angular.first() {
             Some(false) => self.size,
@@ -369,7 +370,8 @@ impl<C: Constant> Plan<C> {
         }
     }
 
-    /// Where other branches come near the branch of the single actuator; where the pose repeats, in one period.
+    /// The places where other branches come near the branch of the single actuator. If the pose repeats, those of one
+    /// period.
     pub fn near_branches(&self) -> &[NearBranch] {
         &self.near_branches
     }
@@ -405,7 +407,7 @@ impl<C: Constant> Plan<C> {
         self.determinate.get(reaction).copied().unwrap_or(true)
     }
 
-    /// By an actuator that drives a length: its slide.
+    /// The slide of an actuator that drives a length.
     pub fn slide_of_actuator(&self, actuator: usize) -> Option<usize> {
         self.actuated_slides
             .iter()

@@ -51,7 +51,7 @@ impl Vec2<f64> {
 }
 
 impl<C: Constant> Vec2<C> {
-    /// The same constants as another number type.
+    /// The vector in another number type, as constants.
     #[inline(always)]
     #[track_caller]
     pub fn cast<T: Lift<C>>(self) -> Vec2<T> {

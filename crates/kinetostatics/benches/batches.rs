@@ -1,9 +1,9 @@
-//! m, ½m′ and one reaction pair by hand, one pose at a time and in batches; what a pose costs with the size of the
-//! mechanism and with the number of requested reactions. Values are held against each other and asserted; times
-//! are printed as ratios of one run.
+//! m, ½m′ and one reaction pair by hand, one pose at a time and in batches; the time of a pose as a function of the
+//! size of the mechanism and of the number of requested reactions. Values are compared and asserted; times are printed
+//! as ratios within one run.
 //!
-//! The subjects take turns, at other coordinates in every turn: in no order (steps of the golden angle), where the
-//! branches of the sine cannot be foreseen, and in order, as a sweep has them.
+//! The subjects take turns, at other coordinates in every turn: unordered (steps of the golden angle), so that the
+//! branches of the sine cannot be predicted, and ordered, as in a sweep.
 
 mod bench;
 mod closed_form_general;
@@ -129,7 +129,7 @@ fn compare(comparison: &Comparison, ordered: bool, threads: &Threads) {
     print_row(comparison.name, ordered, min_ns);
 }
 
-/// Nanoseconds, each beside its ratio to the closed form's.
+/// Prints times in ns, each with its ratio to the time of the closed form.
 fn print_row(name: &str, ordered: bool, min_ns: [f64; 6]) {
     let [
         closed_form_latency,
@@ -197,7 +197,7 @@ fn chain(n: usize) -> ExactModel {
     ExactModel::new(model).unwrap_or_else(|| stop("chain", "it has several actuators"))
 }
 
-/// What a group costs in chains of more and more of them.
+/// Time per group in chains of increasing length.
 fn chains(thread: &ThreadPool) {
     println!("\nm and m'/2 of a chain of N four-bars (A02): least ns a group");
     println!("{:>8}{:>16}{:>16}", "N", "one by one", "in batches");
@@ -242,7 +242,7 @@ fn chains(thread: &ThreadPool) {
     }
 }
 
-/// What it takes to describe and compile chains of more and more four-bars.
+/// Time to describe and compile chains of four-bars of increasing length.
 fn compilations() {
     println!("\nA chain of N four-bars (A02) compiled: least s, and us a four-bar");
     for n in COMPILED_CHAINS {
@@ -256,7 +256,7 @@ fn compilations() {
     }
 }
 
-/// What more requested reactions of the single-dwell cost; those of more are the same to the last bit.
+/// Time of requested reactions of the single-dwell. The values are the same to the last bit for any number of them.
 fn requested() {
     let case = Case::read("single-dwell");
     let all_reactions = case.scene.mechanism.reactions();

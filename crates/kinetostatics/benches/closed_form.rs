@@ -1,5 +1,4 @@
-//! The single-dwell mechanism in closed form, written by hand: what the general evaluator is
-//! timed against.
+//! The single-dwell mechanism in closed form, written by hand, as the reference for the times of the general evaluator.
 //!
 //! The mechanism is the reconstruction of `docs/theory.md`: A = (0, 0), O = (g, 0), Q = (x_Q, y_Q),
 //! crank AB = r, and three equal bars BC = CP = OC = l. Angles in rad, lengths in m, masses in kg.

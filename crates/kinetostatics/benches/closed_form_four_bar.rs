@@ -32,7 +32,7 @@ pub(crate) const SCENE: &str = r#"
     resist = { torque = ["ground", "rocker"], magnitude = -3.0 }
 "#;
 
-/// The same with a massless dyad on its coupler.
+/// The four-bar with a massless dyad on its coupler.
 pub(crate) fn with_a_dyad() -> String {
     let dyad = r#"
     arm.points = { E = [0, 0], F = [0.4, 0] }
@@ -64,7 +64,7 @@ pub(crate) struct FourBar {
     gravity: f64,
 }
 
-/// What moves a body: its unit direction, angular speed and acceleration.
+/// The rotation of a body: its unit direction, angular velocity and angular acceleration.
 type BodyRotation = ([f64; 2], f64, f64);
 
 impl FourBar {

@@ -30,7 +30,7 @@ pub(crate) struct SliderCrank {
     pub(crate) offset: f64,
     /// Crank, rod.
     pub(crate) bodies: [Body; 2],
-    /// Of the piston, kg.
+    /// Mass of the piston, kg.
     pub(crate) piston: f64,
 }
 

@@ -1,9 +1,9 @@
 //! Kinds of tables of m and ½m′ by size, cost of making and cost of a value: pieces of degree 3 to 9, and
 //! the global series evaluated as they stand (Fourier's over a turn, Chebyshev's over a part of it).
 //!
-//! All of them interpolate ½m′, and m is its integral. All are made as small as they can be with four times
-//! their largest error within the accuracy. The library's table is the one of degree 7; these have no turns
-//! to take off and no ends to look out for.
+//! All of them interpolate ½m′, and m is its integral. All are made as small as they can be with four times their
+//! largest error within the accuracy. The library's table is the one of degree 7; these neither reduce whole
+//! revolutions nor check their ends.
 
 use dwell_kinetostatics::{ExactModel, Model, ReducedModel, TableDomain, TabulatedModel};
 use dwell_scene::PlaneScene;
@@ -21,7 +21,7 @@ const CHECKED: usize = 4000;
 
 /// A table of m and ½m′.
 trait Kind: Sized {
-    /// Of so many cells or terms, over [0, length].
+    /// Builds a table of `size` cells or terms over [0, length].
     fn build(exact: &ExactModel, length: f64, size: usize) -> Self;
     fn at(&self, q: f64) -> [f64; 2];
     fn bytes(&self) -> usize;

@@ -1,4 +1,4 @@
-//! What one evaluation of the reduced model costs, against the same mechanism written by hand.
+//! Time of one evaluation of the reduced model, compared with the same mechanism written by hand.
 //!
 //! The machine's speed wanders, so the subjects take turns within one process, each at a new
 //! coordinate every time (steps of the golden angle); the ratios are those of the fastest turns.
@@ -159,8 +159,7 @@ fn reduced<'a>(name: &'static str, model: &'a Model) -> Subject<'a> {
     })
 }
 
-/// Holds the four-bar's forces against those by hand, and the models with and without what is skipped
-/// against each other to the last bit.
+/// Compares the four-bar's forces with those by hand, and the models with and without skipped parts to the last bit.
 fn agree_in_force(closed_form: &FourBar, models: &[&Model; 3]) {
     let (mut largest, mut difference) = (0.0_f64, 0.0_f64);
     for step in 0..1000 {
@@ -290,7 +289,7 @@ fn stages(model: &ExactModel) -> [Subject<'_>; 4] {
     ]
 }
 
-/// The same of a mechanism in space.
+/// The stages of an evaluation in space.
 fn stages_in_space(model: &ExactModel<space::Model>) -> [Subject<'_>; 4] {
     let plan = model.model().plan();
     let subject = |name, count: usize| {

@@ -1,8 +1,8 @@
-//! What one evaluation of a table costs, against a bare cubic lookup and against the exact model.
+//! Time of one evaluation of a table, compared with a bare cubic lookup and with the exact model.
 //!
 //! As in `reduced`, the subjects take turns within one process, each at a new coordinate every time; the
 //! ratios are those of the fastest turns. The bare lookup is the least that a table of cubic pieces can do:
-//! as many cells as the table has, no turns to take off, no end to look out for; it gives m and ½m′ (or
+//! as many cells as the table has, no whole revolutions to reduce, no ends to check. It gives m and ½m′ (or
 //! one of them), to some 1e-6 where the table gives 1e-12.
 
 use dwell_kinetostatics::{ExactModel, Model, ReducedModel, TableDomain, TabulatedModel};
@@ -17,7 +17,7 @@ const EVALUATIONS: usize = 4000;
 const ROUNDS: usize = 400;
 /// The golden section: an irrational part.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
-/// What the tables are asked for.
+/// The required accuracy of the tables.
 const ACCURACY: f64 = 1e-12;
 
 /// Values and slopes in equal cells, by the coefficients of a cubic in each.
@@ -109,7 +109,7 @@ fn main() {
     }
 }
 
-/// What making a table of m and ½m′ alone costs.
+/// Time to build a table of m and ½m′ alone.
 fn make(case: &str) {
     let exact = read(case, false);
     for accuracy in [1e-6, 1e-9, 1e-12] {

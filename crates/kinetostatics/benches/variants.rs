@@ -1,6 +1,6 @@
-//! What a variant costs whose numbers are filled into one structure: m, ½m′ and a reaction over the turn, the period's
-//! mean and all extremes; against the positions alone of a four-bar with NumPy, in batches of 1000 at 200 poses, in the same
-//! run. The first argument is a Python that has NumPy, `python3` unless given.
+//! Time of a variant whose numbers are filled into one structure: m, ½m′ and a reaction over the turn, the mean of the
+//! period and all extremes. It is compared with the positions alone of a four-bar with NumPy, in batches of 1000 at 200
+//! poses, in the same run. The first argument is a Python that has NumPy, `python3` unless given.
 
 mod bench;
 
@@ -107,7 +107,7 @@ struct NumPy {
 }
 
 impl NumPy {
-    /// None where that Python does not start or has no NumPy.
+    /// `None` if that Python does not start or has no NumPy.
     fn start(python: &str) -> Option<Self> {
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/four_bar_positions.py");
         let mut command = Command::new(python);

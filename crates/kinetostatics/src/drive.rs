@@ -9,14 +9,13 @@
 //! speed controller   τ = P e + I ∫e dt,    e = w − ṡ,    limited to ± limit          (2)
 //! ```
 //!
-//! Without inductance the current of (1) follows the voltage at once, so that the motor's torque falls
-//! linearly with its speed. A controller at its limit stops integrating an error that would drive it further
-//! beyond (anti-windup).
+//! Without inductance the current of (1) follows the voltage at once, so that the motor's torque falls linearly with
+//! its speed. A controller at its limit does not integrate an error that would drive it further beyond (anti-windup).
 
 use crate::load::{Load, LoadKind, Magnitude};
 use dwell_geometry::{Coordinate, Mechanism};
 
-/// What drives a coordinate s: an actuator's or any other.
+/// A drive of a coordinate s, of an actuator or any other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drive<C = Coordinate> {
     /// The name used in tables.
@@ -50,7 +49,7 @@ impl Drive {
 pub enum DriveKind<C = Coordinate> {
     /// A given couple or force on the coordinate, N·m or N.
     AppliedForce(Magnitude<C>),
-    /// A direct-current motor behind a gear.
+    /// A direct-current motor with a gear.
     Motor(Motor<C>),
     /// A proportional-integral controller of the coordinate's speed.
     SpeedController(SpeedController<C>),
@@ -67,7 +66,7 @@ impl<C> DriveKind<C> {
     }
 }
 
-/// How a kind of drive is named, and its state if it has one of its own.
+/// The names of a kind of drive, and its state, if it has one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DriveWords {
     /// The kind.
@@ -76,7 +75,7 @@ pub struct DriveWords {
     pub input: &'static str,
     /// The unit of its input.
     pub input_unit: &'static str,
-    /// Name, unit and meaning of its state; the meaning is empty where the name says it.
+    /// Name, unit and meaning of its state; the meaning is empty if the name states it.
     pub state: Option<[&'static str; 3]>,
 }
 
@@ -119,7 +118,7 @@ impl<C> DriveKind<C> {
     }
 }
 
-/// A direct-current motor behind a gear, eq. (1).
+/// A direct-current motor with a gear, eq. (1).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motor<C = Coordinate> {
     /// Voltage u, V.
@@ -134,8 +133,8 @@ pub struct Motor<C = Coordinate> {
     pub gear_ratio: f64,
     /// Moment of inertia of the rotor, J, kg m².
     pub rotor_inertia: f64,
-    /// Whether voltage, torque constant and resistance are a torque–speed line written as a circuit: then they, the current and what they make
-    /// of power and losses are no quantities of the motor.
+    /// Whether voltage, torque constant and resistance are a torque–speed line written as a circuit. Then they, the current, and the power
+    /// and losses derived from them are no quantities of the motor.
     pub is_torque_speed_line: bool,
 }
 

@@ -18,7 +18,7 @@ pub enum ModelError {
     /// A reaction that no joint of the mechanism has, or that a model does not compute.
     #[error("the mechanism has no such reaction: {0:?}")]
     Reaction(Reaction),
-    /// Not one mass for each body, or one that is negative or not finite.
+    /// The number of masses differs from that of the bodies, or a mass is negative or not finite.
     #[error("the masses do not fit the bodies")]
     Masses,
     /// A moment of inertia over the angle of a body that does not fit the mechanism.
@@ -26,7 +26,7 @@ pub enum ModelError {
     VaryingInertia {
         /// The body.
         body: BodyId,
-        /// What is wrong with it.
+        /// The fault.
         what: &'static str,
     },
 }
@@ -37,7 +37,7 @@ pub enum ModelError {
 pub struct LoadError {
     /// Index of the load.
     pub load: usize,
-    /// What is wrong with it.
+    /// The fault.
     pub what: &'static str,
 }
 

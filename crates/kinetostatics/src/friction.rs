@@ -6,12 +6,11 @@
 //! φ = µ sign(v) or µ tanh(v/v₀) of a friction,    φ = −tan α of a separating force
 //! ```
 //!
-//! with g the force times the radius in a pin, the sum of the forces on the ends of a guide, or the absolute tooth
-//! force (in space g and φ are those of `space/friction.rs`); R⁰ the reactions without these loads and C what a unit of each adds to them. A separating force adds nothing
-//! to tooth forces, but to the reactions on which friction depends. Where coordinates are
-//! free, R⁰ and C include the effect of their accelerations. Newton's method solves (1) from F = 0. The
-//! determinant of its Jacobian is 1 without friction; where it is no longer positive the mechanism jams:
-//! the same state has two accelerations, or none.
+//! with g the force times the radius in a pin, the sum of the forces on the ends of a guide, or the absolute tooth force (in space g and φ
+//! are those of `space/friction.rs`); R⁰ the reactions without these loads, and C the contributions of a unit of each load to them. A
+//! separating force adds nothing to tooth forces, but to the reactions on which friction depends. Where coordinates are free, R⁰ and C
+//! include the effect of their accelerations. Newton's method solves (1) from F = 0. The determinant of its Jacobian is 1 without friction;
+//! if it is not positive, the mechanism jams: the same state has two accelerations, or none.
 
 use crate::error::{KinetostaticsError, Result};
 use crate::load::{Friction, FrictionContact, Load};
@@ -43,15 +42,15 @@ pub(crate) struct DependentLoad<L = ReactionLaw, const N: usize = 2> {
     pub(crate) law: L,
 }
 
-/// What is known of a load that depends on reactions, beside its own law.
+/// The state of a load that depends on reactions: the quantity that is given in addition to its law.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum FrictionState<T> {
     /// Its factor φ follows from the speed of its surfaces; at rest a friction without regularisation is zero.
     #[default]
     BySpeed,
-    /// Its factor φ: surfaces that slide one way, or are about to.
+    /// Its factor φ, for surfaces that slide in one direction or are about to.
     Factor(f64),
-    /// Its force itself, N·m or N: surfaces that hold.
+    /// Its force, N·m or N, for surfaces that stick.
     Force(T),
 }
 
@@ -113,7 +112,7 @@ impl FrictionContact {
 /// Working memory of [`solve`].
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FrictionWorkspace<T> {
-    /// By load: what is known of it.
+    /// The state of each load.
     pub(crate) known: Vec<FrictionState<T>>,
     /// All φ are multiplied by it: 1, but where the effect of their rounding is estimated.
     pub(crate) factor_scale: f64,
@@ -229,7 +228,7 @@ pub(crate) fn required_reactions(mechanism: &Mechanism, load: &Load) -> Vec<Reac
 }
 
 /// Solves (1): `by_speed` yields φ of a load from the speed of its surfaces, `frictionless` are the reactions without these
-/// loads, `responses[j]` what a unit of load j adds to each. The forces are then in `workspace.force`.
+/// loads, `responses[j]` the contribution of a unit of load j to each. The forces are then in `workspace.force`.
 ///
 /// # Errors
 /// [`KinetostaticsError::SelfLocking`] where there is no unique solution.

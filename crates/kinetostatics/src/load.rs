@@ -37,7 +37,7 @@ use dwell_laws::{Expression, Law};
 pub struct Load<K = LoadKind, C = Coordinate> {
     /// The name a table uses.
     pub name: String,
-    /// Where it acts, and what its magnitude means.
+    /// The place of the load and its strength law, which gives the meaning of the magnitude.
     pub kind: K,
     /// Its magnitude.
     pub magnitude: Magnitude<C>,
@@ -96,7 +96,7 @@ pub enum Signal<C = Coordinate> {
     Time,
     /// A coordinate, rad or m.
     Value(C),
-    /// Its speed, rad/s or m/s.
+    /// The velocity of a coordinate, rad/s or m/s.
     Velocity(C),
 }
 
@@ -143,8 +143,8 @@ impl Load {
         by_kind.chain(self.magnitude.angle_pairs()).collect()
     }
 
-    /// The bodies it acts on and those whose motion its magnitude depends on. Gravity acts on those
-    /// with mass, which are needed anyway.
+    /// The bodies on which it acts, and those on whose motion its magnitude depends. Bodies with mass, on which gravity
+    /// acts, are omitted, because they are always needed.
     pub fn bodies(&self, mechanism: &Mechanism) -> Vec<BodyId> {
         let mut bodies = self.kind.bodies().to_vec();
         for signal in self.magnitude.signals() {

@@ -81,7 +81,7 @@ impl Model {
     }
 
     /// Compiles the requested reactions and those on which the magnitudes of the loads depend. A separating force
-    /// does no work, so that only reactions depend on it: where none is computed, it stays zero.
+    /// does no work, so that only reactions depend on it. If none is computed, it stays zero.
     fn compile_reactions(&mut self, requested: &[Reaction]) {
         let depends_on_reactions =
             !requested.is_empty() || self.loads().iter().any(|load| load.friction().is_some());
@@ -100,9 +100,9 @@ impl Model {
         self.reactions = reactions;
     }
 
-    /// The same model without the groups on which no inertia, no load and none of the bodies `wanted`
+    /// This model without the groups on which no inertia, no load and none of the bodies `wanted`
     /// depends; they are [`Plan::pruned_groups`]. The results of the others are the same to the last bit. Nothing acts
-    /// on the pruned groups, so their reactions are zero. The range stays that of the whole mechanism.
+    /// on the pruned groups, so their reactions are zero. The range is still that of the whole mechanism.
     #[must_use]
     pub fn pruned_for(self, wanted: &[BodyId]) -> Self {
         let loads = self.loads().iter();
@@ -111,8 +111,7 @@ impl Model {
         self.retain_bodies(&needed)
     }
 
-    /// The same mechanism for its inertia alone: no reaction, no load, and only the groups on which a body with
-    /// inertia depends.
+    /// The model of the inertia alone: no reaction, no load, and only the groups on which a body with inertia depends.
     pub(crate) fn inertia_only(&self) -> Self {
         let mut model = self.clone();
         model.loads = CompiledLoads::default();
@@ -130,7 +129,7 @@ impl Model {
         self
     }
 
-    /// The same model for these reactions instead of those that were requested.
+    /// This model with these requested reactions instead of its own.
     ///
     /// # Errors
     /// [`ModelError::Reaction`] for a reaction that no joint of the mechanism has.
@@ -140,14 +139,14 @@ impl Model {
         Ok(self)
     }
 
-    /// The same model with no requested reaction.
+    /// This model without requested reactions.
     pub fn without_reactions(&self) -> Self {
         let mut model = self.clone();
         model.compile_reactions(&[]);
         model
     }
 
-    /// The same model for the responses to a unit of each load alone: no friction is solved, and no reaction is computed for it besides
+    /// This model prepared only for the responses to a unit of each load: friction is not solved, and no reactions are computed besides
     /// the requested ones.
     #[must_use]
     pub fn for_unit_loads(mut self) -> Self {
@@ -214,8 +213,8 @@ impl Model {
         Ok(())
     }
 
-    /// Σ m v² + I ω² and Σ m v·a + I ω α of some states of the bodies: at unit speed and zero
-    /// acceleration of one coordinate, m and ½m′.
+    /// Σ m v² + I ω² and Σ m v·a + I ω α of the given states of the bodies. At unit speed and zero acceleration of one
+    /// coordinate these are m and ½m′.
     pub fn inertia_sums<T: Scalar>(&self, states: &BodyStates<T>) -> [T; 2] {
         let (mut energy, mut power) = (T::from_f64(0.0), T::from_f64(0.0));
         for [of_mass, of_inertia, power_of_mass, power_of_inertia] in self.inertia_terms(states) {

@@ -2,7 +2,7 @@
 //! carried down the spanning tree, the multipliers of the groups, and from these the actuators' actions and the
 //! reactions.
 //!
-//! A pass knows a [`PassModel`] and no more: what a model computes with it is in [`crate::model`].
+//! A pass depends on a [`PassModel`] only; the computations of a model with it are in [`crate::model`].
 
 mod acceleration;
 mod bodies;
@@ -22,7 +22,7 @@ use dwell_geometry::{Mechanism, Plan, Vec2};
 use dwell_numerics::{Constant, Lift, Scalar};
 use replaced_vectors::{replace_vector, vector_to};
 
-/// What a pass reads of a model: the plan, the inertia of the bodies, and where the reactions come from.
+/// The parts of a model that a pass reads: the plan, the inertia of the bodies, and the sources of the reactions.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PassModel<C = f64> {
     pub(crate) plan: Plan<C>,
@@ -89,8 +89,8 @@ impl PassModel {
 }
 
 impl<C: Constant + Scalar> PassModel<C> {
-    /// Takes other masses, and the dimensions that its plan has by now; false where the structure has no place for them:
-    /// for the mass of a body that had none, or for a centre of mass beside an origin.
+    /// Sets other masses, and takes over the dimensions of its plan. Returns false if the structure has no place for
+    /// them: for the mass of a massless body, or for a centre of mass away from an origin.
     pub(crate) fn set_masses(&mut self, masses: &[Mass<C>]) -> bool {
         let mut fits = true;
         let mut with_mass = 0;

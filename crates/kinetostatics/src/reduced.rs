@@ -57,8 +57,8 @@ pub trait ReducedModel: Sync {
     /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
     fn inertia(&self, q: f64, work: &mut Self::Workspace) -> PositionResult<(f64, f64)>;
 
-    /// The turns of the mechanism after [`ReducedModel::inertia`], as [`ReducibleModel::unit_turns`] gives them; none of a table, which
-    /// knows no positions.
+    /// The turns of the mechanism after [`ReducedModel::inertia`], as in [`ReducibleModel::unit_turns`]; empty for a table, which has
+    /// no positions.
     fn unit_turns(&self, _work: &Self::Workspace) -> Vec<[f64; 2]> {
         Vec::new()
     }
@@ -93,7 +93,7 @@ pub struct ExactWorkspace<R = Workspace<f64>, D = Workspace<Dual>> {
 #[derive(Debug, Clone)]
 pub struct ExactModel<M = Model> {
     model: M,
-    /// The same mechanism without reactions: enough for the equation of motion.
+    /// The model without reactions, sufficient for the equation of motion.
     inertia_model: M,
 }
 

@@ -1,4 +1,4 @@
-//! What can be reduced to one coordinate: the coefficients, and the mechanisms that yield them.
+//! The coefficients of a reduced model, and the trait of the mechanisms that yield them.
 
 use crate::error::PositionResult;
 use crate::pass::InverseDynamics;
@@ -20,7 +20,7 @@ pub struct Coefficients<T = f64> {
 }
 
 impl<T: Scalar> Coefficients<T> {
-    /// A buffer for so many reactions.
+    /// A buffer for the given number of reactions.
     pub fn buffer(reactions: usize) -> Self {
         let zeros = vec![T::from_f64(0.0); reactions];
         Self {
@@ -53,11 +53,11 @@ pub trait ReducibleModel: Sync + Sized {
     /// The range of the coordinate.
     fn range(&self) -> Range;
 
-    /// The same, prepared for its reduced coefficients: whatever makes them cheap is found once.
+    /// This model, prepared for its reduced coefficients, so that their evaluation is cheap.
     #[must_use]
     fn for_coefficients(self) -> Self;
 
-    /// The same without reactions and whatever else m and ½m′ do not need.
+    /// This model without reactions and other parts that m and ½m′ do not need.
     #[must_use]
     fn for_inertia(&self) -> Self;
 

@@ -1,8 +1,8 @@
 //! Estimates of the rounding errors of a result: it is evaluated again in double-double numbers, of 32 digits.
 //!
-//! The estimate is the difference of both, plus one unit in the last place of the result, because evaluating twice does
-//! not show the rounding of lengths and masses when the model is compiled. Near a jam that rounding is amplified: there the
-//! change by another rounding of the friction coefficients is added.
+//! The estimate is the difference of both, plus one unit in the last place of the result, because evaluating twice does not
+//! show the rounding of lengths and masses when the model is compiled. Near a jam this rounding is amplified; the estimate
+//! there includes the change by another rounding of the friction coefficients.
 
 use crate::error::KinetostaticsError;
 use crate::model::{MachineModel as _, Model, Workspace};
@@ -75,10 +75,10 @@ impl Model {
         Ok(())
     }
 
-    /// Estimates into `errors` (N·m or N) the rounding errors of the `result` that
-    /// [`Model::kinetostatics`] found in a state of motion. The laws of loads and couplings are
-    /// evaluated in plain numbers in both. Where friction jams the mechanism in 32 digits alone, or by a rounding of its
-    /// coefficients, nothing is known of the result: the errors are as large as the values.
+    /// Estimates into `errors` (N·m or N) the rounding errors of the `result` of [`Model::kinetostatics`] in a state of
+    /// motion. The laws of loads and couplings are evaluated in plain numbers in both. If friction jams the mechanism
+    /// only in 32 digits, or only after a rounding of its coefficients, the result is unknown: the errors are as large
+    /// as the values.
     ///
     /// # Errors
     /// As [`Model::kinetostatics`].

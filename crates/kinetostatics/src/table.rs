@@ -1,13 +1,13 @@
-//! Tables of the reduced model: m, ½m′, a, b, w and c as piecewise polynomials of the coordinate, in place
-//! of the mechanism.
+//! Tables of the reduced model: m, ½m′, a, b, w and c as piecewise polynomials of the coordinate, which replace the
+//! mechanism.
 //!
 //! The number of cells follows from the decay of the coefficients of a global series (`sizing`:
 //! trigonometric over full revolutions, Chebyshev's over a limited domain); values come from cells of equal
 //! size at a constant cost (`piecewise`); the error is measured, not estimated (`bound`).
 //!
-//! A limited range ends at limit positions, where all coefficients grow without bound, so a table covers an inner
-//! part of it. Outside its domain it returns an error: a table that is read from a file has no mechanism to
-//! evaluate instead, and a motion that passed from one to the other would change its energy.
+//! A limited range ends at limit positions, where all coefficients grow without bound, so a table covers an inner part
+//! of it. Outside its domain it returns an error. A table from a file has no mechanism to evaluate instead, and a
+//! motion that passed from table to mechanism would change its energy.
 
 mod bound;
 mod build;
@@ -37,7 +37,7 @@ pub type Result<T, E = TableError> = std::result::Result<T, E>;
 pub enum TableDomain {
     /// All revolutions of a mechanism that turns fully; of a limited range all but 2 % of it at each end.
     Full,
-    /// From one coordinate to another, rad or m.
+    /// The interval between two coordinates, rad or m.
     Between(f64, f64),
 }
 
@@ -106,7 +106,7 @@ impl fmt::Display for TableQuantity {
 /// Why there is no table.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum TableError {
-    /// An accuracy that cannot be kept in double precision, or none at all.
+    /// An accuracy that double precision cannot reach, or an invalid one.
     #[error("a table's accuracy is between 1e-14 and 1e-2, not {accuracy:e}")]
     Accuracy {
         /// The one requested.
@@ -148,7 +148,7 @@ pub enum TableError {
         what: TableQuantity,
         /// The best bound that was reached, as a part of the scale.
         reached: f64,
-        /// What was asked for.
+        /// The required accuracy.
         accuracy: f64,
     },
     /// A coefficient varies within too small a part of the interval.
@@ -175,10 +175,10 @@ impl From<PositionError> for TableError {
 pub struct Bound {
     /// The coefficient.
     pub quantity: TableQuantity,
-    /// Its scale: its largest value (of one that nearly vanishes, a thousandth of the
-    /// largest of its kind), in its own unit.
+    /// Its scale in its own unit: its largest value, or, if it nearly vanishes, a thousandth of the largest of its
+    /// kind.
     pub scale: f64,
-    /// Its error is at most this part of the scale.
+    /// The bound of its error, relative to the scale.
     pub error: f64,
 }
 
@@ -248,7 +248,7 @@ impl TabulatedModel {
         Some(self.inertia.grid.revolutions).filter(|&revolutions| revolutions > 0)
     }
 
-    /// Its domain, rad or m; of a mechanism that turns fully, one period.
+    /// Its domain, rad or m; one period if the mechanism turns fully.
     pub fn domain(&self) -> [f64; 2] {
         self.inertia.grid.domain()
     }
@@ -263,7 +263,7 @@ impl TabulatedModel {
         self.bounds.iter().fold(0.0, |max, b| max.max(b.error))
     }
 
-    /// Cells of m and ½m′, of the reactions, of the loads; none where there are none.
+    /// The number of cells of m and ½m′, of the reactions, and of the loads; zero without reactions or loads.
     pub fn cells(&self) -> [usize; 3] {
         let (reactions, loads) = (self.reactions.cells(), self.loads.cells());
         [self.inertia.cells(), reactions, loads]

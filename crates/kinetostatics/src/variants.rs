@@ -2,7 +2,7 @@
 //!
 //! The numbers of a variant are filled into the model, and its turn is evaluated several poses side by side. Whether the
 //! variant is on the assembly branch of the model, and whether its actuator turns fully on it, is checked on its own
-//! poses; what these checks cannot decide has no turn here, and is to be compiled.
+//! poses; if these checks cannot decide, the variant has no turn here, and the caller must compile it.
 
 mod loads;
 mod search;
@@ -28,26 +28,26 @@ pub struct VariantModel {
     loaded: Option<LoadedModel>,
 }
 
-/// The same model under loads.
+/// The model under loads.
 #[derive(Debug, Clone)]
 struct LoadedModel {
     model: Model,
-    /// The constant velocity at which the forces over the turn are wanted, rad/s; none where they are not.
+    /// The constant velocity at which the forces over the turn are wanted, rad/s; `None` if they are not.
     velocity: Option<f64>,
 }
 
 /// A variant that is on the assembly branch of its model and turns fully.
 #[derive(Debug, Clone, Copy)]
 pub struct TurningVariant<'a> {
-    /// What is known of its turn.
+    /// The results over its turn.
     pub turn: &'a Turn,
-    /// The model under loads with the numbers of this variant, where there is one.
+    /// The model under loads with the numbers of this variant, if the variants have loads.
     pub loaded: Option<&'a Model>,
 }
 
 impl VariantModel {
     /// The variants of a model that was compiled for numbers that do not coincide by chance: whatever vector or first
-    /// moment is zero in it has to be zero in all. None where they need a compilation each: loads, varying inertias,
+    /// moment is zero in it has to be zero in all. `None` if they need a compilation each: loads, varying inertias,
     /// couplings, groups without a closed form, an actuator that does not turn fully, approximate travels.
     pub fn new(model: Model) -> Option<Self> {
         let supported = model.plan().supports_variants(model.mechanism())
@@ -61,11 +61,10 @@ impl VariantModel {
         })
     }
 
-    /// The same variants with forces under loads: the actuator force and these reactions over a turn at a constant
-    /// `velocity` (rad/s, zero for statics) become a part of [`Turn`]; without one the variants' [loaded
-    /// models](TurningVariant::loaded) alone are filled in. None where a variant needs a compilation each: friction, teeth with
-    /// a pressure angle, drives, loads that count the revolutions of an angle; and over the turn, magnitudes that are not
-    /// constant.
+    /// These variants with forces under loads: the actuator force and these reactions over a turn at a constant `velocity`
+    /// (rad/s, zero for statics) become a part of [`Turn`]; without one the variants' [loaded models](TurningVariant::loaded)
+    /// alone are filled in. `None` if each variant must be compiled, as for friction, teeth with a pressure angle, drives,
+    /// loads that count the revolutions of an angle; and over the turn, magnitudes that are not constant.
     #[must_use]
     pub fn with_loads(
         mut self,
@@ -92,7 +91,7 @@ impl VariantModel {
     }
 
     /// The numbers of a mechanism with these masses and loads, in SI: its dimensions, then mass, centre and moment of
-    /// inertia of each body, then those of the loads where the variants have some. None where it has another structure.
+    /// inertia of each body, then those of the loads, if the variants have any. `None` if it has another structure.
     pub fn numbers(
         &self,
         mechanism: &Mechanism,
@@ -119,9 +118,9 @@ impl VariantModel {
         self.inertial_numbers() + of_loads
     }
 
-    /// Evaluates the turns of some variants in one thread. `fill` writes the numbers of a variant, as [`numbers`](Self::numbers)
-    /// gives them, and returns the coordinate (rad) at which m is wanted besides; `done` takes the variant, or none where it
-    /// has to be compiled.
+    /// Evaluates the turns of some variants in one thread. `fill` writes the numbers of a variant, in the order of
+    /// [`numbers`](Self::numbers), and returns an additional coordinate (rad) at which m is evaluated; `done` takes the variant,
+    /// or `None` if it must be compiled.
     pub fn turns(
         &self,
         variants: std::ops::Range<usize>,
@@ -141,7 +140,7 @@ impl VariantModel {
 }
 
 impl Model {
-    /// Takes the numbers of a variant; false where they do not fit the structure or are no mass properties.
+    /// Sets the numbers of a variant; returns false if they do not fit the structure or are not valid mass properties.
     fn set_numbers(&mut self, numbers: &[f64]) -> bool {
         let at = numbers.len() - PER_BODY * self.masses.len();
         let (dimensions, masses) = numbers.split_at(at);

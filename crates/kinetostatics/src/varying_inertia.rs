@@ -1,28 +1,29 @@
-//! Bodies whose moment of inertia is a function of their angle: what stands for a mechanism of which only its reduced inertia
-//! at the driven body is known, from the runs of another program.
+//! Bodies whose moment of inertia is a function of their angle. Such a body represents a mechanism of which only the reduced
+//! inertia at the driven body is known, from the runs of another program.
 //!
 //! Such a body has the kinetic energy ½ I(θ) ω², so that a moment I α + ½ I′ ω² turns it (equation 1 of docs/theory.md).
 
 use dwell_geometry::{BodyId, Pose, Vec2};
 use dwell_numerics::{PiecewiseQuintic, Scalar};
 
-/// The moment of inertia of a body as a function of its angle from the ground, besides its own constant one.
+/// The moment of inertia of a body as a function of its angle from the ground, in addition to its constant one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VaryingInertia {
     /// The body.
     pub body: BodyId,
     /// I over the body's angle (rad), kg m².
     pub inertia: PiecewiseQuintic,
-    /// The reactions within the mechanism that it stands for.
+    /// The reactions within the mechanism that it represents.
     pub reactions: Vec<KnownReaction>,
 }
 
-/// A reaction a θ̈ + b θ̇² within a mechanism that a [`VaryingInertia`] stands for: of its own inertia and its drive alone.
+/// A reaction a θ̈ + b θ̇² within a mechanism that a [`VaryingInertia`] represents, caused by its inertia and its drive
+/// alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KnownReaction {
     /// Its name.
     pub name: String,
-    /// Whether it is a moment (N m), else a force (N).
+    /// Whether it is a moment (N m); otherwise it is a force (N).
     pub is_moment: bool,
     /// a over the body's angle, kg m or kg m².
     pub a: PiecewiseQuintic,
@@ -31,8 +32,8 @@ pub struct KnownReaction {
 }
 
 impl KnownReaction {
-    /// Its value at an angle (rad), angular velocity (rad/s) and angular acceleration (rad/s²), N or N·m; NaN where it is not
-    /// known.
+    /// Its value at an angle (rad), angular velocity (rad/s) and angular acceleration (rad/s²), N or N·m; NaN if it is
+    /// unknown.
     pub fn value(&self, angle: f64, velocity: f64, acceleration: f64) -> f64 {
         let at = |of: &PiecewiseQuintic| value_at(of, angle)[0];
         at(&self.a) * acceleration + at(&self.b) * velocity * velocity

@@ -229,7 +229,8 @@ D = { coefficient = 0.1, radius = 0.1 }
     assert_eq!(spent, 0);
 }
 
-/// Loads in space at a state of motion, with a column of the mass matrix and the response to each load alone: what a machine needs.
+/// Loads in space at a state of motion, with a column of the mass matrix and the response to each load alone: as a machine needs
+/// them.
 #[test]
 fn machines_in_space_allocate_nothing() {
     let path = concat!(

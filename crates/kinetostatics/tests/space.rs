@@ -44,7 +44,7 @@ const RADII: [f64; 3] = [0.03, 0.04, 0.05];
 /// About the axis: of the left and the right side gear, and of the cage with the planet turning with it (kg m²):
 /// A = I_c + m_p h² + I_t.
 const INERTIAS: [f64; 3] = [0.0011, 0.0013, 0.004 + 0.3 * 0.05 * 0.05 + 0.0002];
-/// Of the planet about its own axis, kg m².
+/// Moment of inertia of the planet about its own axis, kg m².
 const PLANET: f64 = 0.0003;
 
 /// θ_c = (l + r)/2 and θ_p = (l − r) b/2a, so T = ½ I_l l̇² + ½ I_r ṙ² + ½ A θ̇_c² + ½ I_p θ̇_p².

@@ -88,7 +88,7 @@ fn reduced_parameters_are_those_of_the_kinetic_energy() {
     }
 }
 
-/// What the actuator does is the change of ½ (0.25 + I) ω².
+/// The power of the actuator is the rate of ½ (0.25 + I) ω².
 #[test]
 fn power_is_the_rate_of_the_kinetic_energy() {
     let model = model(&[varying()]).unwrap();

@@ -1,4 +1,4 @@
-// The list of keys that may be written where the cursor is.
+// The list of keys that are allowed at the cursor.
 
 const LONGEST_LIST = 12;
 
@@ -17,7 +17,7 @@ class Completion {
 
   get isOpen() { return !this.list.hidden; }
 
-  // Shows what fits; without a word only if `asked`.
+  // Shows the fitting keys. Before the first letter of a word it shows them only if `asked`.
   update(asked) {
     const { editor } = this;
     const at = editor.area.selectionStart;
@@ -67,7 +67,7 @@ class Completion {
     this.editor.showHint();
   }
 
-  // What the chosen key means.
+  // The meaning of the chosen key.
   get meaning() { return Schema.sentence(this.choices[this.chosen]); }
 
   accept(k) {
@@ -80,7 +80,7 @@ class Completion {
 
   close() { this.list.hidden = true; }
 
-  // Whether the key was for the list.
+  // Handles a pressed key; returns whether the list used it.
   keyDown(event) {
     if (!this.isOpen) return false;
     const acts = {

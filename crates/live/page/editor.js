@@ -1,9 +1,9 @@
-// The scene's text: a text area over a copy of its text that is coloured, with what is wrong underlined.
+// The text of the scene: a text area over a coloured copy of its text, in which errors are underlined.
 
-// What has a colour of its own.
+// Kinds of tokens with a colour.
 const COLOURED = new Set(['comment', 'header', 'key', 'string', 'number']);
-// A longer text, in characters, is shown without colours, completion and explanations: a million elements end the tab. The longest
-// case has a quarter of it.
+// Longer texts (in characters) have no colours, completion or explanations, because a million elements crash the tab. The longest
+// case has a quarter of this length.
 const LONGEST_COLOURED = 50000;
 
 class Editor {
@@ -11,12 +11,12 @@ class Editor {
   constructor(root, changed) {
     this.area = root.querySelector('textarea');
     this.colours = root.querySelector('pre');
-    // A last line that is empty has its height, too.
+    // The line feed gives an empty last line its height.
     this.colours.append('\n');
     this.hint = root.querySelector('[data-part=hint]');
     this.schema = null;
     this.messages = [];
-    // The text while a number slides: it is shown and computed, and typed when the slider is let go.
+    // The text while the slider of a number moves. It is shown and computed, and entered as an edit when the user releases the slider.
     this.sliding = null;
     this.changed = changed;
     this.completion = new Completion(this, root.querySelector('[data-part=completion]'));
@@ -33,7 +33,7 @@ class Editor {
 
   get text() { return this.sliding ?? this.area.value; }
 
-  // Shows another text, without a call of `changed`.
+  // Replaces the whole text without calling `changed`.
   open(text) {
     this.sliding = null;
     this.area.value = text;
@@ -50,12 +50,12 @@ class Editor {
     this.messages = [];
     this.draw();
     if (!this.isLong) this.completion.update(false);
-    // The event of the cursor comes only with the next frame of the browser.
+    // The browser sends `selectionchange` only with its next frame.
     this.showHint();
     this.changed(this.text);
   }
 
-  // Replaces a part of the text, as a keyboard would, so that it can be undone.
+  // Replaces a part of the text as typing would, so that the user can undo it.
   type(from, to, text) {
     this.area.focus();
     this.area.setSelectionRange(from, to);
@@ -65,7 +65,7 @@ class Editor {
     }
   }
 
-  // Shows a part of the text replaced, without typing it: after `setRangeText` the browser forgets all steps of undo.
+  // Shows the text with a part replaced, without editing it: `setRangeText` would clear the undo history of the browser.
   slide(from, to, text) {
     const typed = this.area.value;
     this.sliding = typed.slice(0, from) + text + typed.slice(to);
@@ -74,7 +74,7 @@ class Editor {
     this.changed(this.text);
   }
 
-  // Types what was slid to: one step of undo.
+  // Enters the number of the slider as one undo step.
   settle(from, to, text) {
     if (this.sliding === null) return;
     this.sliding = null;
@@ -82,7 +82,7 @@ class Editor {
     else this.edited();
   }
 
-  // Whether the scene is one in space: a point with three numbers.
+  // Whether the scene is in space, that is, whether it contains an array of three numbers.
   get inSpace() { return /=\s*\[\s*[-+\d.e_]+\s*,\s*[-+\d.e_]+\s*,\s*[-+\d.e_]+\s*\]/.test(this.text.replace(/#.*$/gm, '')); }
 
   show(messages) {
@@ -97,12 +97,12 @@ class Editor {
 
   draw() {
     this.paint(this.isLong ? [[this.text, '']] : this.parts());
-    // The colours are scrolled with the text, by its event: to ask where it is would lay out the page.
+    // The scroll event moves the colours with the text; reading the scroll position here would force a layout of the page.
     this.slider.place();
     this.completion.place();
   }
 
-  // The text in pieces, each with the classes of its look.
+  // The text in pieces, each with its CSS classes.
   parts() {
     const marks = this.messages.flatMap((message) => message.labels.map((label) => ({ ...label, severity: message.severity })));
     const { text } = this;
@@ -113,7 +113,7 @@ class Editor {
         const severity = hit.some((mark) => mark.severity === 'error') ? ' error' : hit.length ? ' warning' : '';
         const name = [role, token.kind].find((one) => COLOURED.has(one)) || '';
         const [last] = parts.slice(-1);
-        // What looks alike is one element: each costs layout and painting after every change.
+        // Neighbouring pieces with the same classes share one element, because every element costs layout and painting at each change.
         if (last && last[1] === name + severity) last[0] += text.slice(from, to);
         else parts.push([text.slice(from, to), name + severity]);
       }
@@ -121,7 +121,7 @@ class Editor {
     return parts;
   }
 
-  // Shows texts with their classes. Those before and after what has changed stay.
+  // Shows the pieces. Elements before and after the changed pieces are kept.
   paint(parts) {
     const spans = this.colours.children;
     const isSame = (span, [text, name]) => span.firstChild.nodeValue === text && span.className === name;
@@ -147,7 +147,7 @@ class Editor {
     this.completion.place();
   }
 
-  // Where a place of the text is on the screen, relative to the editor: at the character there, or behind the one before it.
+  // The position of an offset on the screen, relative to the editor, px: left of the character there, or right of the one before it.
   rectangle(offset) {
     const own = this.colours.parentElement.getBoundingClientRect();
     for (const [at, side] of [[offset, 'left'], [offset - 1, 'right']]) {
@@ -178,14 +178,14 @@ class Editor {
     if (event.key === ' ' && event.ctrlKey) {
       event.preventDefault();
       this.completion.update(true);
-      // Where there is no key to be completed: the slider of a number, by the keyboard.
+      // Without a key to complete, the shortcut opens the slider of the number at the cursor.
       if (this.completion.isOpen) return;
       this.slider.openAt(this.area.selectionStart);
       this.slider.focus();
     }
   }
 
-  // What the key chosen in the list means; else what is wrong where the cursor is, and what the key there means.
+  // Shows the meaning of the key chosen in the list. Without a list, it shows the error at the cursor and the meaning of the key there.
   showHint() {
     if (this.completion.isOpen) {
       this.hint.className = '';
@@ -201,7 +201,7 @@ class Editor {
 
   meaningAt(offset) {
     if (!this.schema || this.isLong) return '';
-    // To the end of the word in which the cursor is.
+    // Extends the place to the end of the word at the cursor.
     const rest = /^[\p{L}\p{N}_-]*/u.exec(this.text.slice(offset))[0].length;
     const place = placeAt(this.text, offset + rest);
     if (!place) return '';
@@ -220,7 +220,7 @@ class Editor {
   }
 }
 
-// The parts of a token between the ends of marks.
+// Cuts a token at the ends of the marks.
 function cut(token, marks) {
   const ends = new Set([token.from, token.to]);
   for (const mark of marks) {

@@ -1,9 +1,9 @@
-// A worker with the module, from outside: one request after the other, each with a time limit. A worker that takes longer is ended,
-// and the next request starts another.
+// The main thread's side of a worker with the module. It sends one request after the other, each with a time limit. A worker that
+// exceeds its limit is terminated, and the next request starts a new one.
 
 class Engine {
-  // `module.packed` is a promise of the module's bytes; what the first worker has compiled is for all. `script` is the text of the
-  // worker.
+  // `module.packed` is a promise of the bytes of the module; all workers share the module that the first of them compiles. `script` is
+  // the text of the worker.
   constructor(module, script) {
     this.module = module;
     this.url = URL.createObjectURL(new Blob([script], { type: 'text/javascript' }));
@@ -12,7 +12,7 @@ class Engine {
     this.count = 0;
   }
 
-  // The answer to a request as { answer, numbers, ms }. Fails with an error whose message is for people.
+  // The answer to a request as { answer, numbers, ms }. The promise is rejected with an error whose message is shown to the user.
   ask(request, seconds) {
     return this.queue(async () => {
       await this.ready();
@@ -22,7 +22,7 @@ class Engine {
     });
   }
 
-  // The text that was packed into a link. Needs no module.
+  // The text of a scene in a link; this needs no module.
   inflate(packed, most, seconds) {
     return this.queue(async () => {
       if (!this.worker) this.worker = new Worker(this.url);
@@ -30,7 +30,7 @@ class Engine {
     });
   }
 
-  // Ends what is running, if anything is.
+  // Terminates the worker if a request is running.
   stop() {
     if (this.reject) this.reject(new Error('stopped'));
   }
@@ -76,5 +76,5 @@ class Engine {
   }
 }
 
-// The bytes that an element of the page carries in Base64.
+// Decodes Base64.
 const carried = (text) => Uint8Array.from(atob(text.trim()), (c) => c.charCodeAt(0));

@@ -1,4 +1,4 @@
-// A scene in a link: compressed into the part of the address that is never sent to a server.
+// A scene in a link, compressed into the fragment of the address, which browsers do not send to a server.
 
 const LONGEST_SCENE = 1000000;
 
@@ -10,7 +10,7 @@ async function packScene(text) {
   return btoa(binary).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '');
 }
 
-// The compressed scene of a hash, or nothing.
+// The compressed scene of a fragment; null without a scene, empty if the scene is not valid Base64.
 function packedScene(hash) {
   const match = /[#&]scene=([\w-]+)/.exec(hash);
   if (!match) return null;

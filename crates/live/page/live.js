@@ -1,6 +1,6 @@
-// The page: the scene at the side, and its results, which follow every change.
+// The live page: the scene at the side, and its results, which are updated at every change.
 
-// Seconds. What follows a change must be quick; what is asked for may take longer.
+// Time limits in s: of results that follow every change, of results computed on request, and of unpacking a link.
 const FOLLOW_LIMIT = 5;
 const ASKED_LIMIT = 60;
 const LINK_LIMIT = 5;
@@ -28,7 +28,7 @@ class Live {
     this.files = new SceneFiles(this);
     this.command = 'motion';
     this.version = 0;
-    // Whether a scene was opened of which nothing has been shown yet.
+    // Whether no results of the opened scene have been shown yet.
     this.isOther = false;
     this.buttons = COMMANDS.map(([name, command]) => this.tab(name, command));
     document.querySelector('.live-tabs').append(...this.buttons);
@@ -59,7 +59,7 @@ class Live {
   follows(command) { return COMMANDS.find(([, name]) => name === command)[2]; }
 
   choose(command, quietly) {
-    // What was asked for and is not looked at any more is ended.
+    // A running computation on request stops when the user leaves its tab.
     if (!this.follows(this.command)) this.asked.stop();
     this.command = command;
     for (const button of this.buttons) button.setAttribute('aria-pressed', String(button.dataset.command === command));
@@ -69,7 +69,7 @@ class Live {
     else this.work(this.ask());
   }
 
-  // After every change: what follows is computed for the newest text, one after the other.
+  // Called after every change. `follow` computes one text after the other, and always continues with the newest.
   edited() {
     this.version += 1;
     this.files.keep();
@@ -79,7 +79,7 @@ class Live {
     this.work(this.busy);
   }
 
-  // Says in the document whether something is being computed.
+  // Marks the document as working until all tasks have ended.
   work(task) {
     this.working = (this.working || 0) + 1;
     document.body.dataset.state = 'working';
@@ -104,7 +104,7 @@ class Live {
     }
   }
 
-  // Runs what is computed on request only.
+  // Runs a command that is computed only on request.
   async ask() {
     const { command } = this;
     const { version } = this;
@@ -145,7 +145,7 @@ class Live {
     this.say('not computed');
   }
 
-  // What is shown belongs to the text before the change: it is dimmed, and cannot be saved. Of the scene before nothing is shown once another is opened.
+  // Marks the shown results as outdated: they are dimmed and cannot be saved. Results of a previously opened scene are hidden.
   old() {
     document.body.classList.add('live-old');
     document.body.classList.toggle('live-none', this.isOther);
@@ -190,7 +190,7 @@ class Live {
   }
 }
 
-// The module, packed: within the page, or beside it where the page is served.
+// The packed module: from an element of the page, or, on a server, from a file beside it.
 async function moduleBytes() {
   const { textContent, dataset } = element('live-module');
   if (!dataset.file) return carried(textContent);

@@ -1,14 +1,14 @@
-// Reads LZMA (https://www.7-zip.org/sdk.html, lzma-specification.txt): browsers unpack gzip only, whose memory of 32 kB sees no
-// two copies of a generic function. Variables have the names of the specification.
+// Unpacks LZMA (https://www.7-zip.org/sdk.html, lzma-specification.txt). Browsers unpack only gzip, whose window of 32 kB is too
+// short to find copies of generic functions. Variables have the names of the specification.
 
 const LZMA_HALF = 1024;
 const lzmaChances = (count) => new Uint16Array(count).fill(LZMA_HALF);
 
-// The content of a file in the format `.lzma`: properties, size of the dictionary, size of the content, and a range-coded stream.
+// The content of a `.lzma` file, which consists of properties, size of the dictionary, size of the content, and a range-coded stream.
 function unpackLzma(packed) {
   const header = new DataView(packed.buffer, packed.byteOffset, 13);
   const size = Number(header.getBigUint64(5, true));
-  // One of 2⁶⁴ − 1 means that it is unknown: such files are not made here.
+  // The build writes no files of unknown size (2⁶⁴ − 1).
   if (!(size <= 1e9)) throw new Error('the module is not packed as it should be');
   const out = new Uint8Array(size);
   const stream = lzmaStream(packed, header.getUint8(0), out);
@@ -16,7 +16,7 @@ function unpackLzma(packed) {
   return out;
 }
 
-// The range decoder: bits by their chances.
+// The range decoder, which decodes bits with their probabilities.
 function lzmaRange(packed, start) {
   let at = start;
   let range = 0xffffffff;
@@ -27,7 +27,7 @@ function lzmaRange(packed, start) {
     range = (range << 8) >>> 0;
     code = ((code << 8) | packed[at++]) >>> 0;
   };
-  // A bit whose chance is chances[k] / 2048 of being 0.
+  // A bit that is 0 with the probability chances[k] / 2048.
   function bit(chances, k) {
     const chance = chances[k];
     const bound = Math.imul(range >>> 11, chance) >>> 0;
@@ -47,7 +47,7 @@ function lzmaRange(packed, start) {
     }
     return is;
   }
-  // Bits of equal chances.
+  // Bits that are 0 or 1 with equal probability.
   function plain(count) {
     let value = 0;
     for (let k = 0; k < count; k++) {
@@ -59,7 +59,8 @@ function lzmaRange(packed, start) {
     }
     return value;
   }
-  // So many bits, each with the chances of those before it: the highest bit first, or the lowest.
+  // A number of `count` bits; the probability of each depends on the bits before it. `tree` starts with the highest bit, `reversed` with
+  // the lowest.
   function tree(chances, from, count) {
     let node = 1;
     for (let k = 0; k < count; k++) node = (node << 1) | bit(chances, from + node);
@@ -78,7 +79,7 @@ function lzmaRange(packed, start) {
   return { bit, plain, tree, reversed };
 }
 
-// The lengths of matches, from 2 on.
+// The lengths of matches, at least 2.
 function lzmaLengths({ bit, tree }) {
   const [choice, low, middle, high] = [2, 128, 128, 256].map(lzmaChances);
   return (posState) => {
@@ -106,7 +107,7 @@ function lzmaStream(packed, properties, out) {
     const from = 0x300 * (((place & ((1 << lp) - 1)) << lc) + (before >> (8 - lc)));
     let symbol = 1;
     if (state >= 7) {
-      // After a match the byte that would have followed it is likely to differ.
+      // After a match, the next byte probably differs from the byte that follows the copied ones.
       let match = out[place - reps[0] - 1];
       do {
         const expected = (match >> 7) & 1;
@@ -121,7 +122,7 @@ function lzmaStream(packed, properties, out) {
     state = state < 4 ? 0 : state < 10 ? state - 3 : state - 6;
   }
 
-  // How far back a match begins, less one.
+  // The distance back to the start of a match, minus one.
   function distance(length) {
     const slot = range.tree(slots, Math.min(length - 2, 3) << 6, 6);
     if (slot < 4) return slot;
@@ -131,7 +132,7 @@ function lzmaStream(packed, properties, out) {
     return base + range.plain(count - 4) * 16 + range.reversed(aligned, 0, 4);
   }
 
-  // Which of the last four distances: it becomes the last one.
+  // The index of one of the last four distances, which becomes the first of them.
   function repeated() {
     const which = !bit(isRepG0, state) ? 0 : !bit(isRepG1, state) ? 1 : !bit(isRepG2, state) ? 2 : 3;
     const one = reps[which];

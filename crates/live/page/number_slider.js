@@ -1,4 +1,4 @@
-// A slider under the number that was clicked.
+// A slider under a clicked number.
 
 const STEPS = 400;
 
@@ -29,7 +29,7 @@ class NumberSlider {
     if (!Number.isFinite(value)) return;
     this.from = found.from;
     this.to = found.to;
-    // From none to twice the number; about 0, one unit to each side. A whole number of counts stays one.
+    // The slider covers 0 to twice the number; for the number 0, it covers −1 to 1. Counts stay whole numbers.
     const size = Math.abs(value) || 1;
     this.low = value === 0 ? -1 : value - size;
     this.step = (2 * size) / STEPS;
@@ -51,7 +51,7 @@ class NumberSlider {
     this.input.setAttribute('aria-valuetext', written);
   }
 
-  // Types the number; the slider stays at it.
+  // Enters the number in the text and keeps the slider open.
   settle() {
     const { written, from, to } = this;
     if (written === null) return;
@@ -86,12 +86,12 @@ class NumberSlider {
 
 const decimalsOf = (text) => (/\.(\d*)/.exec(text) || ['', ''])[1].length;
 
-// Without zeros at its end.
+// The number as text without trailing zeros.
 function number(value, decimals) {
   if (Math.abs(value) >= 1e12 || (value !== 0 && Math.abs(value) < 1e-9)) return String(Number(value.toPrecision(6)));
   const text = value.toFixed(decimals);
   return text.includes('.') ? text.replace(/\.?0+$/, '') : text;
 }
 
-// Whether the number before `from` counts rows, as `points = 361` does.
+// Whether the number at `from` is a count, as in `points = 361`.
 const isCount = (text, from) => /(^|[\s{,])points\s*=\s*$/.test(text.slice(Math.max(0, from - 40), from));

@@ -1,13 +1,13 @@
-// Scenes from examples, files and links, and to files and links. The text is kept in the history of the tab: a reload does not lose
-// it, and going back leads to what was there before another scene was opened.
+// Opens scenes from examples, files and links, and saves them to files and links. The history of the tab holds the text: it survives a
+// reload, and the back button returns to the previous scene.
 
-// After so long without a change, ms: browsers limit how often the history may change.
+// Delay in ms between the last change and the update of the history, because browsers limit how often the history may change.
 const KEEP_AFTER = 300;
 
 class SceneFiles {
   constructor(live) {
     this.live = live;
-    // A page that was written anew, with another scene, begins with that.
+    // The scene in the page file, as JSON. If `dwell view` writes the file again with another scene, texts in the history are ignored.
     this.carried = element('live-scene').textContent;
     this.waiting = null;
     this.examples = JSON.parse(element('live-examples').textContent);
@@ -41,13 +41,13 @@ class SceneFiles {
     });
   }
 
-  // What is kept of this place in the history, or nothing.
+  // The text of the current history entry, or null.
   kept() {
     const { state } = history;
     return state && typeof state.scene === 'string' && state.carried === this.carried ? state.scene : null;
   }
 
-  // Keeps the text when it has not changed for a moment. The address then holds no other scene.
+  // Stores the text in the history after KEEP_AFTER, and removes a scene from the address.
   keep() {
     clearTimeout(this.waiting);
     this.waiting = setTimeout(() => this.keepNow(location.pathname + location.search), KEEP_AFTER);
@@ -58,18 +58,18 @@ class SceneFiles {
     try {
       history.replaceState({ scene: this.live.editor.text, carried: this.carried }, '', address);
     } catch {
-      // A text that is too long for the browser's history is not kept.
+      // The browser rejects texts that are too long for its history; they are not stored.
     }
   }
 
-  // Opens another scene, from which a step back leads to this one.
+  // Opens another scene in a new history entry.
   openNext(text) {
     this.keepNow(location.href);
     history.pushState(null, '', location.pathname + location.search);
     this.live.open(text);
   }
 
-  // That of the history; else that of the link; else that of the file; else the first example.
+  // The first scene: from the history, else from the link, else from the page file, else the first example.
   async firstScene() {
     const kept = this.kept();
     if (kept !== null) return kept;
@@ -78,7 +78,7 @@ class SceneFiles {
     return JSON.parse(element('live-scene').textContent) ?? this.examples[0].text;
   }
 
-  // The scene of the address, which then forgets it; nothing where there is none.
+  // The scene of the address, which is removed from the address; null if there is none.
   async linkedScene() {
     const packed = packedScene(location.hash);
     if (!packed) return null;

@@ -1,9 +1,9 @@
-// The keys of the format, from the schema that the program itself gives.
+// The keys of the scene format, from the JSON schema of the program.
 
 class Schema {
   constructor(schema) { this.root = schema; }
 
-  // The alternatives of a schema, without their grouping.
+  // All alternatives of a schema as a flat list.
   static alternatives(node) {
     if (!node || typeof node !== 'object') return [];
     const grouped = [...(node.anyOf || []), ...(node.oneOf || [])].filter((one) => one.type || one.anyOf || one.oneOf || one.enum);
@@ -11,7 +11,7 @@ class Schema {
     return [...own, ...grouped.flatMap((one) => Schema.alternatives(one))];
   }
 
-  // The tables that stand at a path; `inSpace` chooses the first step among scenes in the plane and in space.
+  // The schemas at a path. `inSpace` selects the schema of scenes in space instead of the one in the plane.
   at(path, inSpace) {
     let nodes = Schema.alternatives(this.root.anyOf[inSpace ? 1 : 0]);
     for (const key of path) {
@@ -24,7 +24,7 @@ class Schema {
     return nodes;
   }
 
-  // What may be written as a key at a place: { name, doc, example }, those that begin with its word first.
+  // The allowed keys at a place as { name, doc, example }. Keys that start with the word at the place come first.
   keysAt(place, inSpace) {
     const tables = this.at(place.path, inSpace).filter((node) => node.type === 'object');
     const fits = (node) => [...place.keys].every((key) => node.additionalProperties || Object.hasOwn(node.properties || {}, key));
@@ -40,13 +40,13 @@ class Schema {
     return [...known.values()].filter((key) => rank(key.name) < 2).sort((a, b) => rank(a.name) - rank(b.name));
   }
 
-  // The words that may be written as the value of a key, such as `mm`.
+  // The allowed words as values of a key, such as `mm`.
   wordsAt(place, inSpace) {
     const nodes = this.at([...place.path, ...place.key], inSpace);
     return nodes.flatMap((node) => node.enum || []).map((name) => ({ name: `"${name}"`, doc: '', example: '' }));
   }
 
-  // What a key means: the description of the last key of a path, or nothing.
+  // The description of the last key of a path, or null.
   describe(path, inSpace) {
     if (!path.length) return null;
     const name = path[path.length - 1];
@@ -59,7 +59,7 @@ class Schema {
     return null;
   }
 
-  // What a key means, in a line.
+  // The meaning of a key in one line.
   static sentence({ name, doc, example }) { return `${name}: ${doc}${example ? ` Example: ${example}` : ''}`; }
 
   static words(key) {
@@ -68,7 +68,7 @@ class Schema {
   }
 }
 
-// A value as TOML writes it in a line.
+// A value in one line of TOML.
 function inToml(value) {
   if (Array.isArray(value)) return `[${value.map(inToml).join(', ')}]`;
   if (value && typeof value === 'object') {

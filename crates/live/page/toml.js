@@ -1,4 +1,4 @@
-// The text of a scene as tokens: enough of TOML to colour it, to find its numbers, and to know in which table a place is.
+// Tokens of a scene. They cover as much of TOML as colours, number sliders, and the table at the cursor need.
 
 const TOKEN = new RegExp([
   '(?<comment>#[^\\n]*)',
@@ -10,7 +10,7 @@ const TOKEN = new RegExp([
   '(?<mark>[^])',
 ].join('|'), 'gu');
 
-// All tokens, one after the other without a gap: { kind, from, to, text }.
+// All tokens as { kind, from, to, text }, contiguous and in their order.
 function tokens(text) {
   const found = [];
   for (const match of text.matchAll(TOKEN)) {
@@ -22,8 +22,8 @@ function tokens(text) {
 
 const unquoted = (token) => (token.kind === 'string' ? token.text.replace(/^['"]+|['"]+$/g, '') : token.text);
 
-// Calls `each(token, role, place)` for every token, with its role ('header', 'key', 'value' or '') and the place where it stands:
-// { path: the keys of its table, keys: those that this table has so far, key: the key being written or valued }.
+// Calls `each(token, role, place)` for every token, with its role ('header', 'key', 'value' or '') and its place
+// { path: the keys of its table, keys: the keys so far in this table, key: the current key }.
 function follow(all, each) {
   const table = (path) => ({ kind: 'table', path, keys: new Set(), key: [], valued: false });
   let root = table([]);
@@ -50,7 +50,7 @@ function follow(all, each) {
       frame.key = [];
       frame.valued = false;
     } else if (role === 'key') {
-      // A number such as 1.5 is two keys.
+      // The number token of a dotted key such as 1.5 is added as one key.
       frame.key.push(unquoted(token));
     } else if (token.kind === 'mark') {
       mark(token.text, frames, () => { header = []; });
@@ -79,7 +79,7 @@ function mark(text, frames, startHeader) {
   }
 }
 
-// Where a place in the text is: { path, keys, key, valued, word, from, inHeader }; `word` is what stands before it from `from` on.
+// The place of an offset in the text: { path, keys, key, valued, word, from, inHeader }. `word` is the text from `from` to the offset.
 function placeAt(text, offset) {
   const before = tokens(text.slice(0, offset));
   const last = before[before.length - 1];

@@ -1,15 +1,17 @@
-// In a worker: the module, one instance of it, and one request at a time. A request that fails in the module costs the instance.
+// The worker: the module, one instance of it, and one request at a time. After a failure in the module the next request gets a new
+// instance.
 
 let module = null;
 let instance = null;
 
-// From the packed module, or from one that another worker has compiled.
+// Starts an instance of the packed module, or of a module that another worker has compiled.
 async function start({ packed, compiled }) {
   module = compiled || await WebAssembly.compile(unpackLzma(packed));
   instance = await WebAssembly.instantiate(module, {});
 }
 
-// Text in, text and numbers out. Memory may have moved after every call: views on it are made anew, and what is kept is copied.
+// Passes the text of a request to the module and returns text and numbers. Every call may move the memory, so views on it are created
+// after each call, and results are copied.
 function respond(request) {
   const { memory, room, respond: answer, text_bytes: textBytes, numbers, number_count: numberCount } = instance.exports;
   const bytes = new TextEncoder().encode(request);
@@ -21,7 +23,7 @@ function respond(request) {
   return { text: decoded, numbers: values };
 }
 
-// The text of a shared link, at most `most` bytes of it.
+// Unpacks the text of a shared link; longer texts than `most` bytes are an error.
 async function inflate(bytes, most) {
   const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw')).getReader();
   const parts = [];

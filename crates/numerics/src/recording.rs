@@ -1,8 +1,8 @@
-//! A number that writes down what is done with it. The model is evaluated once in it, through the lines that evaluate it
-//! everywhere, and what was written down is the exported code.
+//! A number type that records operations. The model is evaluated once with it, by the same source code as always, and
+//! the recorded operations are the exported code.
 //!
-//! Decisions are made by values, as everywhere; they are not written down. Code that was recorded at one coordinate is
-//! therefore that of another one only where all decisions are the same: [`record`] compares recordings at several.
+//! Decisions depend on values, as usual, and are not recorded. Therefore code recorded at one coordinate is valid at
+//! another one only if all decisions are the same: [`record`] compares recordings at several.
 
 use crate::scalar::{Constant, Lift, Scalar};
 use crate::straight_line::{Operand, Operation, OperationKind as Kind, StraightLine};
@@ -25,16 +25,16 @@ pub enum RecordingError<E> {
     Differs {
         /// The coordinates of a position, rad or m.
         first: Vec<f64>,
-        /// Those of another one.
+        /// The numbers of another recording.
         second: Vec<f64>,
     },
 }
 
-/// What is written down.
+/// The recorded operations.
 #[derive(Debug, Default)]
 struct Record {
     operations: Vec<Operation>,
-    /// Where an operation stands, so that each stands once.
+    /// The index of each operation, so that each is stored once.
     known: HashMap<(Kind, [OperandKey; 2]), usize>,
     /// Whether a function was met that has no operations.
     has_function: bool,

@@ -2,7 +2,7 @@
 
 use crate::real::Real;
 
-/// What an operation works on.
+/// An operand of an operation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Operand {
     /// A coordinate, by its place.
@@ -16,13 +16,13 @@ pub enum Operand {
 /// An operation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Operation {
-    /// What it does.
+    /// The kind of the operation.
     pub kind: OperationKind,
-    /// What it works on; an operation on one has it twice.
+    /// The operands; a unary operation has its operand twice.
     pub operands: [Operand; 2],
 }
 
-/// What an operation does with its operands.
+/// The kind of an operation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum OperationKind {
     /// A sum.
@@ -66,12 +66,12 @@ impl OperationKind {
 pub struct StraightLine {
     /// Each uses earlier ones only.
     pub operations: Vec<Operation>,
-    /// What is wanted.
+    /// The outputs.
     pub outputs: Vec<Operand>,
 }
 
 impl StraightLine {
-    /// The same without operations that no output needs.
+    /// This code without operations that no output needs.
     pub fn without_unused(self) -> Self {
         let mut needed = vec![false; self.operations.len()];
         let mark = |operand: &Operand, needed: &mut Vec<bool>| {
@@ -128,7 +128,7 @@ impl StraightLine {
         self.operations.iter().filter(is_function).count()
     }
 
-    /// What its operations work on, and its outputs.
+    /// The operands of its operations, and its outputs.
     pub fn operands(&self) -> impl Iterator<Item = Operand> + '_ {
         let used = self.operations.iter().flat_map(|o| o.operands);
         used.chain(self.outputs.iter().copied())

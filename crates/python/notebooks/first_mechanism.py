@@ -1,7 +1,7 @@
 # %% [markdown]
 # # A first mechanism in ten minutes
 #
-# A four-bar linkage: built in ten lines, seen, driven, and asked for its bearing forces. The cells are separated by `# %%`; Jupyter
+# A four-bar linkage in ten lines: its picture, its drive torque and its bearing forces. The cells are separated by `# %%`; Jupyter
 # (with jupytext), VS Code and marimo open this file as a notebook, and Python runs it as a program.
 
 # %%
@@ -30,7 +30,7 @@ for pin in "ABCD":
     print(f"bearing {pin}: {forces.reaction(f'{pin}.magnitude'):.3f} N")
 
 # %% [markdown]
-# The same over a whole revolution, by the reduced model: m(q) and ½m′(q) give the torque, and each reaction is one line,
+# The torque and the forces over a whole revolution, from the reduced model: m(q) and ½m′(q) give the torque, and each reaction is
 # R = a q̈ + b q̇² + Σ c F. Here q̈ = 0.
 
 # %%
@@ -44,7 +44,7 @@ print(f"largest torque {np.abs(torque).max():.4f} N m; bearings", {pin: round(fl
 assert abs(torque[60] - forces.actuator_force("phi")) < 1e-12
 
 # %% [markdown]
-# Released from 60° it swings under its weight:
+# Released from rest at 60°, the mechanism swings under its weight:
 
 # %%
 m.motion(duration=2.0, initial_coordinate={"phi": 1.0})

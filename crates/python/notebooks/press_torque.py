@@ -2,7 +2,7 @@
 # # The torque that a press needs, and its motor
 #
 # A crank press runs at 60 strokes a minute and presses with 3 kN over the last 8 mm. Which torque does the crank need for that motion
-# (the feed-forward of its controller), and what does a motor make of it?
+# (the feed-forward of its controller), and how fast does a motor run it?
 
 # %%
 import dwell

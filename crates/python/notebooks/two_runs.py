@@ -3,7 +3,7 @@
 #
 # Jordi, Zayas and Cardona (TMT 2008) take the parameters of the equation m q̈ + ½m′ q̇² = 0 from two kinetostatic runs of any mechanism
 # program: (i) at unit speed, (ii) uniformly accelerated from rest, so that q̇² = 2q. Here both are made with `Mechanism.at`, combined, and
-# compared with `reduce`; then the motion is integrated by SciPy, if it is there.
+# compared with `reduce`. Then SciPy, if it is installed, integrates the motion.
 
 # %%
 import pathlib

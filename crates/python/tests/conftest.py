@@ -1,4 +1,4 @@
-"""Where the repository and the command are."""
+"""Paths of the repository and of the command."""
 
 import os
 import pathlib
@@ -13,7 +13,7 @@ CASES = sorted(path.parent.name for path in (TOP / "validation").glob("*/scene.t
 
 @pytest.fixture(scope="session")
 def command():
-    """Runs the `dwell` command; skipped where it is not built."""
+    """Runs the `dwell` command; skips the test if the command is not built."""
     if not COMMAND.exists():
         pytest.skip("the command is not built: cargo build --release -p dwell-cli")
 

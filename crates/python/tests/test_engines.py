@@ -1,4 +1,4 @@
-"""Sweeps spread by Dask and by Ray over processes of this machine, some of which are killed on the way."""
+"""Sweeps that Dask and Ray distribute over processes of this machine; the tests kill some of the processes."""
 
 import os
 import pathlib
@@ -16,7 +16,7 @@ TOP = pathlib.Path(__file__).resolve().parents[3]
 VARY = {"crank.inertia": "=0.5:0.7:1000", "coupler.mass": "=1:2:400"}
 RESULTS = ["m.max", "period"]
 BLOCKS = 7
-#: `DWELL_POINTS=1000000` for the nightly run.
+#: The nightly run sets `DWELL_POINTS=1000000`.
 POINTS = int(os.environ.get("DWELL_POINTS", 400_000))
 
 
@@ -36,7 +36,7 @@ def study():
 
 @pytest.fixture(scope="module")
 def single(program, study, tmp_path_factory):
-    """The rows of one run of the command alone, and its seconds."""
+    """The rows of a run of the command without workers, and its time, s."""
     from dwell._cluster import _Study
 
     scene, vary = study
@@ -51,7 +51,7 @@ def single(program, study, tmp_path_factory):
 
 
 def kill_after_first_part(folder, pids, killed):
-    """Kills processes once the first rows are there."""
+    """Kills processes after the first rows are written."""
     while not list(folder.glob("study-sweep/part-*.parquet")):
         time.sleep(0.02)
     for pid in pids:
@@ -72,7 +72,7 @@ def run(engine, program, study, folder, pids):
 
 
 def compare(stored, single):
-    """Every row once, and all of them those of the single run."""
+    """Every row occurs once and equals that of the single run."""
     folder, alone = single
     found, expected = [dwell.StoredSweep(f, {}).to_pandas().sort_values("index") for f in (stored.folder, folder)]
     assert len(found) == POINTS == stored.rows

@@ -1,4 +1,4 @@
-"""Ctrl-C ends what takes several seconds. (What takes more steps than are allowed is refused.)"""
+"""Ctrl-C interrupts a computation of several seconds."""
 
 import signal
 import subprocess
@@ -8,7 +8,7 @@ import time
 
 PROGRAM = """
     import dwell, signal
-    # In the background a shell has it ignored.
+    # A shell lets background processes ignore SIGINT.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     m = dwell.Builder("Pendulum")
     m.body("ground", O=(0, 0))
@@ -20,7 +20,7 @@ PROGRAM = """
         print("begins", flush=True)
         bob.simulate(method="bdf", tolerance=1e-10)
     except KeyboardInterrupt:
-        # And the next one runs.
+        # The next simulation runs.
         m.motion(duration=0.1)
         print("interrupted,", m.assemble().simulate(1e-6).rows > 1)
 """
@@ -29,7 +29,7 @@ PROGRAM = """
 def test_a_long_motion_is_interrupted():
     with subprocess.Popen([sys.executable, "-c", textwrap.dedent(PROGRAM)], stdout=subprocess.PIPE, text=True) as child:
         assert child.stdout.readline() == "begins\n"
-        # Into the motion.
+        # The signal arrives during the integration.
         time.sleep(0.5)
         child.send_signal(signal.SIGINT)
         assert child.stdout.read() == "interrupted, True\n"

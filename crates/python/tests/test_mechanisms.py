@@ -1,4 +1,4 @@
-"""What a program receives, against closed forms and against the command."""
+"""Results in Python against closed forms and against the command."""
 
 import warnings
 
@@ -240,7 +240,7 @@ def test_other_threads_go_on():
 
 @pytest.mark.parametrize("case", CASES)
 def test_columns_are_those_of_the_command(case, command, tmp_path):
-    """Bit for bit: kinetostatics and simulate of every case, by the files that the command writes."""
+    """Kinetostatics and simulate of every case equal the files of the command bit for bit."""
     path = TOP / "validation" / case / "scene.toml"
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

@@ -1,4 +1,4 @@
-"""Every notebook runs to its end; what it asserts holds."""
+"""Every notebook runs to its end, with all its assertions."""
 
 import pathlib
 import runpy

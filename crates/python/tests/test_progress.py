@@ -1,4 +1,4 @@
-"""What is shown while a computation runs."""
+"""The progress display during a computation."""
 
 import io
 import sys
@@ -20,7 +20,7 @@ class Terminal(io.StringIO):
 
 @pytest.fixture(params=["tqdm", "without tqdm"])
 def terminal(request, monkeypatch):
-    """A terminal, in which progress is shown at once."""
+    """A terminal in which progress is shown without delay."""
     if request.param == "tqdm":
         pytest.importorskip("tqdm")
     else:
@@ -38,7 +38,7 @@ def test_a_sweep_shows_how_far_it_is(terminal):
     lines = [line for line in terminal.getvalue().split("\r") if "%" in line]
     parts = [int(line.split("%")[0].split()[-1]) for line in lines]
     assert "sweep" in lines[0] and parts == sorted(parts) and 0 < parts[-1] <= 100
-    # What was shown is wiped away.
+    # The progress line is erased at the end.
     assert terminal.getvalue().rstrip(" \r").count("sweep") >= 1 and terminal.getvalue().endswith("\r")
 
 

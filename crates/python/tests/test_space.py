@@ -95,7 +95,7 @@ def test_a_motion_its_period_and_its_equilibria():
 
 @pytest.mark.parametrize("case", CASES)
 def test_columns_are_those_of_the_command(case, command, tmp_path):
-    """Bit for bit, by the files that the command writes."""
+    """Results equal the files of the command bit for bit."""
     path = SPATIAL / f"{case}.toml"
     mechanism = dwell.read(path)
     for name in ("kinematics", "statics"):

@@ -1,4 +1,4 @@
-"""What a type checker must accept: it is checked, not run."""
+"""Code that a type checker must accept. The tests check it without running it."""
 
 import dwell
 import numpy as np

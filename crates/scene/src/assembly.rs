@@ -12,7 +12,7 @@ use std::fmt::Debug;
 pub(crate) trait AssemblyNotation: CoordinateNotation {
     /// Approximately where a body is.
     type Guess: Clone + Debug;
-    /// In messages: what an unknown name is not, and what is known.
+    /// Words for messages about an unknown name: the expected kind, and the known ones.
     const NAMED: [&'static str; 2];
 
     /// Approximately where a body is; `what` is the entry in messages.
@@ -28,8 +28,8 @@ pub(crate) trait AssemblyNotation: CoordinateNotation {
         None
     }
 
-    /// The lengths, m, of the actuators `missing` where the bodies stand as they are guessed; those that the guesses do not
-    /// give are none.
+    /// The lengths, m, of the actuators `missing` at the guessed positions of the bodies; `None` for lengths that the
+    /// guesses do not determine.
     fn guessed_lengths(
         _: &ParsedAssembly<Self>,
         _missing: &[usize],
@@ -90,8 +90,8 @@ impl<D: AssemblyNotation> ParsedAssembly<D> {
         parsed
     }
 
-    /// Coordinate of each actuator at assembly: as it is given, or as in `initial` where the motion starts, or 0. No two
-    /// points are at 0 from each other by default: such a distance follows from the approximate angles, or is reported as
+    /// Coordinate of each actuator at assembly: the given value, or the value of `initial` at the start of the motion, or
+    /// 0. A distance of two points is not 0 by default: it follows from the approximate angles, or is reported as
     /// missing, in the section or else at the actuator.
     pub(crate) fn coordinates_or(
         &self,

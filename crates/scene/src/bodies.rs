@@ -14,8 +14,8 @@ use std::collections::HashMap;
 use std::fmt::Display;
 use toml::de::DeValue;
 
-/// A body as read. What could not be read is zero: the scene fails anyway, and the names still
-/// serve to check the rest of the file.
+/// A body as read. Values that could not be read are zero: the scene is rejected anyway, and the names serve to check
+/// the rest of the file.
 #[derive(Debug)]
 pub(crate) struct ParsedBody<'a, D: Dimensions = Plane> {
     pub(crate) name: &'a str,
@@ -23,13 +23,13 @@ pub(crate) struct ParsedBody<'a, D: Dimensions = Plane> {
     /// In m.
     pub(crate) points: Vec<(&'a str, D::Point)>,
     by_name: HashMap<&'a str, usize>,
-    /// Its points were read: a name that is not among them does not exist.
+    /// Whether its points were read, so that a name that is not among them does not exist.
     points_known: bool,
     pub(crate) mass: D::Mass,
     pub(crate) varying_inertia: Option<VaryingInertia>,
 }
 
-/// A point that a text names: its body, its index there, and where it is named.
+/// A point that a text names: its body, its index there, and the place of the name.
 pub(crate) type NamedPoint = (BodyId, usize, Span);
 
 /// How two points are written.
@@ -135,7 +135,7 @@ impl<'a, D: Notation> Bodies<'a, D> {
         Some((id, self.point_of(id, point, at)?))
     }
 
-    /// The two points that a value names; `expected` says how they are written.
+    /// The two points that a value names; `expected` describes the notation.
     pub(crate) fn find_two_points(
         &self,
         value: Value<'_>,
@@ -179,7 +179,7 @@ impl<'a, D: Notation> Bodies<'a, D> {
 }
 
 impl<D: Notation> ParsedBody<'_, D> {
-    /// Reports a point that it does not have; `name` is what it may have been meant to be.
+    /// Reports a point that the body does not have; `name` selects the suggestion.
     fn report_unknown_point(
         &self,
         point: &str,
@@ -195,8 +195,8 @@ impl<D: Notation> ParsedBody<'_, D> {
     }
 }
 
-/// Which body is the ground: the one that says `fixed = true`, or else the one named `ground`. If
-/// both are there the scene is ambiguous, unless `ground` itself says that it moves.
+/// The index of the ground: the body with `fixed = true`, or else the body named `ground`. If both exist, the scene is
+/// ambiguous, unless `ground` has `fixed = false`.
 fn ground(fields: &TableReader<'_>, tables: &[Option<TableReader<'_>>]) -> Option<usize> {
     let mut fixed = Vec::new();
     let mut named = None;

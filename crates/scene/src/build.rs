@@ -1,4 +1,4 @@
-//! The sections of the file, read in an order in which each finds what it refers to.
+//! Reads the sections of the file, each after those to which it refers.
 
 use crate::assembly::{AssemblyNotation, ParsedAssembly};
 use crate::bodies::Bodies;
@@ -37,7 +37,8 @@ pub(crate) trait Sections: AssemblyNotation + ReactionNotation + Doubtful {
         log: &'a Diagnostics,
     ) -> Self::Joints<'a>;
 
-    /// Reads and checks what refers to coordinates or actuators. Returns the bodies of each joint; none of one that could not be read.
+    /// Reads and checks the parts of joints that refer to coordinates or actuators. Returns the bodies of each joint; `None` for a
+    /// joint that could not be read.
     fn complete_joints(
         joints: &mut Self::Joints<'_>,
         actuators: &[ParsedActuator<'_, Self>],
@@ -55,7 +56,7 @@ pub(crate) trait Sections: AssemblyNotation + ReactionNotation + Doubtful {
         magnitudes: &Magnitudes<Self::Coordinate>,
     ) -> Vec<Load<Self::LoadKind, Self::Coordinate>>;
 
-    /// Where the mechanism is put together, with its coordinates there.
+    /// The assembly, with its coordinates.
     fn assembly(
         parsed: ParsedAssembly<Self>,
         start: &[f64],
@@ -71,10 +72,10 @@ pub(crate) trait Sections: AssemblyNotation + ReactionNotation + Doubtful {
         assembly: &Self::Assembly,
     ) -> Self::Mechanism;
 
-    /// The reactions where none is listed.
+    /// The default reactions: all of them.
     fn all_reactions(mechanism: &Self::Mechanism) -> Vec<Self::Reaction>;
 
-    /// The actuators with what they drive.
+    /// The actuators with their coordinates.
     fn driven_coordinates(
         mechanism: &Self::Mechanism,
     ) -> impl Iterator<Item = (&str, Self::Coordinate)> + Clone;
@@ -139,7 +140,7 @@ impl<D: Sections> SceneIn<D> {
     }
 }
 
-/// What some editors put before the first character of a file.
+/// The byte order mark that some editors write before the first character of a file.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// Reports a file without anything in it.
@@ -297,7 +298,7 @@ fn read<D: Sections>(
     })
 }
 
-/// Whether there is something in a section; what is wrong with it is reported where it is read.
+/// Whether a section has entries. Its errors are reported when it is read.
 fn is_filled(fields: &TableReader<'_>, key: &str) -> bool {
     let value = fields.get(key).map(|e| e.value.get());
     matches!(value, Some(DeValue::Table(table)) if !table.is_empty())

@@ -58,7 +58,7 @@ impl AnyCoordinate for space::Coordinate {
 pub(crate) trait CoordinateNotation: Notation<Coordinate: AnyCoordinate> {
     /// The joints as read.
     type Joints<'a>;
-    /// What an actuator is in a mechanism.
+    /// The type of an actuator of a mechanism.
     type Actuator: Clone + Debug;
     /// How a coordinate of `[coordinates]` is written.
     const COORDINATE: &'static str;
@@ -86,7 +86,7 @@ pub(crate) struct Parts<'r, 'a, D: CoordinateNotation> {
     pub(crate) joints: &'r D::Joints<'a>,
 }
 
-/// An actuator as read; nothing in it if it was wrong.
+/// An actuator as read; its contents are `None` if it is invalid.
 #[derive(Debug)]
 pub(crate) struct ParsedActuator<'a, D: CoordinateNotation> {
     pub(crate) actuator: Option<D::Actuator>,
@@ -102,7 +102,7 @@ impl<'a, D: CoordinateNotation> std::ops::Deref for ParsedActuator<'a, D> {
     }
 }
 
-/// What the motion of an actuator needs to know of it.
+/// The data of an actuator that its motion needs.
 #[derive(Debug, Clone)]
 pub(crate) struct NamedActuator<'a> {
     pub(crate) name: &'a str,
@@ -147,7 +147,7 @@ impl<'a> NamedActuator<'a> {
     }
 }
 
-/// A named coordinate as read; nothing in it if it was wrong.
+/// A named coordinate as read; its contents are `None` if it is invalid.
 #[derive(Debug, Clone)]
 pub(crate) struct ParsedCoordinate<'a, C = Coordinate> {
     pub(crate) name: &'a str,
@@ -155,7 +155,7 @@ pub(crate) struct ParsedCoordinate<'a, C = Coordinate> {
     pub(crate) coordinate: Option<C>,
 }
 
-/// All the coordinates that have a name: the actuators', then those of `[coordinates]`.
+/// All named coordinates: those of the actuators, then those of `[coordinates]`.
 #[derive(Debug)]
 pub(crate) struct ParsedCoordinates<'a, C = Coordinate> {
     pub(crate) list: Vec<ParsedCoordinate<'a, C>>,
@@ -166,7 +166,7 @@ pub(crate) struct ParsedCoordinates<'a, C = Coordinate> {
 }
 
 impl<'a, C: AnyCoordinate> ParsedCoordinates<'a, C> {
-    /// Those of actuators, and of a section.
+    /// Reads the coordinates of actuators and of a section.
     pub(crate) fn read<D: CoordinateNotation<Coordinate = C>>(
         actuators: &[ParsedActuator<'a, D>],
         fields: Option<&TableReader<'a>>,
@@ -201,7 +201,7 @@ impl<'a, C: AnyCoordinate> ParsedCoordinates<'a, C> {
         all
     }
 
-    /// Those of `[coordinates]` that were read well.
+    /// The valid coordinates of `[coordinates]`.
     pub(crate) fn of_section(&self) -> Vec<NamedCoordinate<C>> {
         let of_one = |c: &ParsedCoordinate<'_, C>| {
             let (name, coordinate) = (c.name.to_owned(), c.coordinate?);
@@ -266,7 +266,7 @@ pub(crate) fn check_coordinate_name(entry: &Entry<'_>, kind: &str) {
     }
 }
 
-/// `other` is where the name stands first, and of what kind it is there.
+/// `other` is the place and the kind of the first use of the name.
 pub(crate) fn report_ambiguous_name(
     entry: &Entry<'_>,
     (key, other): (&Span, &str),
@@ -318,7 +318,7 @@ pub(crate) fn actuators<'a, D: CoordinateNotation>(
     list
 }
 
-/// What a coordinate of `[coordinates]` measures.
+/// Reads the quantity that a coordinate of `[coordinates]` measures.
 fn read_coordinate<D: CoordinateNotation>(
     entry: &Entry<'_>,
     parts: &Parts<'_, '_, D>,

@@ -1,4 +1,4 @@
-//! Gathering the errors of a file, so that one report holds them all, and the places of what it describes.
+//! Collects the errors of a file in one report, and the places of the parts of a scene.
 
 use crate::error::{SceneError, SceneWarning, Source};
 use crate::spans::{SceneLocation, SceneSpans};
@@ -28,7 +28,7 @@ pub(crate) struct Diagnostics {
     found: RefCell<Vec<Diagnostic>>,
     suppressed: Cell<usize>,
     warnings: RefCell<Vec<SceneWarning>>,
-    /// Where the things of the scene are written.
+    /// The places of the parts of the scene.
     spans: RefCell<SceneSpans>,
 }
 
@@ -43,7 +43,7 @@ impl Diagnostics {
         }
     }
 
-    /// Reports something that is wrong, where it is, the main place first, and how to mend it (nothing where the text is empty).
+    /// Reports an error with its places, the main place first, and a suggestion (may be empty).
     pub(crate) fn report(
         &self,
         message: impl Into<String>,
@@ -61,7 +61,7 @@ impl Diagnostics {
         });
     }
 
-    /// Reports it, in place of what could not be read.
+    /// Reports an error and returns `None` instead of a value.
     pub(crate) fn reject<T>(
         &self,
         message: impl Into<String>,
@@ -105,13 +105,13 @@ impl Diagnostics {
         from + part.start..from + part.end
     }
 
-    /// Warns of something that is read but may not be meant.
+    /// Warns of a valid entry that is probably a mistake.
     pub(crate) fn warn(&self, message: String, label: &str, span: Span) {
         let warning = SceneWarning::at(&self.source, message, label, span);
         self.warnings.borrow_mut().push(warning);
     }
 
-    /// What it warned of.
+    /// The warnings.
     pub(crate) fn warnings(&self) -> Vec<SceneWarning> {
         self.warnings.take()
     }
@@ -125,8 +125,8 @@ impl Diagnostics {
         self.found.borrow().len() >= MAX_REPORTED
     }
 
-    /// What to try instead of `wrong`: the nearest of the names, or else their list. `kind` is
-    /// what they are, in the plural.
+    /// A suggestion instead of `wrong`: the nearest of the names, or else their list. `kind` is their kind, in the
+    /// plural.
     pub(crate) fn choices<'n>(
         &self,
         wrong: &str,
@@ -140,7 +140,7 @@ impl Diagnostics {
         choices(wrong, kind, names)
     }
 
-    /// The report, or nothing if all is well.
+    /// The report; `None` without errors.
     pub(crate) fn to_error(&self) -> Option<SceneError> {
         let mut found = self.found.take();
         // In the order of the file, whatever order the sections were read in.

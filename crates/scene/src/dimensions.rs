@@ -1,4 +1,4 @@
-//! The plane and space: what a scene is made of, and how points and inertias are written.
+//! The plane and space: the types of a scene, and the notation of points and inertias.
 
 use crate::keys::{TableSchema, table};
 use crate::table_reader::TableReader;
@@ -9,7 +9,7 @@ use dwell_kinetostatics::Mass;
 use std::fmt::Debug;
 use std::hash::Hash;
 
-/// The plane or space: what a scene is made of.
+/// The plane or space, as the types of the parts of a scene.
 pub trait Dimensions: Clone + Debug + 'static {
     /// A point, m.
     type Point: Copy + Default + PartialEq + Debug;
@@ -19,7 +19,7 @@ pub trait Dimensions: Clone + Debug + 'static {
     type Mechanism: Clone + Debug;
     /// Where and how the mechanism is put together at the start.
     type Assembly: Clone + Debug;
-    /// What is measured of a mechanism.
+    /// A coordinate of a mechanism.
     type Coordinate: Copy + PartialEq + Debug;
     /// A component of the action of a joint's first body on its second.
     type Reaction: Copy + Eq + Hash + Debug;
@@ -37,11 +37,11 @@ pub enum Space {}
 
 /// How points and inertias are written in the plane or in space.
 pub(crate) trait Notation: Dimensions {
-    /// What the ids of tables that differ from those of the plane end with.
+    /// The suffix of the ids of tables that differ from those of the plane.
     const SUFFIX: &'static str;
     /// How a point is written.
     const POINT: &'static str;
-    /// The origin as it is written.
+    /// The notation of the origin.
     const ORIGIN: &'static str;
 
     /// A point, in m.

@@ -14,7 +14,7 @@ use crate::value::{NumberRule, SignRule};
 use crate::wording::{list, shorten};
 use dwell_kinetostatics::{Drive, DriveKind, Magnitude, Motor, SpeedController};
 
-/// Reads drives: what they can act on, and on what they can depend.
+/// Reads drives, with the coordinates on which they can act or depend.
 pub(crate) struct DriveReader<'r, C> {
     pub(crate) coordinates: &'r ParsedCoordinates<'r, C>,
     pub(crate) magnitudes: &'r Magnitudes<C>,
@@ -58,7 +58,7 @@ impl<C: AnyCoordinate> DriveReader<'_, C> {
     }
 }
 
-/// A drive and a load of one name are an error: columns of results are called by it.
+/// Rejects a drive and a load with the same name, because the name is that of columns.
 pub(crate) fn reject_shared_names(
     drives: &Option<TableReader<'_>>,
     loads: &Option<TableReader<'_>>,

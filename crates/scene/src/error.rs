@@ -1,4 +1,4 @@
-//! The one error type: a message, where in the file, and what to try.
+//! The error type: a message, its places in the file, and a suggestion.
 
 use miette::{Diagnostic, LabeledSpan, NamedSource};
 use std::ops::Range;
@@ -11,14 +11,14 @@ const MAX_LINE_BYTES: usize = 2000;
 /// Name and text of a scene, shared by the scene and its errors.
 pub(crate) type Source = Arc<NamedSource<String>>;
 
-/// What is wrong with a scene, where in its text, and how to mend it.
+/// An error of a scene, with its place in the text and a suggestion.
 ///
 /// Several errors of one file are one `SceneError` whose [`errors`](Self::errors) are the single
 /// ones.
 #[derive(Debug, Clone, thiserror::Error, Diagnostic)]
 #[error("{message}")]
 pub struct SceneError {
-    /// What is wrong, naming the body, joint or key.
+    /// The message, which names the body, joint or key.
     pub message: String,
     /// How to mend it.
     #[help]
@@ -34,17 +34,17 @@ pub struct SceneError {
     pub related: Vec<SceneError>,
 }
 
-/// What a scene should change, though it is read: something that may not be meant. Plain data.
+/// A warning about a valid scene, which probably contains a mistake. Plain data.
 #[derive(Debug, Clone, thiserror::Error, Diagnostic)]
 #[error("{message}")]
 #[diagnostic(severity(Warning))]
 pub struct SceneWarning {
-    /// What is written, and what to write instead.
+    /// The message: the entry, and a replacement.
     pub message: String,
     /// The byte range of the text that it is about.
     #[label(collection)]
     pub labels: Vec<LabeledSpan>,
-    /// The text the label points into; none where the line is too long to be shown.
+    /// The text the label points into; `None` if the line is too long to be shown.
     #[source_code]
     pub text: Option<Arc<NamedSource<String>>>,
 }
@@ -85,9 +85,9 @@ impl SceneError {
         Self::with_labels(&source, message, help, [label])
     }
 
-    /// An error at ranges of the text. The ranges are cut to the text and to character boundaries,
-    /// since a label outside would keep the whole message from being drawn. Where a line to be
-    /// shown is too long for that, the message says line and column instead.
+    /// An error at ranges of the text. The ranges are cut to the text and to character boundaries, since a label
+    /// outside would keep the whole message from being drawn. If a line is too long to be shown, the message states
+    /// line and column instead.
     pub(crate) fn with_labels(
         source: &Source,
         message: String,

@@ -14,7 +14,7 @@ use crate::wording::shorten;
 /// The reaction that a text names, at a place in a table.
 type ReadReaction<'r, R> = &'r dyn Fn(&str, &Span, &TableReader<'_>) -> Option<R>;
 
-/// Reads events: of which coordinates, and of which reactions.
+/// Reads events of coordinates and of reactions.
 pub(crate) struct EventReader<'r, C, R> {
     pub(crate) coordinates: &'r ParsedCoordinates<'r, C>,
     pub(crate) reaction: ReadReaction<'r, R>,

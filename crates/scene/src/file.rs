@@ -21,12 +21,12 @@ pub struct SceneFile {
     pub note: Option<String>,
     /// Name and text of the file. After [`with_value`](crate::PlaneScene::with_value) the changed text.
     pub source: Arc<NamedSource<String>>,
-    /// What is read but may not be meant: numbers that look like slips of units. A program should show them to its user.
+    /// Warnings about numbers that probably have a wrong unit. A program should show them to its user.
     pub warnings: Vec<SceneWarning>,
     pub(crate) units: Units,
     pub(crate) spans: SceneSpans,
     pub(crate) body_numbers: Vec<SceneNumber>,
-    /// Those outside the bodies.
+    /// The numbers outside the bodies.
     pub(crate) section_numbers: Vec<SceneNumber>,
 }
 
@@ -52,8 +52,8 @@ impl SceneFile {
         }
     }
 
-    /// SHA-256 of the scene's text, as 64 hexadecimal digits: what a result names its scene by. Line ends count as `\n` and a
-    /// byte order mark for nothing, so that a file has one hash wherever it is checked out.
+    /// SHA-256 of the scene's text, as 64 hexadecimal digits, by which results identify their scene. Line ends count as `\n`,
+    /// and a byte order mark is ignored, so that a file has the same hash on every system.
     pub fn hash(&self) -> String {
         let text = self.source.inner().trim_start_matches('\u{feff}');
         let digest = Sha256::digest(text.replace("\r\n", "\n"));
@@ -64,8 +64,7 @@ impl SceneFile {
         })
     }
 
-    /// An error at places of the scene, each with a remark of its own, for what is found out
-    /// about the scene later.
+    /// An error at places of the scene, each with its own remark, for faults that are found after reading.
     pub fn error(
         &self,
         message: String,

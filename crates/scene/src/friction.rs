@@ -94,7 +94,7 @@ pub(crate) fn push_loads<K, C>(
     }
 }
 
-/// The friction of a joint: its table, and what that gives of dry and of viscous friction.
+/// The friction of a joint: its table, and its dry and viscous friction.
 fn read_friction<'a>(
     entry: &Entry<'a>,
     joint: JointId,
@@ -123,16 +123,16 @@ pub(crate) struct FrictionForm<'k> {
     pub(crate) table: &'static TableSchema,
     /// The kind of its joint.
     pub(crate) joint_kind: &'k str,
-    /// Whether the speed of its surfaces is that of an angle.
+    /// Whether the speed of its surfaces is an angular velocity.
     pub(crate) is_angular: bool,
-    /// Of a pin: the contact of its radius and the distance of its bearings, m; of a guide none.
+    /// For a pin: the contact from its radius and the distance of its bearings, m; `None` for a guide.
     pub(crate) pin: Option<fn(f64, f64) -> FrictionContact>,
     /// Whether its pin touches at one point.
     pub(crate) is_slot: bool,
 }
 
 impl FrictionForm<'_> {
-    /// The dry friction of a joint that a table gives, and its viscous friction; none where something is wrong.
+    /// The dry friction of a joint that a table gives, and its viscous friction; `None` if something is wrong.
     pub(crate) fn read(
         &self,
         joint: JointId,
@@ -183,8 +183,8 @@ impl FrictionForm<'_> {
     }
 }
 
-/// Refuses a static coefficient below the coefficient; beside a regularisation speed, which leaves nothing static, it has
-/// no effect.
+/// Rejects a static coefficient below the coefficient. With a regularisation speed it has no effect, because nothing
+/// sticks.
 fn check_static_coefficient(fields: &TableReader<'_>, friction: &Friction) -> Option<()> {
     let Some(entry) = fields.get("static-coefficient") else {
         return Some(());

@@ -11,9 +11,9 @@ pub struct SceneKey {
     pub id: String,
     /// The name of its table, such as `spring`.
     pub table: &'static str,
-    /// Its own name, or that of the names of a scene's own, such as `<body>`.
+    /// Its name, or a placeholder for names of the scene, such as `<body>`.
     pub name: &'static str,
-    /// What it means, in a sentence.
+    /// Its meaning, in a sentence.
     pub doc: &'static str,
     /// Whether its value is always a table, so that other keys describe it.
     pub holds_keys: bool,
@@ -90,7 +90,7 @@ pub fn scene_keys() -> Vec<SceneKey> {
     ids.iter().flat_map(of_table).collect()
 }
 
-/// The uses of keys in the text of a scene, in its order; none where it is not valid TOML.
+/// The uses of keys in the text of a scene, in its order; empty if it is not valid TOML.
 pub fn key_uses(text: &str) -> Vec<KeyUse> {
     let Ok(root) = toml::from_str::<Table>(text.trim_start_matches('\u{feff}')) else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! What can be written in a scene: the tables of `keys.toml`, which says what each field is.
+//! The allowed contents of a scene: the tables of `keys.toml`, which describes each field.
 
 use serde::Deserialize;
 use std::collections::HashMap;
@@ -43,7 +43,7 @@ pub(crate) struct KeySchema {
 #[derive(Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Presence {
-    /// Always; this stands in for it.
+    /// The key is optional; this is the default.
     Absent(String),
     /// Where another of its group is given: exactly one of them is needed.
     OneOf(String),
@@ -82,7 +82,7 @@ pub(crate) enum ValueShape {
     Name(String),
     /// Two of them.
     TwoNames(String),
-    /// A list of them, at least so many.
+    /// A list of names with a minimum length.
     Names(usize, String),
     /// The table of that id.
     Table(String),
@@ -107,8 +107,8 @@ static KEYS: LazyLock<Keys> = LazyLock::new(|| {
     keys
 });
 
-/// The table that `keys.toml` describes under `id`. Panics where there is none: ids stand in this crate and in the file, and a test
-/// follows all of them.
+/// The table that `keys.toml` describes under `id`. Panics if there is none: ids occur only in this crate and in the file, and a
+/// test checks all of them.
 pub(crate) fn table(id: &str) -> &'static TableSchema {
     &KEYS.tables[id]
 }

@@ -5,7 +5,7 @@ use crate::table_reader::{Entry, TableReader};
 use crate::wording::list;
 
 /// The kind of a joint, a load or another, and the key that names it, if there is exactly one. Reports
-/// which keys are not of this kind; `thing` is what has a kind.
+/// which keys are not of this kind; `thing` names the object in messages.
 pub(crate) fn kind<'f, 'a>(
     fields: &'f TableReader<'a>,
     thing: &str,
@@ -13,7 +13,7 @@ pub(crate) fn kind<'f, 'a>(
     kind_among(fields, thing, &kinds(&format!("{thing}s")))
 }
 
-/// The same among these kinds.
+/// The kind, among these kinds.
 pub(crate) fn kind_among<'f, 'a>(
     fields: &'f TableReader<'a>,
     thing: &str,
@@ -46,7 +46,7 @@ pub(crate) fn kind_among<'f, 'a>(
     Some((table.kind_key(), entry))
 }
 
-/// Reports that no key names a kind: one of them may have been meant to.
+/// Reports that no key names a kind; a key may be a misspelt kind.
 fn report_missing_kind(fields: &TableReader<'_>, thing: &str, kinds: &[&'static TableSchema]) {
     let kind_names = kinds.iter().map(|t| t.kind_key());
     let count = fields.log().count();
@@ -73,7 +73,7 @@ fn report_missing_kind(fields: &TableReader<'_>, thing: &str, kinds: &[&'static 
     fields.log().report(message, &labels, help);
 }
 
-/// Reports a kind that keys.toml knows and its reader does not: taken for another kind it would do something else.
+/// Reports a kind in keys.toml that its reader does not handle, instead of treating it as another kind.
 pub(crate) fn reject_unread_kind<T>(entry: &Entry<'_>) -> Option<T> {
     let message = format!("`{}` cannot be read by this version", entry.name);
     entry.reject(message, "this kind", "")

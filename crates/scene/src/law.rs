@@ -1,4 +1,4 @@
-//! Laws of one variable: expressions, tables, and the motions known by a name.
+//! Laws of one variable: expressions, tables, and named motion laws.
 
 use crate::expression::expression;
 use crate::keys;
@@ -10,7 +10,7 @@ use dwell_laws::{
     Interpolation, Law, LawError, Polynomial, Profile, Rise, Shape, Sinusoid, Spline,
 };
 
-/// What a law is a function of, and of which quantity.
+/// The variable and the quantity of a law.
 pub(crate) struct LawDomain<'r> {
     /// The variable's name in an expression.
     pub(crate) variable: &'static str,
@@ -26,7 +26,7 @@ pub(crate) struct LawDomain<'r> {
     pub(crate) end_time: Option<f64>,
 }
 
-/// The law of `entry`, whose key says of which kind it is; `owner` is what has the law.
+/// The law of `entry`, whose key is its kind; `owner` names the owner of the law.
 pub(crate) fn law(entry: &Entry<'_>, owner: &str, domain: &LawDomain<'_>) -> Option<Law> {
     let what = format!("{} of {owner}", entry.name);
     match entry.name {
@@ -69,7 +69,7 @@ pub(crate) fn curve(
 /// How far a spline may go beyond the range of its points without a warning, as a part of that range.
 const MAX_OVERSHOOT: f64 = 0.05;
 
-/// The interpolation that a table asks for; none where it names no such one.
+/// The interpolation that a table asks for; `None` if it names no such one.
 pub(crate) fn interpolation(
     fields: &TableReader<'_>,
     absent: Interpolation,

@@ -1,8 +1,7 @@
 //! Scene files: TOML text to mechanism, masses, loads, assembly, motions and requests, with every message pointing into the file.
 //!
-//! [`PlaneScene::read`] turns a file into plain data, in SI. There is no mechanics here: whether the
-//! mechanism closes, moves or balances is for the crates above to find out, and
-//! [`PlaneScene::error`] lets them say so at a [`SceneLocation`] of the file.
+//! [`PlaneScene::read`] turns a file into plain data, in SI. There is no mechanics here. The crates above find out whether the
+//! mechanism closes, moves or balances, and report it with [`PlaneScene::error`] at a [`SceneLocation`] of the file.
 //!
 //! All the errors of a file come in one report, in the order of the file. No input panics.
 //!

@@ -36,7 +36,7 @@ pub(crate) enum Place {
     Slide,
 }
 
-/// A spring without force at zero: its own length or angle is read beside its kind.
+/// A spring without force at zero; its free length or angle is read separately.
 const ELASTIC: Strength = Strength::Elastic { free: 0.0 };
 
 /// Where the loads of each kind act, and their laws; gravity has neither.
@@ -59,7 +59,7 @@ const KINDS: [(&str, Place, Strength); 12] = [
 type KindOf<R> = AnyLoadKind<PointOf<R>, <R as LoadReader>::Along, <R as LoadReader>::Special>;
 type PointOf<R> = <<R as LoadReader>::Dimensions as Dimensions>::Point;
 
-/// What reads loads in the plane or in space.
+/// The reader of loads in the plane or in space.
 pub(crate) trait LoadReader: Sized {
     type Dimensions: Notation;
     /// A coordinate along which a load acts.

@@ -15,7 +15,7 @@ use dwell_kinetostatics::{Magnitude, Signal};
 use dwell_laws::{Interpolation, Law};
 use toml::de::DeValue;
 
-/// What the loads of a scene in the plane can name.
+/// The names that loads of a scene in the plane can use.
 pub(crate) struct Names<'r> {
     pub(crate) bodies: &'r Bodies<'r>,
     pub(crate) joints: &'r Joints<'r>,

@@ -13,7 +13,7 @@ use dwell_geometry::ActuatorId;
 use dwell_laws::Law;
 use std::fmt::Display;
 
-/// `[motion]` as read: what it gives of each actuator, in rad and rad/s or m and m/s.
+/// `[motion]` as read: the values of each actuator, in rad and rad/s or m and m/s.
 #[derive(Debug)]
 pub(crate) struct ParsedMotion<'a> {
     pub(crate) initial_coordinates: Vec<Option<f64>>,
@@ -71,7 +71,7 @@ impl<'a> ParsedMotion<'a> {
         parsed
     }
 
-    /// Finds which actuators are prescribed; false where one of the names is unknown.
+    /// Finds the prescribed actuators; returns false if a name is unknown.
     fn find_prescribed(
         &mut self,
         fields: &TableReader<'a>,
@@ -90,7 +90,7 @@ impl<'a> ParsedMotion<'a> {
         fields.log().count() == count
     }
 
-    /// At least one actuator has to be free, and exactly one where the duration is in periods.
+    /// Checks that at least one actuator is free, and exactly one if the duration is in periods.
     fn count_free(&self, fields: &TableReader<'_>, actuators: &[NamedActuator<'_>]) {
         let free = (0..actuators.len()).filter(|&k| self.prescribed[k].is_none());
         let free: Vec<_> = free.map(|k| actuators[k].name).collect();
@@ -129,7 +129,7 @@ impl<'a> ParsedMotion<'a> {
         }
     }
 
-    /// The free motion, whose coordinates are at `start` where it does not say otherwise.
+    /// The free motion; coordinates without an initial value are at `start`.
     pub(crate) fn into_spec<C, R>(
         self,
         start: &[f64],
@@ -186,7 +186,7 @@ struct PerActuator<'p, 'a> {
 }
 
 impl PerActuator<'_, '_> {
-    /// What it gives of each actuator; none if it is wrong.
+    /// The values of each actuator; `None` if they are invalid.
     fn read(&self, entry: Option<&Entry<'_>>) -> Option<Vec<Option<f64>>> {
         let mut values = vec![None; self.actuators.len()];
         let Some(entry) = entry else {
@@ -272,7 +272,7 @@ fn duration(fields: &TableReader<'_>) -> Option<MotionDuration> {
     })
 }
 
-/// `[calibration]`; `numbers` are those of the bodies, where all of them were read.
+/// Reads `[calibration]`; `numbers` are those of the bodies, if all of them were read.
 pub(crate) fn calibration(
     fields: &TableReader<'_>,
     numbers: Option<&[SceneNumber]>,

@@ -4,8 +4,8 @@ use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::wording::{MAX_NAME_LENGTH, shorten};
 
-/// Reports what is wrong with the name of an entry of `kind` ("a body"), if anything. A name is quoted in
-/// messages, joined with dots, and heads columns of tables, so it has to survive all three.
+/// Reports a fault in the name of an entry of `kind` ("a body"), if there is any. A name must be usable in quotes of
+/// messages, in names joined by dots, and in headings of tables.
 pub(crate) fn check(kind: &str, entry: &Entry<'_>) {
     let name = entry.name;
     let short_name = shorten(name);
@@ -29,7 +29,7 @@ pub(crate) fn check(kind: &str, entry: &Entry<'_>) {
     entry.reject::<()>(message, "this name", help);
 }
 
-/// The same of a name that may hold dots.
+/// Reports a fault in a name that may contain dots.
 pub(crate) fn check_dotted(kind: &str, entry: &Entry<'_>) {
     let parts = entry.name.split('.');
     let good = |part: &str| !part.is_empty() && part.trim() == part && part.chars().all(allowed);
@@ -40,7 +40,7 @@ pub(crate) fn check_dotted(kind: &str, entry: &Entry<'_>) {
     }
 }
 
-/// What `read` makes of the entries of a table, each called by a name of its own, in order; `thing` is what they are.
+/// The results of `read` for the named entries of a table, in order; `thing` is their kind.
 pub(crate) fn read_each<'a, T>(
     fields: &TableReader<'a>,
     thing: &str,

@@ -1,5 +1,5 @@
-//! The numbers that a scene gives, by their paths. A changed number changes the text, which is read again, so nothing here depends on
-//! what the numbers mean.
+//! The numbers of a scene, by their paths. A changed number changes the text, which is read again, so nothing here depends on the
+//! meaning of numbers.
 
 use crate::bodies::Bodies;
 use crate::diagnostics::Span;
@@ -13,7 +13,7 @@ use dwell_geometry::BodyId;
 use toml::Spanned;
 use toml::de::DeValue;
 
-/// A number of the scene that may be changed, and where it is written.
+/// A number of the scene that may be changed, and its place.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SceneNumber {
     /// The keys that lead to it.
@@ -21,7 +21,7 @@ pub(crate) struct SceneNumber {
     /// As written, in the scene's unit.
     pub(crate) value: f64,
     pub(crate) span: Span,
-    /// What of a body it belongs to; outside the bodies the whole.
+    /// The part of a body to which it belongs; outside the bodies, the whole scene.
     pub(crate) location: SceneLocation,
 }
 

@@ -14,20 +14,20 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 impl SceneFile {
-    /// The path of every number that [`value`](Self::value) and [`with_value`](crate::PlaneScene::with_value)
-    /// know, in the order of the file: `crank.mass`, `crank.inertia`, `crank.center[0]` (when it is
-    /// written as [x, y]), `crank.points.B[1]`. Only what the file writes down has a path. The
-    /// ground has its points alone, since its mass has no effect.
+    /// The path of every number that [`value`](Self::value) and [`with_value`](crate::PlaneScene::with_value) accept,
+    /// in the order of the file: `crank.mass`, `crank.inertia`, `crank.center[0]` (when it is written as [x, y]),
+    /// `crank.points.B[1]`. Only numbers in the file have a path. The ground has only its points, because its mass has
+    /// no effect.
     pub fn number_paths(&self) -> Vec<String> {
         self.body_numbers.iter().map(|n| n.path.clone()).collect()
     }
 
-    /// The number at `path`, in the scene's own unit.
-    /// Beside those of [`number_paths`](Self::number_paths) these are all that the sections of joints, loads, frictions, drives and
-    /// motions write, by their keys: `loads.brake.damping`, `motion.initial-velocity.phi`, `joints.guide.axis[0]`.
+    /// The number at `path`, in the scene's own unit. In addition to [`number_paths`](Self::number_paths), these are all numbers in
+    /// the sections of joints, loads, frictions, drives and motions, by their keys: `loads.brake.damping`,
+    /// `motion.initial-velocity.phi`, `joints.guide.axis[0]`.
     ///
     /// # Errors
-    /// [`SceneError`] when the path leads nowhere.
+    /// [`SceneError`] when the path does not exist.
     pub fn value(&self, path: &str) -> Result<f64, SceneError> {
         self.find_number(path).map(|n| n.value)
     }
@@ -74,7 +74,7 @@ impl SceneFile {
         SceneError::with_labels(&self.source, message, None, [(span, label.to_owned())])
     }
 
-    /// Where the number at `path` is written: itself, or the point it belongs to.
+    /// The place of the number at `path`: the number itself, or its point.
     pub fn location_of(&self, path: &str) -> SceneLocation {
         let mut numbers = self.body_numbers.iter();
         let found = numbers.find(|n| n.path == path);
@@ -95,10 +95,10 @@ impl SceneFile {
 
 #[expect(private_bounds, reason = "there are two kinds of scene")]
 impl<D: Sections> SceneIn<D> {
-    /// The same scene with the number at `path` replaced by `value`, in the scene's own unit.
+    /// This scene with the number at `path` replaced by `value`, in the scene's unit.
     ///
-    /// The number is replaced in the text and the text read again: whatever follows from the
-    /// number follows here too, and a message about it shows the number it is about.
+    /// The number is replaced in the text, and the text is read again. Derived values follow, and messages show the new
+    /// number.
     ///
     /// # Errors
     /// As [`with_values`](Self::with_values).
@@ -106,11 +106,11 @@ impl<D: Sections> SceneIn<D> {
         self.with_values(&[(path, value)])
     }
 
-    /// The same with several numbers replaced at once; the text is read again but once.
+    /// This scene with several numbers replaced at once; the text is read again only once.
     ///
     /// # Errors
-    /// [`SceneError`] when a path leads nowhere or is named twice, a value is not finite, or the scene makes
-    /// no sense with these numbers.
+    /// [`SceneError`] when a path does not exist or is named twice, a value is not finite, or the scene is invalid with
+    /// these numbers.
     pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
         let mut scene = Self::build(self.name.clone(), &self.source_with(values)?)?;
         keep_functions(&mut scene.loads, &self.loads);

@@ -1,4 +1,4 @@
-//! What is written in scenes in the plane alone: joints and actuators, approximate angles, reactions.
+//! The parts of scenes that exist only in the plane: joints and actuators, approximate angles, reactions.
 
 use crate::assembly::{AssemblyNotation, ParsedAssembly};
 use crate::bodies::Bodies;
@@ -52,7 +52,7 @@ impl CoordinateNotation for Plane {
     }
 }
 
-/// What the actuator drives.
+/// Reads the coordinate that the actuator drives.
 fn read_actuator(entry: &Entry<'_>, bodies: &Bodies<'_>, joints: &Joints<'_>) -> Option<Actuator> {
     let what = format!("actuator `{}`", shorten(entry.name));
     let fields = TableReader::open(entry, what)?;

@@ -7,7 +7,8 @@ use crate::scene_data::SpaceScene;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Where the first point or centre of three numbers is, in a scene in space: one in which more of them have three numbers than two.
+/// The place of the first point or centre of three numbers, if the scene is in space, that is, if more of them have three numbers
+/// than two.
 pub(crate) fn three_numbers(root: &DeTable<'_>) -> Option<Span> {
     let DeValue::Table(bodies) = root.get("bodies")?.get_ref() else {
         return None;
@@ -46,7 +47,7 @@ fn points_and_center<'v>(body: &'v DeValue<'v>) -> Vec<&'v Spanned<DeValue<'v>>>
 }
 
 impl SpaceScene {
-    /// The error of what takes only scenes in the plane.
+    /// The error of analyses that accept only scenes in the plane.
     pub fn planar_only(&self) -> SceneError {
         let root = syntax(&self.source).ok();
         let point = root.and_then(|root| three_numbers(root.get_ref()));
@@ -54,7 +55,7 @@ impl SpaceScene {
     }
 }
 
-/// A scene in space where one in the plane is needed.
+/// The error for a scene in space where a scene in the plane is needed.
 pub(crate) fn planar_only(source: &Source, point: Span) -> SceneError {
     let help = "`dwell check`, `reduce`, `kinematics`, `statics`, `kinetostatics`, `simulate`, `cycle`, `equilibria`, `linearise`, `calibrate`, `sweep`, `runs`, `work-precision` and `export` take mechanisms in space; for one in the plane, points have two numbers [x, y]";
     SceneError::with_labels(

@@ -1,4 +1,4 @@
-//! From a file to the TOML tree: everything that can go wrong before the scene is looked at.
+//! From a file to the TOML tree, with all errors before the scene itself is read.
 
 use crate::error::{SceneError, Source};
 use crate::wording::shorten;
@@ -114,7 +114,7 @@ fn limited_bytes(
     Ok(bytes)
 }
 
-/// What holds a zero byte is no text: showing a line of it would help nobody.
+/// The error for a file with a zero byte, which is no text; it shows no line of the file.
 fn not_text(display_path: &str) -> SceneError {
     let help = "if this is a scene, save it as UTF-8".to_owned();
     SceneError::without_labels(format!("`{display_path}` is not a text file"), Some(help))
@@ -149,8 +149,8 @@ pub(crate) fn syntax(source: &Source) -> Result<Spanned<DeTable<'_>>, SceneError
     })
 }
 
-/// The text without what a terminal would obey rather than show. Control characters are one byte,
-/// and so is what stands in for them: places stay where they are.
+/// The text without control characters, which a terminal would execute. Each is one byte and replaced by one byte, so
+/// that places do not change.
 fn printable(source: &Source) -> Source {
     let visible = |c: char| match c {
         '\n' | '\r' | '\t' => c,
@@ -161,8 +161,8 @@ fn printable(source: &Source) -> Source {
     Arc::new(NamedSource::new(source.name(), text))
 }
 
-/// The parser's message and a help, for the slips a scene invites: the parser speaks to those who
-/// know TOML. `found` is what it points at, `from` the text from there on.
+/// The message of the parser with a suggestion for frequent mistakes, because the parser's messages assume knowledge of
+/// TOML. `found` is the text at the error, `from` the text from there on.
 fn explain(message: &str, found: &str, from: &str) -> (String, Option<String>) {
     let quoted = shorten(found);
     let help = |text: &str| Some(text.to_owned());

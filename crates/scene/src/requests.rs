@@ -19,14 +19,14 @@ pub(crate) trait ReactionNotation: CoordinateNotation {
     /// A list of reactions in messages.
     const REACTIONS: &'static str;
 
-    /// The reactions that a text at a place names; what it does not name is reported.
+    /// The reactions that a text at a place names; an unknown name is reported.
     fn reactions_named(text: &str, at: &Span, parts: &Parts<'_, '_, Self>) -> Vec<Self::Reaction>;
 
     /// The name of a reaction of these joints.
     fn name_of_reaction(reaction: Self::Reaction, joints: &Self::Joints<'_>) -> String;
 }
 
-/// `[requests]`, without reactions where it does not have that key.
+/// Reads `[requests]`, without reactions if it does not have this key.
 pub(crate) fn requests<D: ReactionNotation>(
     fields: &TableReader<'_>,
     parts: &Parts<'_, '_, D>,
@@ -53,7 +53,7 @@ pub(crate) fn requests<D: ReactionNotation>(
     }
 }
 
-/// The strings of an array, those that are none being reported.
+/// The strings of an array; other values are reported.
 fn strings<'a>(entry: &Entry<'a>, expected: &str) -> Vec<(&'a str, Span)> {
     let what = format!("{} in [requests]", entry.name);
     let values = entry.value.array(expected, &what).into_iter().flatten();
@@ -156,7 +156,7 @@ fn path_points<D: Notation>(entry: &Entry<'_>, bodies: &Bodies<'_, D>) -> Vec<Pa
     paths
 }
 
-/// The moving body that a value names; of the ground, the message says `lacks`.
+/// The moving body that a value names; for the ground, `lacks` is part of the error message.
 fn moving_body<D: Notation>(
     value: Value<'_>,
     what: &str,

@@ -29,8 +29,8 @@ impl Scene {
         Self::build(name, &source)
     }
 
-    /// Reads a scene from a stream, such as standard input: `name` is the scene's, `source_name` that of the stream in
-    /// messages.
+    /// Reads a scene from a stream, such as standard input: `name` is the name of the scene, `source_name` that of the
+    /// stream in messages.
     ///
     /// # Errors
     /// [`SceneError`] when the stream cannot be read, or is not a scene.
@@ -76,11 +76,11 @@ impl Scene {
         self
     }
 
-    /// The same scene with several numbers replaced at once, in its own units, as [`PlaneScene::with_values`] does.
+    /// This scene with several numbers replaced at once, in its own units, as by [`PlaneScene::with_values`].
     ///
     /// # Errors
-    /// [`SceneError`] when a path leads nowhere or is named twice, a value is not finite, or the scene makes
-    /// no sense with these numbers.
+    /// [`SceneError`] when a path does not exist or is named twice, a value is not finite, or the scene is invalid with
+    /// these numbers.
     pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
         Ok(match self {
             Self::Plane(scene) => scene.with_values(values)?.into(),
@@ -88,12 +88,12 @@ impl Scene {
         })
     }
 
-    /// The same scene with the magnitude of a load computed by `function` from `signals`: `t`, a coordinate
-    /// such as `phi` (rad or m), or its velocity `phi.velocity`, in SI. The magnitude in the file is dropped. At the breakpoints, values of
-    /// signals by their names, the function jumps or has a kink.
+    /// This scene with the magnitude of a load computed by `function` from `signals`: `t`, a coordinate such as `phi` (rad or m), or its
+    /// velocity `phi.velocity`, in SI. The magnitude in the file is dropped. `breakpoints` are values of signals, by their names, at which
+    /// the function jumps or has a kink.
     ///
     /// # Errors
-    /// [`SceneError`] where there is no such load or no such signal, or a breakpoint is of another signal or not finite.
+    /// [`SceneError`] if there is no such load or signal, or a breakpoint belongs to another signal or is not finite.
     pub fn with_load_function(
         mut self,
         load: &str,

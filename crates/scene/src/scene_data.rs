@@ -11,21 +11,22 @@ use dwell_kinetostatics::{Drive, Load, LoadKind, Mass, VaryingInertia};
 use dwell_laws::Law;
 use std::ops::Deref;
 
-/// A scene in the plane or in space: a mechanism, its masses, where it starts and what is asked of it. SI throughout; the
-/// bodies, joints and actuators are in the order of the file.
+/// A scene in the plane or in space: a mechanism, its masses, its assembly, its motions and the requests. SI units
+/// throughout; the bodies, joints and actuators are in the order of the file.
 #[derive(Debug, Clone)]
 pub struct SceneIn<D: Dimensions> {
     /// Its file, with its name and title.
     pub file: SceneFile,
     /// Bodies, joints and actuators.
     pub mechanism: D::Mechanism,
-    /// Of each body. The ground has none, whatever the file says.
+    /// The mass of each body. The ground has none, even if the file states one.
     pub masses: Vec<D::Mass>,
-    /// The bodies whose moment of inertia is a function of their angle, besides their constant one; none in space.
+    /// The bodies whose moment of inertia is a function of their angle, in addition to their constant one; empty in
+    /// space.
     pub varying_inertias: Vec<VaryingInertia>,
     /// The named points of each body, in its frame, m.
     pub points: Vec<Vec<(String, D::Point)>>,
-    /// The named coordinates of `[coordinates]`. Every actuator's is one besides: see
+    /// The named coordinates of `[coordinates]`. The coordinates of actuators are not included: see
     /// [`coordinate`](Self::coordinate).
     pub coordinates: Vec<NamedCoordinate<D::Coordinate>>,
     /// Where and how the mechanism is put together.
@@ -36,11 +37,11 @@ pub struct SceneIn<D: Dimensions> {
     pub sweep: Option<CoordinateSweep>,
     /// The loads on the mechanism, and the friction in its joints.
     pub loads: Vec<Load<D::LoadKind, D::Coordinate>>,
-    /// What drives it in a free motion.
+    /// Its drives in a free motion.
     pub drives: Vec<Drive<D::Coordinate>>,
     /// The end stops of free coordinates.
     pub stops: Vec<NamedStop>,
-    /// What is asked for.
+    /// The requests.
     pub requests: Requests<D::Point, D::Reaction>,
     /// The free motion.
     pub motion: Option<FreeMotionSpec<D::Coordinate, D::Reaction>>,
@@ -95,7 +96,7 @@ pub struct NamedStop {
     pub max: Option<f64>,
     /// Coefficient of restitution, from 0 to 1.
     pub restitution: f64,
-    /// Of one that yields: its stiffness (N·m/rad or N/m) and its damping (N·m·s/rad or N·s/m).
+    /// For a compliant stop: its stiffness (N·m/rad or N/m) and its damping (N·m·s/rad or N·s/m).
     pub yielding: Option<[f64; 2]>,
 }
 
@@ -111,7 +112,7 @@ pub struct Assembly {
 }
 
 impl Assembly {
-    /// The same as a plan takes it.
+    /// The assembly in the form of a plan.
     pub fn to_configuration(&self) -> AssemblyConfiguration {
         AssemblyConfiguration {
             q: self.coordinates.clone(),
@@ -121,14 +122,14 @@ impl Assembly {
     }
 }
 
-/// What the scene asks for.
+/// The requests of the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Requests<V = Vec2, R = Reaction> {
     /// Reactions: those named, in that order and each once, or else all of the mechanism's, in space in the axes of the ground.
     pub reactions: Vec<R>,
     /// Whether the scene names reactions: an analysis of forces then yields these, and no column that is not requested.
     pub lists_reactions: bool,
-    /// Points whose paths are drawn; in space all where there are none.
+    /// Points whose paths are drawn; in space, all points if the list is empty.
     pub paths: Vec<PathPoint<V>>,
     /// A body whose dwell is marked; none in space.
     pub dwell: Option<DwellRequest>,
@@ -191,7 +192,7 @@ pub struct SectionRequest<V = Vec2> {
 pub struct NamedCoordinate<C = Coordinate> {
     /// The name: no other coordinate's, no actuator's, no body's.
     pub name: String,
-    /// What is measured.
+    /// The measured coordinate.
     pub coordinate: C,
 }
 
@@ -200,7 +201,7 @@ pub struct NamedCoordinate<C = Coordinate> {
 pub struct PrescribedMotion {
     /// How long it lasts, s, above zero.
     pub duration: f64,
-    /// At how many times it is evaluated, the ends among them: two or more.
+    /// Number of times at which it is evaluated, including the ends: two or more.
     pub points: usize,
     /// The coordinate of each actuator, rad or m, as a function of the time, s.
     pub laws: Vec<Law>,
@@ -211,9 +212,9 @@ pub struct PrescribedMotion {
 pub struct CoordinateSweep {
     /// The actuator that is swept.
     pub actuator: ActuatorId,
-    /// From where to where, rad or m; none: over its range, or one revolution.
+    /// First and last coordinate, rad or m; `None` for its range, or one revolution.
     pub range: Option<[f64; 2]>,
-    /// Coordinate of each actuator, rad or m: where it is held, or the swept one's at assembly.
+    /// Coordinate of each actuator, rad or m: the fixed value, or, for the swept one, that at assembly.
     pub fixed_coordinates: Vec<f64>,
     /// How many positions, the ends among them: two or more.
     pub points: usize,
@@ -224,11 +225,11 @@ pub struct CoordinateSweep {
 /// A free motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeMotionSpec<C = Coordinate, R = Reaction> {
-    /// Coordinate of each actuator at the start, rad or m; of a prescribed one, that of its law.
+    /// Coordinate of each actuator at the start, rad or m; for a prescribed one, that of its law.
     pub initial_coordinates: Vec<f64>,
-    /// Speed of each actuator at the start, rad/s or m/s; of a prescribed one, that of its law.
+    /// Speed of each actuator at the start, rad/s or m/s; for a prescribed one, that of its law.
     pub initial_velocities: Vec<f64>,
-    /// By actuator: the law it follows; none where it is free.
+    /// By actuator: the law it follows; `None` if it is free.
     pub laws: Vec<Option<Law>>,
     /// How long it lasts.
     pub duration: MotionDuration,
@@ -241,13 +242,13 @@ pub struct FreeMotionSpec<C = Coordinate, R = Reaction> {
 pub struct NamedEvent<C = Coordinate, R = Reaction> {
     /// The name.
     pub name: String,
-    /// What makes it.
+    /// Its trigger.
     pub trigger: EventTrigger<C, R>,
     /// Whether the motion ends with it.
     pub terminal: bool,
 }
 
-/// What makes an event.
+/// The trigger of an event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EventTrigger<C = Coordinate, R = Reaction> {
     /// A coordinate passes a value, rad or m.
@@ -263,9 +264,9 @@ pub enum EventTrigger<C = Coordinate, R = Reaction> {
 /// How long a motion lasts. Above zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MotionDuration {
-    /// So many periods of the free motion.
+    /// A number of periods of the free motion.
     Periods(f64),
-    /// So many seconds.
+    /// A time, s.
     Seconds(f64),
 }
 

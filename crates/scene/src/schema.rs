@@ -1,12 +1,11 @@
-//! The JSON schema of scenes, from which editors complete keys and show what they mean.
+//! The JSON schema of scenes, with which editors complete and explain keys.
 
 use crate::keys::{self, KeySchema, Presence, TableSchema, ValueShape, kinds};
 use serde_json::{Map, Value, json};
 use toml::de::{DeTable, DeValue};
 
-/// The schema of scenes (JSON schema, draft 7), indented, with a line end. It knows the shape of a
-/// scene: keys and the kinds of their values. Whether names exist and numbers make sense is for
-/// [`PlaneScene::read`](crate::PlaneScene::read) to say.
+/// The schema of scenes (JSON schema, draft 7), indented, with a line end. It describes the shape of a scene: keys and
+/// the kinds of their values. [`PlaneScene::read`](crate::PlaneScene::read) checks names and numbers.
 pub fn schema() -> String {
     let scenes = ["scene", "scene-in-space"].map(|id| table(keys::table(id)));
     let schema = json!({

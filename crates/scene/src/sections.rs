@@ -38,7 +38,7 @@ pub(crate) fn read_root<S>(
     scene.ok_or_else(incomplete)
 }
 
-/// Reports the keys that a table does not have. Those that it has in the plane alone are called, and explained, as `planar` says.
+/// Reports the keys that a table does not have. Keys that exist only in the plane are named and explained with `planar`.
 pub(crate) fn reject_other_keys<D: Notation>(
     fields: &TableReader<'_>,
     id: &str,
@@ -103,7 +103,7 @@ pub(crate) fn title<'a>(fields: &TableReader<'a>) -> Option<&'a str> {
     Some(title)
 }
 
-/// A text shown to people; blank it is as good as absent.
+/// A text for readers; a blank text counts as absent.
 pub(crate) fn text_of<'a>(fields: &TableReader<'a>, key: &str) -> Option<&'a str> {
     let value = fields.get(key)?.value;
     let text = value.string(format_args!("the {key}"))?.trim();

@@ -1,11 +1,11 @@
-//! Places of a scene, by the ids the crates above work with, and where they are in the text.
+//! Places of a scene, by the ids of the crates above, and their ranges in the text.
 
 use dwell_geometry::{ActuatorId, BodyId, JointId};
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Something a message can point at. What the file does not write down points at the nearest
-/// thing around it that it does: a missing mass at its body, a missing section at the beginning.
+/// A place to which a message can point. For a part that is not in the file, it is the nearest enclosing part: for a
+/// missing mass, its body; for a missing section, the beginning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SceneLocation {
     /// The beginning of the file.
@@ -48,10 +48,10 @@ pub enum SceneLocation {
     PrescribedLaw(ActuatorId),
     /// `[coordinate-sweep]`.
     CoordinateSweep,
-    /// What the sweep gives for the actuator.
+    /// The entry of the sweep for the actuator.
     Swept(ActuatorId),
-    /// The name of the k-th of the scene's loads where it is defined: of a friction, that of its joint
-    /// in `[friction]`; of a separating force, that of its joint. After the loads come the drives, as in a model that has them as its last loads.
+    /// The name of the k-th of the scene's loads where it is defined: for a friction, the name of its joint in `[friction]`; for a
+    /// separating force, that of its joint. Drives follow the loads, as in a model.
     Load(usize),
     /// The magnitude of the k-th of the scene's loads, or after them that of a drive.
     Magnitude(usize),
@@ -87,11 +87,11 @@ pub enum SceneLocation {
     Calibration,
 }
 
-/// Where the things of a scene are written.
+/// The places of the parts of a scene.
 pub(crate) type SceneSpans = HashMap<SceneLocation, Range<usize>>;
 
 impl SceneLocation {
-    /// What stands around a place that is not written down.
+    /// The part that encloses a place that is not in the file.
     pub(crate) fn enclosing(self) -> Self {
         match self {
             Self::Point(b, _)

@@ -66,7 +66,7 @@ fn stop(
     })
 }
 
-/// Stiffness and damping of a stop that yields; outer none where they cannot be used.
+/// Stiffness and damping of a compliant stop; the outer `None` if they are invalid.
 fn yielding(fields: &TableReader<'_>) -> Option<Option<[f64; 2]>> {
     let damping = fields.get("damping");
     let Some(stiffness) = fields.get("stiffness") else {

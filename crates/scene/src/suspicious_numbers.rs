@@ -1,5 +1,5 @@
-//! Numbers that look like slips of units: what no machine has by a factor that no machine explains. Each sign leaves several
-//! powers of ten to anything real, so that it is silent about every case. They are warnings of the scene, which every command shows.
+//! Numbers that probably have a wrong unit, because they are far from those of any machine. Each criterion leaves several powers of
+//! ten to real machines and is silent for every case. The results are warnings of the scene, which every command shows.
 
 use crate::dimensions::{Dimensions, Plane, Space};
 use crate::error::SceneWarning;
@@ -16,19 +16,21 @@ const FREE_FALL: f64 = 9.81;
 const SAME: f64 = 0.01;
 /// Revolutions of an angle at the start that is given in radians: 30 is nearly five.
 const REVOLUTIONS: f64 = 3.0;
-/// Mass over the cube of a mechanism's size, kg/m³, beyond which it is no machine: a boom of 30 m and 100 kg has 4e-3,
-/// solid steel 8e3. Below a size (m) that a thing of light bars has, or above one, nothing is said.
+/// Least and largest mass over the cube of a mechanism's size, kg/m³: a boom of 30 m and 100 kg has 4e-3, solid steel
+/// 8e3. There are no warnings below and above certain sizes (m).
 const DENSITIES: [f64; 2] = [1e-4, 1e7];
 const LARGE: f64 = 30.0;
 const SMALL: f64 = 0.01;
-/// Radii of gyration beyond which an inertia is doubted: above so many sizes of the mechanism (0.02 to 1.9 in all cases), below such
-/// a part of it, and below such a part of the body (0.02 to 14 there). An inertia a million times off changes them by a thousand.
+/// Bounds of plausible radii of gyration: largest and least multiple of the size of the mechanism (0.02 to 1.9 in all cases), and
+/// least multiple of the size of the body (0.02 to 14 in all cases). An inertia that is wrong by a factor of a million changes them
+/// by a thousand.
 const WIDEST: f64 = 20.0;
 const NARROWEST: [f64; 2] = [2e-4, 2e-3];
-/// Radius of gyration of a usual body as a part of its size, and how far an inertia in another unit may be from it, by a factor.
+/// Typical radius of gyration of a body relative to its size, and the factor within which an inertia in another unit is
+/// plausible.
 const USUAL: f64 = 0.3;
 const NEAR: f64 = 100.0;
-/// Units of inertia that a number may be meant in, in SI.
+/// Possible units of an inertia, in SI.
 const INERTIAS: [(&str, f64); 4] = [
     ("kg m2", 1.0),
     ("kg cm2", 1e-4),
@@ -36,7 +38,7 @@ const INERTIAS: [(&str, f64); 4] = [
     ("g mm2", 1e-9),
 ];
 
-/// What is looked at of a scene, in the plane or in space.
+/// The examined numbers of a scene, in the plane or in space.
 pub(crate) struct Figures<'s> {
     file: &'s SceneFile,
     /// Largest distance of two joints on a body, m.
@@ -44,7 +46,7 @@ pub(crate) struct Figures<'s> {
     bodies: Vec<BodyFigures<'s>>,
     /// The constant magnitudes of gravity, m/s², by the numbers of their loads.
     gravities: Vec<(usize, f64)>,
-    /// Angles at the start, rad, with what they are of.
+    /// Angles at the start, rad, with their places and names.
     angles: Vec<(SceneLocation, &'s str, f64)>,
 }
 
@@ -60,9 +62,9 @@ struct BodyFigures<'s> {
     is_held: bool,
 }
 
-/// Scenes whose numbers are looked at.
+/// Scenes whose numbers are examined.
 pub(crate) trait Doubtful: Dimensions {
-    /// What is looked at of a scene.
+    /// The examined numbers of a scene.
     fn figures(scene: &SceneIn<Self>) -> Figures<'_>;
 
     /// The scene with a warning for each number that looks like a slip of units.
@@ -138,7 +140,7 @@ impl Doubtful for Space {
     }
 }
 
-/// The bodies but for the ground; `of` gives mass and inertia, centre of mass and points of one.
+/// The bodies without the ground; `of` returns mass and inertia, centre of mass and points of one.
 fn body_figures<'s>(
     names: impl Iterator<Item = &'s str>,
     (ground, joints): (BodyId, impl Iterator<Item = [BodyId; 2]>),
@@ -223,7 +225,7 @@ impl Figures<'_> {
         SceneWarning::at(&self.file.source, message, label, self.file.span(at))
     }
 
-    /// Gravity of 9810 m/s²: meant in mm/s².
+    /// Warns of a gravity such as 9810 m/s², which is probably in mm/s².
     fn gravity(&self, load: usize, value: f64) -> Option<SceneWarning> {
         let is = |factor: f64| (value.abs() / (factor * FREE_FALL) - 1.0).abs() < SAME;
         let message = format!(
@@ -234,7 +236,7 @@ impl Figures<'_> {
         (is(1e3) || is(1e-3)).then(|| self.warning(message, "an acceleration of gravity", at))
     }
 
-    /// An angle at the start of many revolutions in radians: meant in degrees.
+    /// Warns of an angle at the start of many revolutions in radians, which is probably in degrees.
     fn angle(&self, (at, name, angle): &(SceneLocation, &str, f64)) -> Option<SceneWarning> {
         let is_suspicious =
             self.file.to_scene_unit(1.0, true).0 == 1.0 && angle.abs() > REVOLUTIONS * TAU;
@@ -297,7 +299,7 @@ impl Figures<'_> {
         Some(self.warning(message, "an inertia", SceneLocation::Inertia(body.id)))
     }
 
-    /// What an inertia is read in, and what it is likely to be meant in: its own unit, or that of the lengths.
+    /// A text on the unit in which an inertia was read, and on the probable one: its own unit, or that of the lengths.
     fn meant(&self, body: &BodyFigures<'_>, size: f64) -> String {
         let (inertia, length) = (&self.file.units.inertia, &self.file.units.length);
         let usual = body.mass * (USUAL * size).powi(2);
@@ -341,7 +343,7 @@ impl Figures<'_> {
 }
 
 impl BodyFigures<'_> {
-    /// √(inertia/mass), m; 0 where there is no mass.
+    /// √(inertia/mass), m; 0 without a mass.
     fn radius_of_gyration(&self) -> f64 {
         if self.mass > 0.0 {
             (self.inertia / self.mass).sqrt()

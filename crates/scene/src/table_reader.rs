@@ -18,7 +18,7 @@ pub(crate) struct Entry<'a> {
 }
 
 impl<'a> Entry<'a> {
-    /// Its key with its value.
+    /// The place of its key with its value.
     pub(crate) fn span(&self) -> Span {
         self.key.start..self.value.span().end
     }
@@ -53,9 +53,9 @@ impl<'a> Entry<'a> {
 pub(crate) struct TableReader<'a> {
     /// How a message calls the table.
     pub(crate) what: String,
-    /// Its name, where something is missing in it.
+    /// The place of its name, for errors about missing entries.
     pub(crate) key: Span,
-    /// Where it begins: its header, or the whole of an inline table.
+    /// Its place: its header, or the whole of an inline table.
     pub(crate) span: Span,
     pub(crate) entries: Vec<Entry<'a>>,
     pub(crate) context: Context<'a>,
@@ -90,7 +90,7 @@ impl<'a> TableReader<'a> {
         Self::of_value(entry.value, entry.key.clone(), what)
     }
 
-    /// The table that `value` is; `key` is where it is named.
+    /// Reads `value` as a table; `key` is the place of its name.
     pub(crate) fn of_value(value: Value<'a>, key: Span, what: impl Into<String>) -> Option<Self> {
         let what = what.into();
         match value.get() {
@@ -125,7 +125,7 @@ impl<'a> TableReader<'a> {
         format!("{} of {}", entry.written(), self.what)
     }
 
-    /// The entry of that key, or an error that it is missing; `help` says how to write it.
+    /// The entry of that key, or an error that it is missing; `help` describes the notation.
     pub(crate) fn require(&self, key: &str, help: &str) -> Option<&Entry<'a>> {
         self.get(key).or_else(|| {
             let message = format!("{} has no `{key}`", self.what);
@@ -134,7 +134,7 @@ impl<'a> TableReader<'a> {
         })
     }
 
-    /// The number of that key in SI, or `default` where it is absent; nothing where it is wrong.
+    /// The number of that key in SI, or `default` if it is absent; `None` if it is invalid.
     pub(crate) fn number_or(&self, default: f64, key: &str, rule: &NumberRule<'_>) -> Option<f64> {
         match self.get(key) {
             Some(entry) => entry.value.quantity_with_sign(rule, self.name_of(entry)),
@@ -142,13 +142,13 @@ impl<'a> TableReader<'a> {
         }
     }
 
-    /// The number of that key in SI, which has to be there; `help` says how to write it.
+    /// The number of that key in SI, which has to be there; `help` describes the notation.
     pub(crate) fn number(&self, key: &str, help: &str, rule: &NumberRule<'_>) -> Option<f64> {
         let entry = self.require(key, help)?;
         entry.value.quantity_with_sign(rule, self.name_of(entry))
     }
 
-    /// `true` or `false` of that key, `false` where it is absent; nothing where it is wrong.
+    /// The value of a boolean key, `false` if it is absent; `None` if it is invalid.
     pub(crate) fn boolean(&self, key: &str) -> Option<bool> {
         match self.get(key) {
             Some(entry) => entry
@@ -174,7 +174,7 @@ impl<'a> TableReader<'a> {
         }
     }
 
-    /// Reports that a key is none of those that can stand here.
+    /// Reports a key that is not allowed here.
     pub(crate) fn report_unknown_key<'n>(
         &self,
         entry: &Entry<'_>,
@@ -189,8 +189,7 @@ impl<'a> TableReader<'a> {
         entry.reject::<()>(message, "unknown key", help);
     }
 
-    /// The one of several keys that exclude each other; nothing if none is there, and an error if
-    /// there are two.
+    /// The one of several keys that exclude each other; `None` if there is none, and an error if there are two.
     pub(crate) fn one_of(&self, among: impl Fn(&str) -> bool) -> Result<Option<&Entry<'a>>, ()> {
         let mut found = self.entries.iter().filter(|e| among(e.name));
         match (found.next(), found.next()) {
@@ -203,8 +202,8 @@ impl<'a> TableReader<'a> {
         }
     }
 
-    /// The one key of a table of alternatives, and an error where it has none: that `help` says how to write one. Other keys are
-    /// errors too, and what seems to be missing may be one of them.
+    /// The one key of a table of alternatives. Without one the error shows `help`, the notation. Other keys are errors, too; one
+    /// of them may be a misspelling.
     pub(crate) fn alternative(
         &self,
         table: &'static TableSchema,
@@ -220,7 +219,7 @@ impl<'a> TableReader<'a> {
         chosen
     }
 
-    /// Reports two keys of which only one can be given; the labels say what each is.
+    /// Reports two keys of which only one can be given; the labels describe each.
     pub(crate) fn reject_both(&self, a: &Entry<'_>, b: &Entry<'_>, labels: [&str; 2]) {
         let (one, other) = (a.written(), b.written());
         let message = format!("{} has both `{one}` and `{other}`", self.what);

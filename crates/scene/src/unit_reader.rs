@@ -17,7 +17,7 @@ impl Units {
         }
     }
 
-    /// The units of the scene's `[units]`, SI where it gives none.
+    /// The units of the scene's `[units]`, SI units by default.
     pub(crate) fn read(section: Option<&Entry<'_>>) -> Self {
         let mut units = Self::default();
         let Some(fields) = section.and_then(|entry| TableReader::open(entry, "[units]")) else {

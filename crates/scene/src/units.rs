@@ -67,7 +67,7 @@ pub(crate) struct Units {
     pub(crate) mass: Unit,
     pub(crate) inertia: Unit,
     pub(crate) angle: Unit,
-    /// Where a unit other than SI's was taken that calls for an inertia unit, if there is none.
+    /// The place of a unit other than SI's that requires an inertia unit, if there is none.
     pub(crate) missing_inertia_unit: Option<Span>,
 }
 

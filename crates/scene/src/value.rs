@@ -1,5 +1,5 @@
-//! Typed reading of one value: each reader returns what it was asked for, or reports what it found
-//! instead. `what` is how a message calls the value.
+//! Typed reading of one value: each reader returns the requested type, or reports what it found instead. `what` names
+//! the value in messages.
 
 use crate::diagnostics::{Diagnostics, Span};
 use crate::units::{Unit, Units};
@@ -18,7 +18,7 @@ pub const MAX_ANGLE: f64 = 1e6;
 /// How a point or a direction is written.
 pub(crate) const POINT: &str = "two numbers [x, y]";
 
-/// What all readers of a scene share: its units, and the list of its errors.
+/// The common data of all readers of a scene: its units, and the list of its errors.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Context<'a> {
     pub(crate) units: &'a Units,
@@ -32,7 +32,7 @@ pub(crate) struct Value<'a> {
     pub(crate) context: Context<'a>,
 }
 
-/// What a number has to be, besides finite.
+/// The sign rule of a number, which must also be finite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum SignRule {
     Any,
@@ -107,7 +107,7 @@ impl<'a> Value<'a> {
         self.log().reject(message, &[(&self.span(), label)], help)
     }
 
-    /// Reports that it is not what was expected.
+    /// Reports that it differs from the expected type.
     pub(crate) fn mismatch<T>(self, expected: &str, what: impl Display) -> Option<T> {
         let found = match self.get() {
             DeValue::String(_) => "a string",
@@ -306,7 +306,7 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// The two values of an array; `expected` says two of what, and how it is written.
+    /// The two values of an array; `expected` describes them and their notation.
     pub(crate) fn pair(self, expected: &str, what: impl Display) -> Option<[Value<'a>; 2]> {
         let values = self.array(expected, &what)?;
         let found = match values.len() {
@@ -318,7 +318,7 @@ impl<'a> Value<'a> {
         self.unexpected(expected, &found, what, "")
     }
 
-    /// The two values of an array, read by `one`, which is told how a message calls each. Both are read before either fails, so
+    /// The two values of an array, read by `one`, which gets a name of each for messages. Both are read before either fails, so
     /// that both are reported.
     pub(crate) fn pair_of<T>(
         self,

@@ -55,7 +55,7 @@ pub(crate) fn varying_inertia<'a>(
     })
 }
 
-/// The reactions of the mechanism that the body stands for.
+/// The reactions of the mechanism that the body represents.
 fn reactions(entry: &Entry<'_>, curves: &Curves, count: usize) -> Option<Vec<KnownReaction>> {
     let fields = TableReader::open(entry, "the reactions of a varying inertia")?;
     let one = |entry: &Entry<'_>| {
@@ -138,7 +138,7 @@ impl Curves {
         SampledCurve::Cubic(both.map(|(i, half)| [*i, 2.0 * half]).collect())
     }
 
-    /// Reports an inertia of zero or less, and one that changes otherwise than half its slope says.
+    /// Reports an inertia of zero or less, and one whose change contradicts its half slope.
     fn check(
         &self,
         fields: &TableReader<'_>,
@@ -181,7 +181,7 @@ impl Curves {
     }
 }
 
-/// Whether the interpolation is a trigonometric series: asked for, or the best for these angles.
+/// Whether the interpolation is a trigonometric series: requested, or the best for these angles.
 fn is_series(fields: &TableReader<'_>, whole: Option<usize>) -> Option<bool> {
     let Some(entry) = fields.get("interpolation") else {
         return Some(whole.is_some());
@@ -218,7 +218,7 @@ fn whole_revolution(angles: &[f64]) -> Option<usize> {
         .find(|&rows| rows >= 3 && equal(rows))
 }
 
-/// The numbers of a key in SI, two or more, with where they are.
+/// The numbers of a key in SI, two or more, with their places.
 fn numbers<'a>(fields: &TableReader<'a>, key: &str, unit: &Unit) -> Option<(Vec<f64>, Value<'a>)> {
     let entry = fields.require(
         key,
@@ -238,7 +238,7 @@ fn numbers<'a>(fields: &TableReader<'a>, key: &str, unit: &Unit) -> Option<(Vec<
     Some((read, entry.value))
 }
 
-/// The angles in rad: increasing, of one revolution.
+/// The angles in rad, which must increase within one revolution.
 fn increasing_angles(fields: &TableReader<'_>, unit: &Unit) -> Option<Vec<f64>> {
     let (angles, at) = numbers(fields, "angle", unit)?;
     let count = angles.len();
@@ -259,7 +259,7 @@ fn increasing_angles(fields: &TableReader<'_>, unit: &Unit) -> Option<Vec<f64>> 
     Some(angles)
 }
 
-/// As many numbers as angles.
+/// The numbers of a key, as many as there are angles.
 fn column(fields: &TableReader<'_>, key: &str, unit: &Unit, count: usize) -> Option<Vec<f64>> {
     let (values, at) = numbers(fields, key, unit)?;
     if values.len() == count {

@@ -8,8 +8,8 @@ pub(crate) const MAX_NAME_LENGTH: usize = 64;
 /// Names listed in one message.
 const MAX_LISTED: usize = 16;
 
-/// What to try instead of the name `wrong`: the nearest of `names`, or else their list. `kind` is
-/// what they are, in the plural.
+/// A suggestion instead of the name `wrong`: the nearest of `names`, or else their list. `kind` is their kind, in the
+/// plural.
 pub fn choices<'n>(
     wrong: &str,
     kind: &str,
@@ -25,7 +25,7 @@ pub fn choices<'n>(
     }
 }
 
-/// "`a`, `b` and `c`", cut short if long; nothing if there is none.
+/// "`a`, `b` and `c`", shortened if long; `None` if there is none.
 pub(crate) fn list<'n>(mut names: impl Iterator<Item = &'n str>) -> Option<String> {
     let mut text = format!("`{}`", names.next()?);
     let mut last = None;

@@ -1,5 +1,5 @@
-//! Exported C beside the table in Rust, one after the other in one run, as ratios: `cargo bench -p dwell-study --bench export`.
-//! Nothing is asserted.
+//! Times of exported C and of the table in Rust, one after the other in one run, as ratios: `cargo bench -p dwell-study --bench
+//! export`. Nothing is asserted.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a benchmark")]
 
 use dwell_export::{Precision, Request, c_files};

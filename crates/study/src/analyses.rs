@@ -67,9 +67,9 @@ pub fn compute_trajectory<'a, S: StudyScene>(
 }
 
 /// The page of an analysis of a scene along its prescribed motion, its sweep, or the range of its only actuator: the rows of its table,
-/// peaks, and the mechanism in each row; and why the motion ended early, if it did. In the plane it prints what is to be known of the assembly.
+/// peaks, the mechanism in each row, and the reason for an early end of the motion. In the plane it prints notes on the assembly.
 ///
-/// Of very many rows it holds every so many-th, and says so.
+/// A page of very many rows holds every n-th row, and states this.
 ///
 /// # Errors
 /// As [`compute_trajectory`].
@@ -155,10 +155,10 @@ pub fn analyse_trajectory<S: StudyScene>(
     analyse_trajectory_within(scene, analysis, points, PictureSpan::default(), progress)
 }
 
-/// The same, with curves that show a part of the trajectory.
+/// As [`analyse_trajectory`], with curves that show a part of the trajectory.
 ///
 /// # Errors
-/// As [`compute_trajectory`]; [`StudyError::Scene`] where the part is not within the trajectory.
+/// As [`compute_trajectory`]; [`StudyError::Scene`] if the part is not within the trajectory.
 #[cfg(feature = "output")]
 pub fn analyse_trajectory_within<S: StudyScene>(
     scene: &S,
@@ -295,7 +295,7 @@ pub fn simulate<S: StudyScene>(
 /// largest value.
 ///
 /// # Errors
-/// As [`simulate`]. If the accuracy is not reached, [`TrajectoryOutcome::early_stop`] says so.
+/// As [`simulate`]. If the accuracy is not reached, [`TrajectoryOutcome::early_stop`] has the reason.
 #[cfg(feature = "output")]
 pub fn simulate_to_accuracy<S: StudyScene>(
     scene: &S,
@@ -324,10 +324,10 @@ pub fn simulate_with<S: StudyScene>(
     simulate_within(scene, solver, times, PictureSpan::default(), progress)
 }
 
-/// The same, with curves that show a part of the motion.
+/// As [`simulate_with`], with curves that show a part of the motion.
 ///
 /// # Errors
-/// As [`simulate_with`]; [`StudyError::Scene`] where the part is not within the motion.
+/// As [`simulate_with`]; [`StudyError::Scene`] if the part is not within the motion.
 #[cfg(feature = "output")]
 pub fn simulate_within<S: StudyScene>(
     scene: &S,
@@ -397,7 +397,7 @@ pub fn symbolic<S: StudyScene>(
 /// Fits the functions of a scene's machine for export.
 ///
 /// # Errors
-/// [`StudyError::Scene`] where the scene cannot be exported: it says why and what to change.
+/// [`StudyError::Scene`] if the scene cannot be exported; the error states the reason and a change.
 pub fn compute_export<S: StudyScene>(
     scene: &S,
     asked: &ExportRequest,
@@ -409,7 +409,7 @@ pub fn compute_export<S: StudyScene>(
 /// coordinate.
 ///
 /// # Errors
-/// [`StudyError::Scene`] where the scene cannot be exported: it says why and what to change.
+/// [`StudyError::Scene`] if the scene cannot be exported; the error states the reason and a change.
 pub fn compute_export_of_several_freedoms<S: StudyScene>(
     scene: &S,
     asked: &ExportRequest,
@@ -420,7 +420,7 @@ pub fn compute_export_of_several_freedoms<S: StudyScene>(
 /// Exports the reduced model of a scene's machine, or the equations of motion of one with several actuators.
 ///
 /// # Errors
-/// [`StudyError::Scene`] where the scene cannot be exported: it says why and what to change.
+/// [`StudyError::Scene`] if the scene cannot be exported; the error states the reason and a change.
 #[cfg(feature = "output")]
 pub fn export<S: StudyScene>(
     scene: &S,

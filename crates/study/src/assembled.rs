@@ -39,7 +39,8 @@ pub type NamedPoints<'a> = Vec<(&'a str, [f64; 3])>;
 pub struct AssembledModel<S: MachineScene> {
     /// The model.
     pub model: S::Model,
-    /// All reactions that can be asked for, each with its place among those of the model; none where redundant constraints leave it open.
+    /// All reactions that can be requested, each with its index among those of the model; `None` if redundant constraints leave it
+    /// undetermined.
     pub reactions: Vec<(S::Reaction, Option<usize>)>,
 }
 
@@ -52,7 +53,7 @@ pub struct UnitModels<M> {
     pub loaded: Option<M>,
 }
 
-/// A scene whose assembled mechanism is asked.
+/// A scene whose assembled mechanism answers single queries.
 pub trait AskedScene: MachineScene<Model: TableModel> + Clone + Send + Sync + 'static {
     /// 2 in the plane, 3 in space.
     const DIMENSION: usize;
@@ -102,14 +103,14 @@ pub trait AskedScene: MachineScene<Model: TableModel> + Clone + Send + Sync + 's
     /// The names of the coordinates in their order: those of the actuators first.
     fn coordinate_names(&self) -> Vec<&str>;
 
-    /// The names of the loads, those of the drives left out.
+    /// The names of the loads, without the drives.
     fn load_names(&self) -> Vec<&str>;
 
     /// By actuator: its coordinate at assembly, rad or m.
     fn assembly_coordinates(&self) -> &[f64];
 
-    /// Where points of bodies are at many positions, m: by position, then by point. `q` has the coordinates of all actuators (rad or m) of
-    /// one position after another.
+    /// Positions of points of bodies at many coordinates, m: by position, then by point. `q` has the coordinates of all actuators (rad or
+    /// m) of one position after another.
     ///
     /// # Errors
     /// [`PositionError`] for the first position that the mechanism cannot reach.
@@ -126,17 +127,17 @@ pub trait AskedScene: MachineScene<Model: TableModel> + Clone + Send + Sync + 's
     /// The states of all bodies at coordinates, their velocities and accelerations (rad or m, per s, per s²).
     ///
     /// # Errors
-    /// [`DynamicsError`] where there is no position.
+    /// [`DynamicsError`] if there is no position.
     fn body_states(
         &self,
         model: &Self::Model,
         motion: [&[f64]; 3],
     ) -> Result<FoundStates, DynamicsError>;
 
-    /// The same with the forces under all loads at time `t` (s).
+    /// The states with the forces under all loads at time `t` (s).
     ///
     /// # Errors
-    /// [`DynamicsError`] where there is no position, a load has no value, or friction locks the mechanism.
+    /// [`DynamicsError`] if there is no position, a load has no value, or friction locks the mechanism.
     fn loaded_states(
         &self,
         model: &Self::Model,

@@ -32,7 +32,7 @@ pub struct CalibrationResult {
     pub current_period_error: f64,
     /// The value found.
     pub value: f64,
-    /// Its estimated error: that of the period over the change of the period with the value.
+    /// Its estimated error: the error of the period over the derivative of the period by the value.
     pub value_error: f64,
     /// The required period, s.
     pub period: f64,
@@ -111,7 +111,7 @@ pub fn find_value(
     result(value)
 }
 
-/// The error of a value that gives a period (s): that of the period over its change with the value.
+/// The error of a value that gives a period (s): the error of the period over its derivative by the value.
 fn value_error(
     scene: &impl CalibratedScene,
     path: &str,
@@ -141,7 +141,7 @@ struct BracketSearch {
 }
 
 impl BracketSearch {
-    /// The values tried and their periods, and what to try instead.
+    /// The values tried with their periods, and a suggestion.
     fn describe(&self, unit: &str) -> (String, &'static str) {
         let extent_of = |k: usize| extent(self.found.iter().map(|found| found[k]));
         let [from, to] = extent_of(0).map(|v| digits(v, 3));
@@ -222,10 +222,10 @@ pub trait CalibratedScene: SweptScene {
     /// The equation of motion of its only coordinate, without losses, drives and prescribed motions.
     ///
     /// # Errors
-    /// [`StudyError::Scene`] where it has drives or losses, or several coordinates.
+    /// [`StudyError::Scene`] if it has drives or losses, or several coordinates.
     fn conservative_motion(&self) -> Result<ConservativeMotion<Self::Model>, StudyError>;
 
-    /// The path and the period, s, of its `[calibration]`, where it can have one.
+    /// The path and the period, s, of its `[calibration]`, if it has one.
     fn calibration(&self) -> Option<(&str, f64)> {
         None
     }
@@ -234,9 +234,9 @@ pub trait CalibratedScene: SweptScene {
 /// The equation of motion of a scene without losses, drives and prescribed motions.
 #[derive(Debug)]
 pub enum ConservativeMotion<M: MovingModel> {
-    /// That of a driven angle without loads.
+    /// The equation of motion of a driven angle without loads.
     Unloaded(Box<ExactModel>),
-    /// That of a length, or with loads, all of which have a potential; or in space.
+    /// The equation of motion of a length, or with loads that all have a potential, or in space.
     Loaded(Box<Machine<M>>),
 }
 
@@ -331,7 +331,7 @@ fn period_with_error(scene: &impl CalibratedScene) -> Result<(f64, f64), StudyEr
     Ok((orbit.period, error))
 }
 
-/// An orbit, its equation of motion, and where it starts.
+/// An orbit, its equation of motion, and its initial state.
 type FoundOrbit<M> = (Orbit, ConservativeMotion<M>, ReducedState);
 
 fn orbit_of<S: CalibratedScene>(scene: &S) -> Result<FoundOrbit<S::Model>, StudyError> {
@@ -355,7 +355,7 @@ fn orbit_of<S: CalibratedScene>(scene: &S) -> Result<FoundOrbit<S::Model>, Study
     Ok((orbit, motion, start))
 }
 
-/// `dwell calibrate`, with the path and the period of the scene's `[calibration]` where none is given.
+/// `dwell calibrate`, with the path and the period of the scene's `[calibration]` as defaults.
 ///
 /// # Errors
 /// As [`find_value`]; when neither the caller nor the scene gives path and period; when there are drives, or loads without

@@ -36,7 +36,7 @@ pub(crate) fn description(scene: &PlaneScene, record: &mut Record) -> Result<Str
     Ok(text)
 }
 
-/// The title, the numbers of moving bodies and of joints, and the degrees of freedom with what drives them.
+/// The title, the numbers of moving bodies and of joints, and the degrees of freedom with their actuators.
 pub(crate) fn describe_parts<'a>(
     scene: &SceneFile,
     place: &str,
@@ -124,7 +124,7 @@ pub(crate) fn describe_redundant(
     )
 }
 
-/// The range of an actuator; `note` says what is known of its ends.
+/// The range of an actuator; `note` describes its ends.
 pub(crate) fn range_text(
     file: &SceneFile,
     (name, is_angle): (&str, bool),
@@ -268,7 +268,7 @@ pub(crate) fn describe_start(
     at.collect::<Vec<_>>().join(", ")
 }
 
-/// A number to so many parts of its unit. Rounded first, so that no zero keeps a minus sign.
+/// A number rounded to a multiple of 1/`parts`, without a minus sign for zero.
 pub(crate) fn rounded(value: f64, parts: f64) -> f64 {
     (value * parts).round() / parts + 0.0
 }

@@ -1,4 +1,4 @@
-//! What a scene has, for `dwell check`: its size and masses at the start, loads, drives, stops and motions.
+//! The contents of a scene, for `dwell check`: its size and masses at the start, loads, drives, stops and motions.
 
 use crate::explain::NamedScene;
 use crate::machines::{CoordinateOf, MachineScene};
@@ -185,10 +185,10 @@ pub(crate) fn describe_actions<S: MachineScene, R>(
         + &describe_motions(scene, motions, record)
 }
 
-/// The loads of a model, and the names of what they act on.
+/// The loads of a model, and the names of the bodies and joints on which they act.
 type NamedLoads<'a, M> = (&'a [ModelLoad<M>], &'a LoadNames<'a>);
 
-/// A constant, or what a magnitude depends on.
+/// A description of a magnitude: its constant, or its signals.
 fn magnitude<S: MachineScene>(
     scene: &S,
     of: &Magnitude<CoordinateOf<S>>,

@@ -66,11 +66,11 @@ pub(crate) fn relative(error: f64, scale: f64) -> f64 {
     if error == 0.0 { 0.0 } else { error / scale }
 }
 
-/// A quantity below this part of what its unit can be expected to hold is zero but for rounding.
+/// A quantity below this fraction of the reference of its unit is zero within rounding.
 pub(crate) const ZERO_RATIO: f64 = 1e-12;
 
-/// Whether a quantity whose largest value is `size` is zero but for rounding, where `reference` is what quantities of
-/// its unit come to.
+/// Whether a quantity whose largest value is `size` is zero within rounding; `reference` is the size of quantities of
+/// its unit.
 pub(crate) fn is_rounding(size: f64, reference: f64) -> bool {
     size <= ZERO_RATIO * reference
 }
@@ -84,8 +84,8 @@ pub(crate) fn error_scale(size: f64, reference: f64) -> f64 {
     }
 }
 
-/// What an energy balance shows beyond the rounding of its own sum, J: beside a potential energy of 10 J the kinetic energy of a small
-/// oscillation, 5e-8 J, would be known to eight digits only.
+/// The difference in an energy balance beyond the rounding of its sum, J. With a potential energy of 10 J, for example, the kinetic
+/// energy of a small oscillation, 5e-8 J, has only eight digits.
 pub(crate) fn beyond_rounding(difference: f64, kinetic: f64, potential: f64) -> f64 {
     (difference - 4.0 * f64::EPSILON * (kinetic + potential)).max(0.0)
 }

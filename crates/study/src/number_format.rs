@@ -24,7 +24,7 @@ pub fn digits(value: f64, count: usize) -> String {
     }
 }
 
-/// `value` to the digits that its `error` leaves, at most `count` of them; zero where it leaves none.
+/// `value` with the digits that its `error` leaves, at most `count`; zero if it leaves none.
 pub(crate) fn digits_within(value: f64, error: f64, count: usize) -> String {
     if !(value.abs() > error && value.is_finite()) {
         return match value.is_finite() && error.is_finite() {

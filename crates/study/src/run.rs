@@ -39,7 +39,7 @@ pub enum Request<'a> {
     },
     /// [`analyse_trajectory_within`].
     Trajectory {
-        /// What is computed in each position.
+        /// The analysis at each position.
         analysis: Analysis,
         /// The number of positions.
         points: Option<usize>,
@@ -83,16 +83,16 @@ pub enum Request<'a> {
     },
     /// [`export`].
     Export {
-        /// What is written.
+        /// The target of the export.
         target: ExportTarget,
         /// How accurately.
         asked: ExportRequest,
     },
     /// [`calibrate`].
     Calibrate {
-        /// The path of the number; none for that of the scene.
+        /// The path of the number; `None` for that of the scene.
         parameter: Option<&'a str>,
-        /// The wanted period, s; none for that of the scene.
+        /// The required period, s; `None` for that of the scene.
         period: Option<f64>,
     },
     /// [`sweep`].
@@ -102,7 +102,7 @@ pub enum Request<'a> {
 /// Studies a scene.
 ///
 /// # Errors
-/// Those of the study. What ends a motion early is in the outcome.
+/// Those of the study. The outcome contains the reason for an early end of a motion.
 ///
 /// ```
 /// use dwell_study::{Request, no_progress, run};

@@ -1,4 +1,5 @@
-//! What differs between scenes in the plane and in space, for all analyses: everything above knows a scene by this trait alone.
+//! The differences between scenes in the plane and in space, for all analyses. Everything above uses a scene only through this
+//! trait.
 
 use crate::calibrate::CalibratedScene;
 use crate::explain::StudyError;
@@ -24,13 +25,13 @@ pub type PageAndStop = (Page, Option<StudyError>);
 
 /// A scene in the plane or in space.
 pub trait StudyScene: SimulatedScene + UnitRunScene + CalibratedScene {
-    /// What [`check`](crate::check()) prints; the numbers in it are recorded.
+    /// The text that [`check`](crate::check()) prints; its numbers are recorded.
     ///
     /// # Errors
     /// As of [`describe_scene`](crate::describe_scene).
     fn description(&self, record: &mut Record) -> Result<String, StudyError>;
 
-    /// The scene with the reduced model of what it requests.
+    /// The scene with the reduced model of its requests.
     ///
     /// # Errors
     /// As of [`compute_reduction`](crate::compute_reduction).
@@ -39,13 +40,13 @@ pub trait StudyScene: SimulatedScene + UnitRunScene + CalibratedScene {
     /// The mechanism at values of its coordinate, rad or m.
     ///
     /// # Errors
-    /// [`StudyError::Scene`] where a position cannot be reached.
+    /// [`StudyError::Scene`] if a position cannot be reached.
     fn drawing_of(prepared: &Self::Prepared<'_>, q: &[f64]) -> Result<Option<Drawing>, StudyError>;
 
-    /// Pictures of the mechanism over its range, before and behind those of the reduced parameters.
+    /// Pictures of the mechanism over its range, placed before and after those of the reduced parameters.
     ///
     /// # Errors
-    /// [`StudyError::Scene`] where a position cannot be reached.
+    /// [`StudyError::Scene`] if a position cannot be reached.
     #[cfg(feature = "output")]
     fn range_pictures(_: &Self::Prepared<'_>) -> Result<Option<[Picture; 2]>, StudyError> {
         Ok(None)
@@ -119,7 +120,7 @@ pub trait StudyScene: SimulatedScene + UnitRunScene + CalibratedScene {
     /// Why several actuators are not exported to another target than C.
     fn several_freedoms_error(&self) -> StudyError;
 
-    /// What closed forms leave out.
+    /// Notes on the parts of the scene that closed forms omit.
     #[cfg(feature = "output")]
     fn closed_form_notes(&self, _: &ClosedForm) -> String {
         String::new()
@@ -138,9 +139,9 @@ pub trait StudyScene: SimulatedScene + UnitRunScene + CalibratedScene {
     fn several_freedoms(&self, asked: &ExportRequest) -> Result<SeveralFreedomsExport, StudyError>;
 }
 
-/// What is done with a scene, in the plane or in space.
+/// A task on a scene, in the plane or in space.
 pub trait SceneTask {
-    /// What it yields.
+    /// The result of the task.
     type Output;
 
     /// Does it.

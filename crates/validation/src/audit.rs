@@ -1,5 +1,5 @@
-//! The independent reader of what the commands write, `validation/audit`: a program in Python that shares nothing with this one. It runs
-//! where Python with NumPy is found.
+//! The independent reader of the written files, `validation/audit`: a program in Python that shares nothing with this one. It runs if
+//! Python with NumPy is found.
 
 use crate::report_parts::{findings_text, nearest, result_line};
 use dwell_findings::{Check, Finding};
@@ -13,7 +13,7 @@ use std::process::Command;
 
 /// The name of the study and of its report.
 pub const NAME: &str = "audit";
-/// The oldest Python that has a reader of TOML, and what the reader needs besides.
+/// The modules that the reader needs; `tomllib` requires Python 3.11.
 const NEEDS: &str = "import tomllib, numpy";
 
 const TEXT: &str = "The files that the commands write of each case, judged by `validation/audit`: a program in Python with a reader of \
@@ -23,7 +23,7 @@ const TEXT: &str = "The files that the commands write of each case, judged by `v
 /// Why the independent reader does not run, in words.
 pub type NotRun = String;
 
-/// What the independent reader found.
+/// The results of the independent reader.
 pub struct Audited {
     /// The report `audit.md`, with the findings of all scenes.
     pub outcome: Outcome,
@@ -71,7 +71,7 @@ pub fn study(
     })
 }
 
-/// What the reader printed as data; why it is none.
+/// The printed text of the reader as data; otherwise the reason.
 fn read(printed: &[u8], messages: &[u8]) -> Result<Value, String> {
     serde_json::from_slice(printed).map_err(|_| {
         let messages = String::from_utf8_lossy(messages);
@@ -80,7 +80,7 @@ fn read(printed: &[u8], messages: &[u8]) -> Result<Value, String> {
     })
 }
 
-/// What was found of a scene.
+/// The findings on a scene.
 struct Judged {
     findings: Vec<Finding>,
     count: usize,
@@ -88,7 +88,7 @@ struct Judged {
 }
 
 impl Judged {
-    /// Of each check the file that is nearest to its tolerance; what cannot be read fails.
+    /// For each check, the file that is nearest to its tolerance; unreadable results fail.
     fn new(name: &str, judged: Result<Value, String>) -> Self {
         let (judged, mut errors) = match judged {
             Ok(judged) => (judged, Vec::new()),

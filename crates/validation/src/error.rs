@@ -15,7 +15,7 @@ pub enum ValidationError {
     Reference {
         /// The file.
         path: String,
-        /// What is wrong with it.
+        /// The fault.
         reason: String,
     },
 }

@@ -1,6 +1,6 @@
-//! The validation cases: each is computed, checked against independent computations and published numbers, and
-//! reported. Three studies belong to them: series of closed forms with ever more extreme parameters ([`extremes`], in other forms [`extremes::forms`]),
-//! what accuracy costs ([`work_precision`](mod@work_precision)), and what exported runs are worth ([`export_study`]).
+//! The validation cases: each is computed, checked against independent computations and published numbers, and reported. Three studies
+//! belong to them: series of closed forms with ever more extreme parameters ([`extremes`], in other forms [`extremes::forms`]), cost
+//! against accuracy ([`work_precision`](mod@work_precision)), and errors of exported runs ([`export_study`]).
 //!
 //! ```
 //! use dwell_findings::all_pass;
@@ -54,8 +54,8 @@ use dwell_study::Progress;
 use spatial::validate_in_space;
 use std::path::Path;
 
-/// Validates the case whose scene is `scene` and whose reference, if any, is in `folder`, and what the program at a path writes of it when it
-/// runs as a process. The files are `NAME.html`, `NAME.md`, `NAME.txt` and the folder `NAME/` with figures; in the plane also `NAME.json`
+/// Validates the case whose scene is `scene` and whose reference, if any, is in `folder`, and the files that the program at a path writes
+/// for it as a process. The files are `NAME.html`, `NAME.md`, `NAME.txt` and the folder `NAME/` with figures; in the plane also `NAME.json`
 /// and tables.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Planar scenes placed obliquely in space: the same mechanism, each joint at a height of its own above the plane.
+//! Planar scenes placed obliquely in space: the same mechanism, with each joint at its own height above the plane.
 
 use dwell_geometry::space::{
     Actuator, Assembly, Joint, JointKind, Mechanism, Placement, Rotation, Side, Vec3, vec3,
@@ -31,11 +31,11 @@ pub struct Lifted {
     pub mechanism: Mechanism,
     /// By body.
     pub masses: Vec<Mass>,
-    /// Where it is assembled.
+    /// Its assembly.
     pub assembly: Assembly,
 }
 
-/// Where the plane of a mechanism is, and at which height above it each joint, m.
+/// The plane of a mechanism, and the height of each joint above it, m.
 pub struct Plane<'a> {
     /// Its frame in that of the scene.
     pub frame: Placement,
@@ -93,7 +93,7 @@ impl Plane<'_> {
         Some(Joint::new(joint.name.clone(), joint.bodies, kind, sides))
     }
 
-    /// The mechanism in space; none where a joint or the actuator has no counterpart.
+    /// The mechanism in space; `None` if a joint or the actuator has no counterpart.
     fn mechanism(&self, planar: &plane::Mechanism) -> Option<Mechanism> {
         let joints = planar.joints.iter().enumerate();
         let joints: Option<Vec<Joint>> = joints
@@ -122,7 +122,7 @@ impl Plane<'_> {
         })
     }
 
-    /// Where the bodies of a planar model are in space at a coordinate.
+    /// The placements in space of the bodies of a planar model at a coordinate.
     fn placements(&self, model: &Model, q: f64) -> Option<Vec<Placement>> {
         let mut workspace = model.workspace();
         let mut state = model.kinematic_state(&[q], &[1.0], &mut workspace).ok()?;
@@ -142,7 +142,7 @@ impl Plane<'_> {
         Some((0..model.mechanism().bodies.len()).map(place).collect())
     }
 
-    /// A planar model in space; none where a joint or the actuator has no counterpart.
+    /// A planar model in space; `None` if a joint or the actuator has no counterpart.
     pub fn lift(&self, model: &Model, masses: &[dwell_kinetostatics::Mass]) -> Option<Lifted> {
         let mechanism = self.mechanism(model.mechanism())?;
         let start = model.plan().assembly_coordinates()[0];
@@ -163,7 +163,7 @@ impl Plane<'_> {
     }
 }
 
-/// A planar scene obliquely in space, with its model; none where a joint or the actuator has no counterpart, or an inertia varies.
+/// A planar scene obliquely in space, with its model; `None` if a joint or the actuator has no counterpart, or an inertia varies.
 pub fn lifted_scene(scene: &PlaneScene) -> Option<(Model, Lifted)> {
     if !scene.varying_inertias.is_empty() {
         return None;

@@ -8,21 +8,21 @@ use std::cmp::Ordering;
 
 /// The report of a study: `NAME.md` and `NAME.html`, the rounded `NAME.txt`, and its pictures in the folder `NAME/`.
 pub struct StudyReport<'a> {
-    /// Of its files and pictures.
+    /// Base name of its files and pictures.
     pub name: &'a str,
     /// Its title.
     pub title: &'a str,
-    /// What is studied, in words.
+    /// A description of the study.
     pub text: String,
-    /// What follows these words, before the findings.
+    /// The blocks after the description, before the findings.
     pub blocks: Vec<Block>,
-    /// What the rounded text says before the findings.
+    /// The rounded text before the findings.
     pub snapshot: String,
     /// Its pictures.
     pub figures: &'a [Figure],
-    /// What was found.
+    /// The findings.
     pub findings: Vec<Finding>,
-    /// What was studied and how much of it, at the end of a line of the summary.
+    /// The number of studied items, in words, at the end of a line of the summary.
     pub count: String,
 }
 
@@ -108,11 +108,11 @@ pub fn findings_text(name: &str, findings: &[Finding], more: &str) -> String {
     text
 }
 
-/// Where the tolerance is half a unit and a little more, differences are counted in units of the last printed digit: half of one is rounding.
+/// Tolerances in this range mean that differences are counted in units of the last printed digit, of which a half is rounding.
 const LAST_DIGIT: std::ops::Range<f64> = 0.5..0.6;
 
-/// How many times the difference of a finding is its tolerance: infinite where there is no difference, or none in the printed digits; zero
-/// where it is not a number.
+/// The ratio of the tolerance to the difference of a finding: infinite without a difference, or without one in the printed digits; zero if
+/// the difference is NaN.
 pub fn margin(finding: &Finding) -> f64 {
     match finding.relative_difference {
         0.0 if finding.pass => f64::INFINITY,
@@ -157,7 +157,7 @@ pub fn nearness(findings: &[Finding]) -> String {
     })
 }
 
-/// The first line of the page of a case or a study: the verdict, and what is nearest to its tolerance.
+/// The first line of the page of a case or a study: the verdict, and the finding nearest to its tolerance.
 pub fn result_line(findings: &[Finding]) -> String {
     let passed = findings.iter().filter(|f| f.pass).count();
     let counts = format!("{passed} of {} findings pass", findings.len());

@@ -1,4 +1,4 @@
-//! The forms of the extremes see what they are there to see, and narrow peaks are not exported as if they were not there.
+//! The forms of the extremes detect their faults, and narrow peaks are not lost in exports.
 
 #![allow(clippy::expect_used, reason = "a test")]
 

@@ -1,4 +1,4 @@
-//! What is checked, over which positions.
+//! The checked mechanism, and the positions at which it is checked.
 
 use crate::dense::DenseMechanism;
 use crate::error::Result;
@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 pub enum CheckedMechanism<'a> {
     /// In the plane.
     Plane(&'a Mechanism, Inertias<'a>),
-    /// In space, with the bodies whose rotation about the line of their balls is nobody's.
+    /// In space, with the bodies that have an idle rotation about the line through their spherical joints.
     Space(&'a SpaceMechanism, &'a [SpaceMass], &'a [IdleBody]),
 }
 
@@ -42,8 +42,8 @@ pub struct Case<'a> {
     pub positions: Vec<f64>,
 }
 
-/// `count` positions inside the range, spaced by the golden ratio: no two alike, none at a round
-/// angle or at an end, and every part of the range is visited however few there are.
+/// `count` positions inside the range, spaced by the golden ratio: no two are equal, none is at a round angle or at an
+/// end, and even a few positions cover every part of the range.
 pub fn spread(range: Range, count: usize) -> Vec<f64> {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     let (low, high) = range.limits().unwrap_or((0.0, TAU));

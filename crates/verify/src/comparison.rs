@@ -1,11 +1,11 @@
-//! From single differences to a finding.
+//! The finding that summarises single differences.
 
 use crate::subject::SubjectError;
 use dwell_findings::{Check, Finding};
 
 /// How much of the reference's own estimated error the tolerance allows for.
 const REFERENCE_ERROR_FACTOR: f64 = 10.0;
-/// Where the check itself is worse than this it decides nothing, and the finding fails.
+/// If the error of the check itself is larger than this, the check is inconclusive and the finding fails.
 const MAX_WIDENED_TOLERANCE: f64 = 1e-6;
 
 /// The largest of several differences.
@@ -31,7 +31,7 @@ pub struct Comparison {
     pub(crate) numbers: [f64; 3],
     /// The unit of all three.
     pub(crate) unit: &'static str,
-    /// Condition number of the dense rows there; 1 where it has no meaning.
+    /// Condition number of the dense rows there; 1 if it has no meaning.
     pub(crate) condition_number: f64,
 }
 
@@ -108,12 +108,12 @@ impl LargestDifference {
     }
 }
 
-/// Whether `new` is worse than `old`. What is not a number is the worst there is, and stays.
+/// Whether `new` is worse than `old`. NaN is the worst, and is kept.
 fn is_worse(new: f64, old: f64) -> bool {
     !old.is_nan() && (new.is_nan() || new > old)
 }
 
-/// Comparisons of one kind and unit, whose scale is only known when all are there: the largest that any of them has.
+/// Comparisons of one kind and unit. Their common scale, the largest of all, is known only when the set is complete.
 #[derive(Default)]
 pub(crate) struct ComparisonSet {
     pub(crate) scale: f64,
@@ -131,7 +131,7 @@ impl ComparisonSet {
         }
     }
 
-    /// Adds a comparison, whose scale is what that of all is at least.
+    /// Adds a comparison, whose scale is a lower bound of the common scale.
     pub(crate) fn add(&mut self, comparison: Comparison, location: String) {
         // A maximum drops what is not a number, but then the difference is not one either.
         self.scale = self.scale.max(comparison.numbers[1]);
@@ -156,22 +156,22 @@ impl ComparisonSet {
 pub struct FindingSpec<'a> {
     /// Short stable key.
     pub key: &'a str,
-    /// The check that it belongs to.
+    /// The check of the finding.
     pub check: Check,
-    /// What is compared with what.
+    /// The two compared quantities, in words.
     pub comparison: &'a str,
-    /// What the relative difference is relative to.
+    /// The scale of the relative difference, in words.
     pub scale: &'a str,
     /// Largest relative difference allowed.
     pub tolerance: f64,
-    /// Why the tolerance is what it is.
+    /// The reason for the tolerance.
     pub tolerance_reason: &'a str,
 }
 
 impl FindingSpec<'_> {
-    /// The finding over a domain. Ten times the reference's own estimated error replaces the tolerance
-    /// where it is larger, up to a limit: next to a dead point every difference is inaccurate, and a
-    /// finding must check the subject, not the reference. The reason of the tolerance says so.
+    /// The finding over a domain. Ten times the estimated error of the reference replaces the tolerance if it is
+    /// larger, up to a limit: next to a dead point every difference is inaccurate, and a finding must check the
+    /// subject, not the reference. The reason of the tolerance then states this.
     pub fn finding(&self, domain: String, worst: LargestDifference) -> Finding {
         let widened = (REFERENCE_ERROR_FACTOR * worst.reference_error).min(MAX_WIDENED_TOLERANCE);
         let tolerance = self.tolerance.max(widened);

@@ -24,9 +24,9 @@ const MAX_NEWTON_STEPS: usize = 25;
 const CONVERGED_STEP: f64 = 1e-9;
 /// A badly conditioned position may never get there, and is accepted once steps stop shrinking.
 const STALLED_STEP: f64 = 1e-6;
-/// What may be left open in any row in the end, in sizes or rad.
+/// Largest final residual of a row, relative to the size, or in rad.
 const MAX_RESIDUAL: f64 = 1e-11;
-/// What is rounding in a row of teeth, in sizes.
+/// Rounding error of a row of teeth, relative to the size.
 const TEETH_CLOSED: f64 = 1e-15;
 /// A step as large as the mechanism is not a correction any more: another branch would be found.
 const MAX_NEWTON_STEP: f64 = 1.5;
@@ -42,13 +42,13 @@ pub struct Configuration {
     pub(crate) poses: Vec<Pose>,
     /// The value each row was closed at: zero for a closed joint, q for an actuator.
     pub(crate) row_values: Vec<f64>,
-    /// The rows that are solved: as many as coordinates. What the others say follows from them.
+    /// The rows that are solved, as many as there are coordinates. They imply the others.
     pub(crate) rows: Arc<[usize]>,
     pub(crate) lu: Lu,
 }
 
 impl Configuration {
-    /// What rows of velocities are counted from.
+    /// The poses from which rows of velocities are counted.
     fn since(&self) -> Since<'_> {
         Since {
             poses: &self.poses,
@@ -68,7 +68,7 @@ impl DenseMechanism {
         self.close_since(Since { poses, row_values }, rows, guess, row_values)
     }
 
-    /// The same by some of the rows, with those of velocities counted since a configuration.
+    /// Closes with some of the rows; rows of velocities are counted from a configuration.
     fn close_since(
         &self,
         since: Since<'_>,
@@ -158,7 +158,7 @@ impl DenseMechanism {
         self.norm_of(bodies.map(|b| self.apart(b, [&one.poses[b], &other.poses[b]])))
     }
 
-    /// How far two poses of a body are apart: whole revolutions are not counted, nor how it stands about a line about which it turns idly.
+    /// The distance of two poses of a body, without whole revolutions and without an idle rotation.
     fn apart(&self, body: usize, [one, other]: [&Pose; 2]) -> Twist {
         if let Some(idle) = self.idle.iter().find(|idle| idle.body.0 == body) {
             let axis = |pose: &Pose| pose.rotation.apply(idle.axis);
@@ -175,7 +175,7 @@ impl DenseMechanism {
         step
     }
 
-    /// The same in rad or sizes.
+    /// The distance of two poses of a body, in rad or relative to the size.
     pub(crate) fn body_distance(&self, body: usize, poses: [&Pose; 2]) -> f64 {
         self.norm_of(std::iter::once(self.apart(body, poses)))
     }
@@ -231,12 +231,12 @@ impl DenseMechanism {
         self.follow_to(from, &row_values)
     }
 
-    /// Follows the branch continuously until the rows have these values, on a straight line, in steps short enough for
-    /// Newton's method not to change branch, halved where it fails. Where rows repeat each other, it goes by those that are farthest from
-    /// dependent at each step: any others may become dependent before the end.
+    /// Follows the branch continuously until the rows have these values, on a straight line, in steps short enough for Newton's method
+    /// not to change branch, halved where it fails. If rows are redundant, each step uses the rows that are farthest from dependent,
+    /// because others may become dependent before the end.
     ///
     /// # Errors
-    /// [`DenseError`] where the branch cannot be followed so far.
+    /// [`DenseError`] if the branch cannot be followed so far.
     pub fn follow_to(&self, from: &Configuration, to: &[f64]) -> Result<Configuration> {
         let mut here = from.clone();
         for _ in 0..MAX_FOLLOW_STEPS {
@@ -282,7 +282,7 @@ impl DenseMechanism {
         })
     }
 
-    /// The same configuration by the rows that are farthest from dependent there.
+    /// The configuration, solved by the rows that are farthest from dependent there.
     fn by_best_rows(&self, at: &Configuration) -> Result<Configuration> {
         let mut best = at.clone();
         let rows = self.rows_at(&at.poses)?;
@@ -313,7 +313,7 @@ impl DenseMechanism {
 
     /// The unit velocities of every row.
     ///
-    /// A row that is not solved cannot be opened: nothing moves.
+    /// A row that is not solved cannot be opened: its velocities are zero.
     pub fn unit_velocities(&self, at: &Configuration) -> Vec<Vec<f64>> {
         let n = at.rows.len();
         let mut right = Mat::zeros(n, n);
@@ -373,8 +373,8 @@ impl DenseMechanism {
         Lu::new(part(&self.scaled_jacobian(poses), rows)).map_err(DenseError::Singular)
     }
 
-    /// The sign of the determinant of the rows that are solved; none where they are dependent, or in space some of those that repeat each
-    /// other, which may become dependent elsewhere.
+    /// The sign of the determinant of the rows that are solved; `None` if they are dependent, and in space if some of them are
+    /// redundant, because these may become dependent elsewhere.
     pub(crate) fn orientation(&self, poses: &[Pose]) -> Option<bool> {
         let in_space = matches!(self.whole(), Columns::Space(_));
         if in_space && self.rows.len() != self.rows.columns() {
@@ -383,7 +383,7 @@ impl DenseMechanism {
         Some(self.factor(poses, &self.assembly_rows).ok()?.positive())
     }
 
-    /// The multipliers of all rows under which the forces `q` of the coordinates are made up:
+    /// The multipliers of all rows that yield the forces `q` of the coordinates:
     /// Jᵀ λ = q, by factors of the transposed matrix. Those of rows that are not solved are zero.
     pub(crate) fn multipliers(&self, at: &Configuration, q: &[f64]) -> Result<Vec<f64>> {
         let rows = part(&self.scaled_jacobian(&at.poses), &at.rows);
@@ -412,7 +412,7 @@ fn part(matrix: &Mat<f64>, rows: &[usize]) -> Mat<f64> {
     Mat::from_fn(rows.len(), matrix.ncols(), |i, j| matrix[(rows[i], j)])
 }
 
-/// The largest magnitude; not a number if any is not, where `f64::max` would drop it.
+/// The largest magnitude; NaN if any value is NaN, which `f64::max` would drop.
 fn max_abs(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |max, value| {
         if max.is_nan() || value.abs() <= max {

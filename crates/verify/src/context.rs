@@ -1,5 +1,5 @@
-//! What every check starts from: the mechanism closed densely at every position, its unit velocities
-//! there, and the scales that differences are relative to.
+//! The common basis of all checks: the mechanism closed densely at every position, its unit velocities there, and the
+//! scales of differences.
 
 use crate::case::Case;
 use crate::comparison::{Comparison, LargestDifference};
@@ -35,11 +35,10 @@ pub struct CheckedPosition {
 
 /// The largest coefficients of each unit over all positions, by the dense side.
 ///
-/// A coefficient may be zero throughout: the moment of a guide on a slider without inertia is. It
-/// is therefore compared with the largest of its unit in the whole mechanism, the actuator's own
-/// coefficients m and ½m′ included, since τ is a moment too. Where a whole unit is zero (every
-/// force of a balanced flywheel) a small part of what the other coefficients would make of it
-/// stands in, so that rounding is not divided by rounding.
+/// A coefficient may be zero throughout: the moment of a guide on a slider without inertia is. It is therefore compared
+/// with the largest of its unit in the whole mechanism, including the actuator's coefficients m and ½m′, because τ is a
+/// moment too. If a whole unit is zero (every force of a balanced flywheel), a small fraction of its size according to
+/// the other coefficients is used, so that rounding is not divided by rounding.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Scales {
     /// Largest m, kg m².
@@ -58,7 +57,7 @@ pub struct Scales {
 pub struct CheckContext<'a> {
     /// The case.
     pub case: &'a Case<'a>,
-    /// What is checked.
+    /// The checked subject.
     pub subject: &'a dyn Subject,
     /// The dense mechanism.
     pub dense: DenseMechanism,
@@ -142,8 +141,8 @@ impl<'a> CheckContext<'a> {
         format!("{} positions {range}", self.positions.len())
     }
 
-    /// By row of the joints: what the values of all reactions make of its multiplier; of a joint whose reactions are components of force and
-    /// moment, their power as the row opens at unit speed.
+    /// By row of the joints: its multiplier from the values of all reactions. For a joint whose reactions are components of force and
+    /// moment, their power if the row opens at unit speed.
     pub(crate) fn by_row(&self, at: &CheckedPosition, reactions: &[f64]) -> Vec<f64> {
         let (dense, poses) = (&self.dense, &at.configuration.poses);
         let mut rows = vec![0.0; dense.actuator_row()];
@@ -206,7 +205,7 @@ impl<'a> CheckContext<'a> {
     }
 }
 
-/// What succeeded to the left, why the others failed to the right.
+/// Successes to the left, errors to the right.
 pub(crate) fn either<T, E>(result: Result<T, E>) -> Either<T, E> {
     match result {
         Ok(done) => Either::Left(done),
@@ -275,7 +274,7 @@ impl CheckedPosition {
         self.unit_velocities.last().map_or(&[], Vec::as_slice)
     }
 
-    /// What some bodies have in m.
+    /// The share of some bodies in m.
     pub(crate) fn inertia_share(&self, dense: &DenseMechanism, bodies: &[usize]) -> f64 {
         let (at, u) = (&self.configuration, self.unit_velocity());
         let share = |&b: &usize| dense.body_inertia(b, at, u, u);

@@ -1,9 +1,8 @@
 //! The error of a finite difference against its step: the V-shaped curve.
 //!
-//! Down from a long step the error falls as a power of h, the order of the difference; below some
-//! step it rises again as 1/h, because the differenced energy is rounded. What a person would get
-//! with a plain central difference is at the tip of the V, and what the reduced model gives
-//! directly is the line far below it.
+//! Down from a long step the error falls as a power of h, the order of the difference; below some step it rises again
+//! as 1/h, because the differenced energy is rounded. The best result of a plain central difference is at the tip of
+//! the V; the reduced model gives the line far below it.
 
 use crate::context::{CheckContext, CheckedPosition};
 use crate::differences::central_difference;
@@ -11,19 +10,19 @@ use crate::differences::central_difference;
 /// Error against step for one quantity at one position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorCurve {
-    /// What is differenced, such as `slide.normal, b`.
+    /// The differenced quantity, such as `slide.normal, b`.
     pub quantity: String,
     /// The position, rad.
     pub q: f64,
     /// The value errors are taken from: the subject's.
     pub reference: f64,
-    /// What the errors are relative to: the largest quantity of the same kind.
+    /// The scale of the errors: the largest quantity of the same kind.
     pub scale: f64,
     /// (step, relative error) of the plain central difference, from the longest step down.
     pub second_order: Vec<(f64, f64)>,
-    /// The same extrapolated once, from h and h/2.
+    /// The errors after one extrapolation, from h and h/2.
     pub fourth_order: Vec<(f64, f64)>,
-    /// The same extrapolated twice, from h, h/2 and h/4.
+    /// The errors after two extrapolations, from h, h/2 and h/4.
     pub sixth_order: Vec<(f64, f64)>,
 }
 
@@ -43,9 +42,9 @@ pub fn half_dm_curve(context: &CheckContext<'_>, position: &CheckedPosition) -> 
     ))
 }
 
-/// The curve for b of one reaction as ∂m₁₂/∂q₁ − ½ ∂m₁/∂q₂ with the constraint really released.
-/// The step is that of q₁ in rad; the released row opens by as much as rotates or moves the
-/// mechanism alike. `None` where the subject has no answer for that reaction.
+/// The curve for b of one reaction as ∂m₁₂/∂q₁ − ½ ∂m₁/∂q₂ with the constraint really released. The step is that of q₁
+/// in rad; the released row opens by an amount with a similar effect on the mechanism. `None` if the subject has no
+/// answer for this reaction.
 pub fn reaction_curve(
     context: &CheckContext<'_>,
     position: &CheckedPosition,

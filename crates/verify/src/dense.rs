@@ -1,10 +1,9 @@
 //! The mechanism in dense rows: the independent side.
 //!
-//! No structure is looked for and nothing is compiled: all coordinates of all bodies, all rows,
-//! one square matrix. Only where the origins are is changed. Each frame, the ground's too, is
-//! moved to the mean of its body's attachments, which the subtraction of nearby numbers does
-//! exactly; otherwise a mechanism a kilometre from the origin would be checked by
-//! differences of rounded large numbers.
+//! No structure is analysed and nothing is compiled: all coordinates of all bodies, all rows, one square matrix. Only
+//! the origins of the frames are changed. Each frame, the ground's too, is moved to the mean of its body's attachments,
+//! which the subtraction of nearby numbers does exactly; otherwise a mechanism a kilometre from the origin would be
+//! checked by differences of rounded large numbers.
 
 use crate::description::action::Action;
 use crate::description::{
@@ -27,7 +26,7 @@ pub(crate) struct DenseBody {
     pub(crate) columns: Columns,
     /// Mass properties about the moved frame.
     pub(crate) mass: SpaceMass,
-    /// A moment of inertia about z over the body's angle besides.
+    /// An additional moment of inertia about z as a function of the body's angle.
     varying: Option<PiecewiseQuintic>,
     /// The moved origin in the body's own frame.
     pub(crate) shift: Vec3,
@@ -89,7 +88,7 @@ pub struct DenseMechanism {
     pub(crate) row_names: Vec<String>,
     pub(crate) angular: Vec<bool>,
     pub(crate) counts_revolutions: bool,
-    /// Bodies whose rotation about a line is nobody's, with the line in the moved frame.
+    /// Bodies with an idle rotation about a line, with the line in the moved frame.
     pub(crate) idle: Vec<IdleBody>,
     pub(crate) row_scale: Vec<f64>,
     pub(crate) column_scales: Vec<f64>,
@@ -109,7 +108,7 @@ impl DenseMechanism {
         Self::without_rank_check(mechanism, inertias)?.squared()
     }
 
-    /// The same, which has as many rows as coordinates.
+    /// This mechanism, if it has as many rows as coordinates; otherwise an error.
     pub(crate) fn squared(self) -> Result<Self> {
         let (rows, columns) = (self.rows.len(), self.rows.columns());
         if rows == columns {
@@ -119,7 +118,7 @@ impl DenseMechanism {
         }
     }
 
-    /// The same whatever the number of rows: it can be measured, but not closed.
+    /// A mechanism with any number of rows. It can be measured, but not closed.
     pub(crate) fn without_rank_check<'m>(
         mechanism: &Mechanism,
         inertias: impl Into<Inertias<'m>>,
@@ -128,7 +127,8 @@ impl DenseMechanism {
         Ok(Self::of(description, |_, mean| mean))
     }
 
-    /// A mechanism in space, with the bodies whose rotation about the line of their balls is nobody's, whatever the number of rows.
+    /// A mechanism in space, with the bodies that have an idle rotation about the line through their spherical joints, and any
+    /// number of rows.
     ///
     /// # Errors
     /// [`DenseError`] where there is not one mass for each body.
@@ -190,7 +190,7 @@ impl DenseMechanism {
         }
     }
 
-    /// The size of the mechanism, m: what a radian is compared with.
+    /// The size of the mechanism, m, by which angles are compared with lengths.
     pub fn size(&self) -> f64 {
         self.size
     }
@@ -200,7 +200,7 @@ impl DenseMechanism {
         self.rows.len() - self.actuators.len()
     }
 
-    /// What makes a velocity of one in a column of the scaled matrix: 1 of a length, 1/size of an angle.
+    /// The factor from a column of the scaled matrix to a velocity: 1 for a length, 1/size for an angle.
     pub(crate) fn column_scale(&self, column: usize) -> f64 {
         self.column_scales[column]
     }
@@ -221,7 +221,8 @@ impl DenseMechanism {
         self.angular[self.actuator_row()]
     }
 
-    /// The components of forces and moments on the whole: of those of all bodies, the most.
+    /// The components of forces and moments on the whole mechanism: those in space if any body has coordinates in
+    /// space.
     pub(crate) fn whole(&self) -> Columns {
         let in_space = |body: &DenseBody| matches!(body.columns, Columns::Space(_));
         match self.bodies.iter().any(in_space) {
@@ -233,7 +234,7 @@ impl DenseMechanism {
     /// The poses of the moved frames, from the moved origin of the ground, out of those of all bodies.
     ///
     /// # Errors
-    /// [`DenseError::InvalidPoses`] where they are not as many as bodies, or not finite.
+    /// [`DenseError::InvalidPoses`] if their number differs from that of the bodies, or they are not finite.
     pub(crate) fn moved_frames(&self, poses: &[Pose]) -> Result<Vec<Pose>> {
         if poses.len() != self.bodies.len() || poses.iter().any(|pose| !pose.is_finite()) {
             return Err(DenseError::InvalidPoses);
@@ -283,7 +284,7 @@ impl DenseMechanism {
         x_ddot
     }
 
-    /// Largest over smallest singular value of the scaled rows at these poses; 1 where there is none.
+    /// Largest over smallest singular value of the scaled rows at these poses; 1 if there is none.
     pub(crate) fn condition_number(&self, poses: &[Pose]) -> f64 {
         let values = self.scaled_jacobian(poses).singular_values();
         match values.unwrap_or_default()[..] {
@@ -324,8 +325,8 @@ pub(crate) fn add_scaled(to: &mut [f64], factor: f64, more: &[f64]) {
 }
 
 /// The condition number of the dense scaled rows of a mechanism, those of its joints and actuators, in the
-/// configuration with the frames `poses` of all bodies, m and rad: largest over smallest singular value. It
-/// says how many roundings a result may be off by. 1 where there is none.
+/// configuration with the frames `poses` of all bodies, m and rad: largest over smallest singular value. It bounds the
+/// error of a result in roundings. 1 if it does not exist.
 pub fn condition_number(mechanism: &Mechanism, poses: &[[f64; 3]]) -> f64 {
     let masses = vec![dwell_kinetostatics::Mass::default(); mechanism.bodies.len()];
     let dense = DenseMechanism::without_rank_check(mechanism, &masses);

@@ -1,5 +1,5 @@
-//! A mechanism as the checks take it, in the plane or in space: bodies with coordinates, rows, and what each reaction does to the
-//! bodies.
+//! The description of a mechanism for the checks, in the plane or in space: bodies with coordinates, rows, and the action of each
+//! reaction on the bodies.
 
 pub(crate) mod action;
 pub(crate) mod plane;
@@ -19,16 +19,16 @@ pub(crate) struct Description {
     pub(crate) ground: usize,
     pub(crate) bodies: Vec<DescribedBody>,
     pub(crate) joints: Vec<DescribedJoint>,
-    /// Those of the joints, then one of each actuator.
+    /// The rows of the joints, then one row for each actuator.
     pub(crate) rows: Vec<DescribedRow>,
     pub(crate) reactions: Vec<DescribedReaction>,
-    /// By actuator: what a unit of its force does.
+    /// By actuator: the action of a unit of its force.
     pub(crate) actuators: Vec<Action>,
     /// The points at which joints and actuators act on bodies.
     pub(crate) attachments: Vec<(usize, Vec3)>,
-    /// Bodies whose rotation about a line is nobody's.
+    /// Bodies with an idle rotation about a line.
     pub(crate) idle: Vec<IdleBody>,
-    /// What a radian is compared with, m.
+    /// The size of the mechanism, m, by which angles are compared with lengths.
     pub(crate) size: f64,
     /// Whether rows depend on whole revolutions of a body.
     pub(crate) counts_revolutions: bool,
@@ -40,7 +40,7 @@ pub(crate) struct DescribedBody {
     pub(crate) name: String,
     pub(crate) columns: Columns,
     pub(crate) mass: Mass,
-    /// A moment of inertia about z over the body's angle besides, of a body that moves in the plane.
+    /// An additional moment of inertia about z as a function of the angle of a body in the plane.
     pub(crate) varying: Option<PiecewiseQuintic>,
 }
 
@@ -59,7 +59,7 @@ pub(crate) struct DescribedJoint {
 }
 
 impl DescribedJoint {
-    /// Its second body, and where its point is.
+    /// Its second body, and the position of its point.
     pub(crate) fn at(&self, poses: &[Pose]) -> (usize, Vec3) {
         (self.second, poses[self.point.0].point(self.point.1))
     }
@@ -79,7 +79,7 @@ pub(crate) struct DescribedRow {
 pub(crate) struct DescribedReaction {
     pub(crate) name: String,
     pub(crate) is_moment: bool,
-    /// What a unit of it does.
+    /// The action of a unit of it.
     pub(crate) action: Action,
 }
 

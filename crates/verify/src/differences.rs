@@ -35,8 +35,8 @@ const STEP_RATIO: f64 = 1.6;
 /// Steps taken in any case, and at most; the last is 1/27 or 1/3000 of the first.
 const MIN_STEPS: usize = 8;
 const MAX_STEPS: usize = 18;
-/// More steps are taken while one more shrinks some component's estimated error to this part:
-/// where the first steps were too long for the series to converge, as next to a dead point.
+/// More steps are taken while another step reduces the estimated error of a component to this fraction. Next to a dead
+/// point, for example, the first steps are too long for the series to converge.
 const MIN_IMPROVEMENT: f64 = 0.5;
 
 /// Which derivative.
@@ -54,9 +54,9 @@ struct NevilleTable {
     largest: f64,
 }
 
-/// The derivative at zero of every component of `f`, from the step `first` down. A step at which
-/// `f` has no value on either side, because the mechanism does not reach that far, is left out.
-/// Empty if there is none at all. Values are taken as rounded to `rounding` of themselves.
+/// The derivative at zero of every component of `f`, from the step `first` down. A step at which `f` has no value on a
+/// side, because the mechanism does not reach that far, is omitted. Empty if no step has values. Values are taken as
+/// rounded to `rounding` of themselves.
 pub(crate) fn derivatives<F>(
     order: DerivativeOrder<'_>,
     first_step: f64,
@@ -92,7 +92,7 @@ where
     tables.into_iter().map(|s| s.best).collect()
 }
 
-/// The first derivative at zero of a single value; none where no step could be taken.
+/// The first derivative at zero of a single value; `None` if no step could be taken.
 pub(crate) fn slope(
     first_step: f64,
     rounding: f64,

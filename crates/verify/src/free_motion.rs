@@ -20,7 +20,7 @@ use std::time::Instant;
 const CHECK_TOLERANCE: f64 = 1e-13;
 /// The finest and the coarsest tolerance, as powers of ten.
 const TOLERANCE_EXPONENTS: std::ops::RangeInclusive<i32> = -13..=-4;
-/// Runs of which the shortest wall time is taken; other threads run beside them.
+/// Number of runs whose shortest wall time is used, because other threads run at the same time.
 const TIMED_RUNS: usize = 3;
 /// States of a run at which its reactions are compared with the exact ones.
 const COMPARED_STATES: usize = 400;
@@ -331,7 +331,7 @@ fn reactions<R: ReducedModel>(
     Ok(outputs.reactions.clone())
 }
 
-/// The quadrature against a reference value, where there is one.
+/// Compares the quadrature with a reference value, if there is one.
 fn check_quadrature(case: &FreeMotionCase, orbit: &Orbit) -> Option<Finding> {
     let (known, source) = case.period.as_ref()?;
     let (period, points) = (orbit.period, orbit.points);

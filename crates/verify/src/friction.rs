@@ -23,7 +23,7 @@ const CONVERGED_CHANGE: f64 = 1e-15;
 /// The forces in the two bearings of a joint.
 pub(crate) type Bearings = [Vec3; 2];
 
-/// Those under a reaction of a joint with this axis.
+/// The bearing forces under a reaction of a joint with this axis.
 pub(crate) fn bearings(friction: &Friction, u: Vec3, reaction: &Wrench) -> Bearings {
     let across = |v: Vec3| v - u.scaled(u.dot(v));
     let force = across(reaction.force);
@@ -39,11 +39,11 @@ pub(crate) fn bearings(friction: &Friction, u: Vec3, reaction: &Wrench) -> Beari
     [1.0, -1.0].map(|side| (force + difference.scaled(side)).scaled(0.5))
 }
 
-/// A force that answers to those in the bearings of a joint.
+/// A force that depends on the bearing forces of a joint.
 pub(crate) struct Contact {
     /// φ.
     pub(crate) factor: f64,
-    /// The bearing forces without all such forces, and what a unit of each adds.
+    /// The bearing forces without all such forces, and the contribution of a unit of each.
     pub(crate) own: Bearings,
     pub(crate) units: Vec<Bearings>,
 }
@@ -70,7 +70,7 @@ pub(crate) fn coefficient_at(friction: &Friction, speed: f64) -> f64 {
     friction.coefficient * sign
 }
 
-/// The forces of all contacts; none where friction locks itself.
+/// The forces of all contacts; `None` if friction locks itself.
 pub(crate) fn contact_forces(contacts: &[Contact]) -> Option<Vec<f64>> {
     let n = contacts.len();
     let mut forces = vec![0.0_f64; n];

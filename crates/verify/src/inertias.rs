@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 pub struct Inertias<'a> {
     /// One mass per body.
     pub masses: &'a [Mass],
-    /// Moments of inertia besides the constant ones.
+    /// Varying moments of inertia, in addition to the constant ones.
     pub varying: &'a [VaryingInertia],
 }
 
@@ -36,7 +36,7 @@ impl Inertias<'_> {
     }
 }
 
-/// I and ½I′ at an angle of any number of revolutions, kg m²: zero without a varying part, not a number where it is not known.
+/// I and ½I′ at an angle of any number of revolutions, kg m²: zero without a varying part, NaN if it is unknown.
 pub(crate) fn at_angle(varying: Option<&PiecewiseQuintic>, angle: f64) -> [f64; 2] {
     let Some(varying) = varying else {
         return [0.0; 2];

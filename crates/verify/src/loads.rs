@@ -104,9 +104,9 @@ fn line(along: CoordinateFunction, motion: BodyMotion<'_>) -> Option<Line> {
     })
 }
 
-/// The magnitude of a load that answers to claimed reactions (in the order of [`Mechanism::reactions`]); of every
-/// other load, what is claimed of it. Where the teeth of gears have a pressure angle α, the force between them is
-/// inclined by α to the tooth force, so that its other part is tan α times that.
+/// The magnitude of a load that depends on claimed reactions (in the order of [`Mechanism::reactions`]), or, for every
+/// other load, the claimed magnitude. If the teeth of gears have a pressure angle α, the force between them is inclined
+/// by α to the tooth force, so that its other part is tan α times the tooth force.
 pub fn magnitude_by_reactions(
     load: &Load,
     claimed: f64,
@@ -284,7 +284,7 @@ mod tests {
         })
     }
 
-    /// What acts between two bodies is nothing on the whole.
+    /// Actions between two bodies are zero in sum.
     #[test]
     fn inner_loads_balance() {
         for kind in [

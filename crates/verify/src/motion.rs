@@ -21,12 +21,12 @@ use dwell_geometry::space::{Vec3, Wrench, vec3};
 use dwell_kinetostatics::Coefficients;
 
 impl DenseBody {
-    /// From the moved origin to the centre of mass.
+    /// The vector from the moved origin to the centre of mass, m.
     fn arm(&self, pose: &Pose) -> Vec3 {
         pose.rotation.apply(self.mass.center)
     }
 
-    /// Where its centre of mass is, from the ground's moved origin.
+    /// The position of its centre of mass, from the ground's moved origin, m.
     pub(crate) fn center(&self, pose: &Pose) -> Vec3 {
         pose.point(self.mass.center)
     }
@@ -89,7 +89,7 @@ impl DenseMechanism {
     }
 
     /// Linear momentum, kg m/s, and angular momentum about the ground's moved origin,
-    /// kg m²/s; without that of varying moments of inertia, which is not theirs alone.
+    /// kg m²/s; without that of varying moments of inertia, which belongs to the represented mechanism.
     pub fn momentum(&self, at: &Configuration, x_dot: &[f64]) -> [f64; 6] {
         let mut sum = Wrench::default();
         for (b, body) in self.moving_bodies() {

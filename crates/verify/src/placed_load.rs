@@ -1,5 +1,5 @@
-//! Loads where the bodies are: their forces and potentials by the definitions of their kinds and laws, once for the plane and space, and
-//! without what `kinetostatics` computes.
+//! Loads at given positions of the bodies: their forces and potentials by the definitions of their kinds and laws, for the plane and for
+//! space, independent of the crate `kinetostatics`.
 
 use crate::wrenches::BodyWrench;
 use dwell_geometry::BodyId;
@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 pub(crate) enum PlacedLoad {
     /// In this direction on bodies with this mass and centre.
     Weight(Vec3, Vec<(BodyId, f64, Vec3)>),
-    /// At a point in a direction, which a body may turn.
+    /// A force at a point, in a direction that may turn with a body.
     Force {
         body: BodyId,
         point: Vec3,
@@ -29,12 +29,12 @@ pub(crate) enum PlacedLoad {
     Given(Vec<BodyWrench>),
 }
 
-/// What a load acts along: a coordinate of two bodies.
+/// The line of action of a load along a coordinate of two bodies.
 pub(crate) struct Line {
     pub(crate) bodies: [BodyId; 2],
-    /// Where it acts on each body.
+    /// The points on both bodies.
     pub(crate) points: [Vec3; 2],
-    /// The axis of the couple or the direction of the force on the second body; not a number where two points coincide.
+    /// The axis of the couple or the direction of the force on the second body; NaN if two points coincide.
     pub(crate) along: Vec3,
     pub(crate) kind: LineKind,
     /// The coordinate and its rate.

@@ -78,9 +78,9 @@ impl Pose {
 /// Rates of a body's frame: of its origin and its angle (m/s, rad/s), or the rates of these.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Twist {
-    /// Of the origin.
+    /// Velocity of the origin, m/s.
     pub linear: Vec3,
-    /// Of the rotation, a vector.
+    /// Angular velocity, rad/s.
     pub angular: Vec3,
 }
 
@@ -123,8 +123,8 @@ impl Twist {
     }
 }
 
-/// The coordinates of a body among all: none of the ground; x, y and the angle of a body that moves in the plane; position and
-/// rotation of one in space.
+/// The coordinates of a body among all: none for the ground; x, y and the angle for a body in the plane; position and rotation
+/// for a body in space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Columns {
     Fixed,
@@ -175,7 +175,7 @@ impl Columns {
         }
     }
 
-    /// The rates of the body out of those of all coordinates.
+    /// The rates of the body, from those of all coordinates.
     pub(crate) fn twist(self, rates: &[f64]) -> Twist {
         match self {
             Self::Fixed => Twist::default(),
@@ -204,7 +204,7 @@ impl Columns {
         }
     }
 
-    /// The rotation of a body: the counted angle of one in the plane, and of one in space the vector that leads there from another pose.
+    /// The rotation of a body: its counted angle in the plane; in space, the rotation vector from another pose.
     pub(crate) fn turn(self, from: &Pose, to: &Pose) -> Vec3 {
         match self {
             Self::Plane(_) => vec3(0.0, 0.0, to.angle),

@@ -24,7 +24,7 @@ const ZERO_SINGULAR_VALUE: f64 = 1e-9;
 /// A body or row has a part in a null space of orthonormal vectors from here on.
 const NULL_SPACE_PART: f64 = 1e-6;
 
-/// What the rows of one kind leave free, and which of them are redundant.
+/// The degrees of freedom that the rows of one kind leave, and the redundant rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rank {
     /// Number of rows.
@@ -64,13 +64,12 @@ pub struct Ranks {
 
 /// The ranks in the configuration with the frames `poses` of all bodies, in m and rad.
 ///
-/// A rank is that of this configuration. One that is lost in a second, generic configuration too
-/// is lost everywhere, by how the mechanism is joined or by its dimensions.
+/// A rank is that of this configuration. A rank that is also lost in a second, generic configuration is lost
+/// everywhere, because of the joints or the dimensions of the mechanism.
 ///
 /// # Errors
 /// [`DenseError`] when the mechanism refers to something that is not there, or the poses are
-/// incomplete or not finite. The poses are taken as they are: joints that do not close there are
-/// not an error.
+/// incomplete or not finite. The poses are not corrected: joints that do not close there are not an error.
 pub fn rank(mechanism: &Mechanism, poses: &[[f64; 3]]) -> Result<Ranks> {
     let masses = vec![Mass::default(); mechanism.bodies.len()];
     let dense = DenseMechanism::without_rank_check(mechanism, &masses)?;

@@ -7,12 +7,12 @@ use crate::pose::Pose;
 use dwell_geometry::space::Wrench;
 use std::sync::Arc;
 
-/// A row of which less than this remains beside the others depends on them: as for singular values.
+/// A row with a smaller remainder, relative to itself, depends on the others; the tolerance is that of singular values.
 const INDEPENDENCE_TOLERANCE: f64 = 1e-9;
 
 impl DenseMechanism {
-    /// The same as it is assembled with the moved frames in these poses, its gears meshed as they stand there. Where joints repeat each
-    /// other, a largest set of independent rows is solved, found there.
+    /// This mechanism, assembled with the moved frames in these poses and with its gears meshed there. If joints are redundant, it
+    /// solves a largest set of rows that are independent there.
     pub(crate) fn assembled(mut self, start: &[Pose]) -> Result<Self> {
         if self.rows.len() != self.rows.columns() {
             self.assembly_rows = self.rows_at(start)?;
@@ -24,10 +24,10 @@ impl DenseMechanism {
         Ok(self)
     }
 
-    /// The rows that are solved at these poses: where rows repeat each other, a largest set of those that are farthest from dependent there.
+    /// The rows that are solved at these poses. If rows are redundant, a largest set of those that are farthest from dependent there.
     ///
     /// # Errors
-    /// [`DenseError::NotSquare`] where they do not determine the pose.
+    /// [`DenseError::NotSquare`] if they do not determine the pose.
     pub(crate) fn rows_at(&self, poses: &[Pose]) -> Result<Arc<[usize]>> {
         let (rows, columns) = (self.rows.len(), self.rows.columns());
         if rows == columns {
@@ -46,8 +46,8 @@ impl DenseMechanism {
         self.independent_rows_of(&all, self.actuator_row(), poses)
     }
 
-    /// Those of some rows of which none is made up of the others: by Gram and Schmidt, first those from `preferred` on,
-    /// then always the one that is farthest from those before.
+    /// A set of independent rows among these, by Gram and Schmidt: first those from `preferred` on, then always the row
+    /// that is farthest from the rows before.
     pub(crate) fn independent_rows_of(
         &self,
         candidates: &[usize],
@@ -84,8 +84,8 @@ impl DenseMechanism {
         independent
     }
 
-    /// The multipliers of joints' rows that balance without any force, each of length one where moments are divided by the size: none where
-    /// no row repeats others, or no joint has its reactions by components.
+    /// The multipliers of joints' rows that balance without any force, each of length one, with moments divided by the size. Empty if no
+    /// row is redundant, or if no joint has reactions by components.
     pub(crate) fn self_stresses(&self, poses: &[Pose]) -> Vec<Vec<f64>> {
         let by_components = self.joints.iter().any(|joint| joint.is_wrench);
         if self.rows.len() == self.rows.columns() || !by_components {
@@ -113,7 +113,7 @@ impl DenseMechanism {
         self.joint_sum(joint, poses, |row, part| multipliers[row] * part)
     }
 
-    /// At most so much of each component, by bounds of the multipliers.
+    /// Bounds of the components, from bounds of the multipliers.
     pub(crate) fn joint_wrench_bound(
         &self,
         joint: &DescribedJoint,

@@ -4,19 +4,19 @@ use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
 use crate::error::Result;
 
-/// How far a row is opened to see what rounding does, in sizes.
+/// The amount by which a row is opened to measure the effect of rounding, relative to the size.
 const PROBE_STEP: f64 = 1e-7;
-/// The part of the sum of all rows' roundings that is expected: they rarely all add up. Differences
-/// met beside a change point were a fifth of the sum and less.
+/// The expected fraction of the sum of all rows' roundings, which rarely all add up. Differences observed near a change
+/// point were at most a fifth of the sum.
 const EXPECTED_SHARE: f64 = 0.2;
 
 impl DenseMechanism {
-    /// How much rounding may have moved each of the `values` of a configuration, which are `exact`
-    /// there, and the pose relative to the mechanism's size.
+    /// Bounds of the rounding errors of the `values` of a configuration, which are `exact` there, and of the pose
+    /// relative to the mechanism's size.
     ///
-    /// A row cannot be closed better than to a unit in the last place of its arms, and next to a
-    /// dead point that is magnified without limit. So each row is opened a little by itself, and
-    /// the sum of what that moves, scaled down to one rounding, bounds the noise to first order.
+    /// A row cannot be closed better than to a unit in the last place of its arms, and next to a dead point this error
+    /// is magnified without limit. Therefore each row is opened a little, and the sum of the resulting changes, scaled
+    /// down to one rounding, bounds the error to first order.
     pub(crate) fn rounding_bounds(
         &self,
         configuration: &Configuration,

@@ -4,8 +4,8 @@
 //! position of its frame and its rotation, whose derivatives are the velocity of the origin and the angular velocity.
 //!
 //! **Rows.** Those of the joints, then one per actuator. Row k reads Φₖ(x) − vₖ = 0. With the imposed value vₖ = 0 of a joint's row,
-//! the joint is closed; any other value is the joint really opened by that much, which is what releasing a constraint as a second
-//! coordinate means (Jordi, Zayas & Cardona 2008, figure 1). The value of an actuator's row is its coordinate q.
+//! the joint is closed. Any other value opens the joint by this amount, as if the released constraint were a second coordinate
+//! (Jordi, Zayas & Cardona 2008, figure 1). The value of an actuator's row is its coordinate q.
 //!
 //! Since the second point enters with a plus, the multiplier λₖ of row k in Jᵀλ is the action of the first body on the second.
 

@@ -4,7 +4,7 @@
 //! J ẋ = D q̇,     J ẍ = D q̈ − J̇ẋ,     Jᵀ [λ; τ] = M ẍ + h − f,     x = [r; θ] of each body              (1)
 //! ```
 //!
-//! by singular values of the whole, so that redundant constraints and idle rotations are seen as what they are.
+//! by singular values of all rows, which show redundant constraints and idle rotations.
 
 mod energy;
 mod forces;
@@ -43,7 +43,7 @@ pub struct DenseSpace {
     pub idle_freedoms: usize,
     /// Constraints that are too many.
     pub redundant_count: usize,
-    /// What of J ẋ = D q̇, of J ẍ and of the balance is not met, relative to the largest part.
+    /// The residuals of J ẋ = D q̇, of the equation for J ẍ and of the balance, relative to the largest term.
     pub residuals: [f64; 3],
 }
 
@@ -78,7 +78,7 @@ impl<'a> DensePose<'a> {
     /// The equations at placements of all bodies.
     ///
     /// # Errors
-    /// [`DenseError`] where they have no singular values.
+    /// [`DenseError`] if they have no singular values.
     pub fn new(
         mechanism: &'a Mechanism,
         masses: &'a [Mass],
@@ -102,7 +102,7 @@ impl<'a> DensePose<'a> {
         self.motions([&x_dot, &vec![0.0; x_dot.len()]])
     }
 
-    /// ẋ or ẍ from the rates of the actuators and J̇ẋ, and what is not met.
+    /// ẋ or ẍ from the rates of the actuators and J̇ẋ, and the residual.
     fn rates(&self, of_actuators: &[f64], biases: &[f64]) -> (Vec<f64>, f64) {
         let mut right: Vec<f64> = biases.iter().map(|bias| -bias).collect();
         let actuators = &mut right[self.dense.actuator_row()..];
@@ -118,7 +118,7 @@ impl<'a> DensePose<'a> {
         )
     }
 
-    /// The motions of the frames as they are given, of those of the moved frames.
+    /// The motions of the given frames, from those of the moved frames.
     fn motions(&self, [x_dot, x_ddot]: [&[f64]; 2]) -> Vec<BodyMotion> {
         let bodies = self.dense.bodies.iter().zip(&self.poses);
         let motion = bodies.map(|(body, pose)| {
@@ -191,8 +191,8 @@ fn wrench([x, y, z, a, b, c]: [f64; 6]) -> Wrench {
     }
 }
 
-/// By joint: what its first body does to the second, the actuators' actions included, as a point of the ground with force and couple there.
-/// It acts in the opposite sense on the first.
+/// By joint: the action of its first body on the second, including that of actuators, as a point of the ground with the force and the
+/// couple there. The opposite acts on the first.
 pub fn joint_actions(
     mechanism: &Mechanism,
     placements: &[Placement],
@@ -261,7 +261,7 @@ impl System {
         })
     }
 
-    /// The smallest solution of the scaled rows, and what is not met relative to the largest part.
+    /// The solution of least norm of the scaled rows, and the residual relative to the largest term.
     fn solve(&self, dense: &DenseMechanism, right: &[f64]) -> (Vec<f64>, f64) {
         let scaled = |i: usize| right.get(i).map_or(0.0, |r| r * dense.row_scale[i]);
         let right = Mat::from_fn(self.matrix.nrows(), 1, |i, _| scaled(i));
@@ -270,7 +270,7 @@ impl System {
         (column(&x), relative(&residual, &right))
     }
 
-    /// The multipliers of what the bodies require, and what is not balanced.
+    /// The multipliers for the required forces of the bodies, and the unbalanced remainder.
     fn multipliers(&self, dense: &DenseMechanism, required: &[f64]) -> (Vec<f64>, f64) {
         let scaled = |c: usize| required[c] * dense.column_scale(c);
         let right = Mat::from_fn(required.len(), 1, |c, _| scaled(c));
@@ -283,7 +283,7 @@ impl System {
         (unscaled, relative(&residual, &right))
     }
 
-    /// Multipliers that hold nothing.
+    /// Self-stresses: multipliers that balance without loads.
     fn stresses(&self, dense: &DenseMechanism) -> impl Iterator<Item = Vec<f64>> {
         (self.rank..self.matrix.nrows()).map(move |k| {
             let stress = self.svd.U().col(k).iter().zip(&dense.row_scale);

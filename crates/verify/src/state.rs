@@ -1,5 +1,5 @@
-//! Kinetostatic states: where the bodies are, how they move and accelerate, and what the joints
-//! and actuators do then, under loads, with any number of actuators.
+//! Kinetostatic states: positions, velocities and accelerations of the bodies, and the forces of joints and actuators
+//! under loads, with any number of actuators.
 //!
 //! A [`ClaimedState`] is a claim. It is closed densely from the claimed poses, and then
 //!
@@ -15,7 +15,7 @@
 //! In (4) the reactions are forces at points, by the definitions of their components, and the
 //! accelerations once the claimed ones, once second differences of positions along
 //! q(t) = q + q̇ t + ½ q̈ t², closed without any velocity. (5) and (6) take the dense motion. (3)
-//! and the acts of (4) to (6) share nothing but the poses.
+//! and the actions in (4) to (6) share nothing but the poses.
 
 mod branch;
 mod dense_state;
@@ -39,14 +39,14 @@ use dwell_geometry::space::Wrench;
 use rayon::prelude::*;
 use std::fmt::Display;
 
-/// The mechanism whose states are claimed, as it is assembled.
+/// The assembled mechanism whose states are claimed.
 #[derive(Debug, Clone, Copy)]
 pub struct AssembledMechanism<'a> {
     /// The mechanism.
     pub mechanism: CheckedMechanism<'a>,
     /// The coordinates of its actuators there, rad or m: only the [branch](check_branch) and teeth in space are continued from them.
     pub q: &'a [f64],
-    /// Where its bodies are there.
+    /// The poses of its bodies at assembly.
     pub poses: &'a [Pose],
 }
 
@@ -62,7 +62,7 @@ impl AssembledMechanism<'_> {
     }
 }
 
-/// A claimed state. What is given by body is in the order of the mechanism's bodies, the ground included.
+/// A claimed state. Values by body are in the order of the mechanism's bodies, including the ground.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ClaimedState {
     /// Which state it is, for messages.
@@ -75,7 +75,7 @@ pub struct ClaimedState {
     pub q_dot: Vec<f64>,
     /// Their accelerations, rad/s² or m/s².
     pub q_ddot: Vec<f64>,
-    /// Where the bodies are; in the plane with angles that count whole revolutions where joints depend on them.
+    /// The poses of the bodies. In the plane, their angles count whole revolutions if joints depend on them.
     pub poses: Vec<Pose>,
     /// Their rates, m/s and rad/s.
     pub velocities: Vec<Twist>,
@@ -94,11 +94,11 @@ pub struct ClaimedState {
     pub load_power: Option<f64>,
 }
 
-/// Checks claimed states of one mechanism, each by itself, with scales from all of them; so many of them, spread evenly, also by
+/// Checks claimed states of one mechanism one by one, with scales from all of them; a number of them, spread evenly, also by
 /// [kinetic energy](check_energies).
 ///
-/// Where joints repeat each other, all rows must close, and reactions that are not determined must
-/// balance, whatever they are. The findings come in a fixed order. If the mechanism is not determinate there is one failed finding that says why; a state that cannot be closed fails all of them.
+/// If joints are redundant, all rows must close, and reactions that are not determined must balance. The findings come in a fixed order. If
+/// the mechanism is not determinate there is one failed finding with the reason; a state that cannot be closed fails all of them.
 pub fn check_states(
     assembled: &AssembledMechanism<'_>,
     states: &[ClaimedState],
@@ -179,7 +179,7 @@ const NEWTON_EULER: FindingSpec<'_> = FindingSpec {
     tolerance: 1e-12,
     tolerance_reason: "a sum of rounded terms",
 };
-/// The tolerance of the same with wrenches in the joints: the largest seen in a case is 7.8e-16.
+/// The tolerance of this check with wrenches in the joints; the largest difference in a case is 7.8e-16.
 const NEWTON_EULER_OF_WRENCHES: f64 = 7e-14;
 const NEWTON_EULER_DIFFERENCES: FindingSpec<'_> = FindingSpec {
     key: "state-newton-euler-differences",
@@ -253,7 +253,8 @@ impl<'a> StateChecker<'a> {
         spec.finding(format!("{} states", self.state_count), worst)
     }
 
-    /// By row, the actuators' after the joints': what makes a force of its multiplier, and its name.
+    /// By row, those of the actuators after those of the joints: the factor from its multiplier to a force, and its
+    /// name.
     fn rows(&self) -> Vec<(f64, &str)> {
         let (angular, names) = (self.dense.angular.iter(), self.dense.row_names.iter());
         let arm = |is_angle: bool| {
@@ -391,7 +392,7 @@ impl<'a> StateChecker<'a> {
         self.finding(&POWER, comparisons)
     }
 
-    /// What a joint leaves free it does not hold; none where all reactions are multipliers of rows.
+    /// A joint transmits nothing along its freedoms; `None` if all reactions are multipliers of rows.
     fn ideal_joints(&self) -> Option<Finding> {
         let mut comparisons = ComparisonSet::with_individual_scales();
         let is_wrench = |joint: &&DescribedJoint| joint.is_wrench;

@@ -1,4 +1,4 @@
-//! What is checked: anything that yields the results of a mechanism of one degree of freedom.
+//! The subject of the checks: anything that yields the results of a mechanism of one degree of freedom.
 
 use crate::pose::Pose;
 use dwell_kinetostatics::Coefficients;
@@ -7,7 +7,7 @@ use dwell_kinetostatics::Coefficients;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{message} (at q = {q})")]
 pub struct SubjectError {
-    /// The coordinate it was asked at, rad.
+    /// The requested coordinate, rad.
     pub q: f64,
     /// Why, as it reads after "the subject failed:".
     pub message: String,
@@ -22,8 +22,8 @@ pub struct InverseDynamics {
     pub reactions: Vec<f64>,
 }
 
-/// A result to be checked. It is asked from several threads at once, and a question must have the
-/// same answer whatever was asked before.
+/// A result to be checked. Several threads query it at once, and the answer to a query must not depend on earlier
+/// queries.
 pub trait Subject: Sync {
     /// Where every body is, the ground included.
     fn poses(&self, q: f64) -> Result<Vec<Pose>, SubjectError>;

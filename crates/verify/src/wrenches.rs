@@ -4,14 +4,14 @@ use crate::pose::lifted;
 use dwell_geometry::space::{Vec3, Wrench, vec3};
 use dwell_geometry::{BodyId, Vec2};
 
-/// A force on one body. What acts between two bodies has two of them.
+/// A force on one body. An action between two bodies is a pair of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyWrench {
     /// The body.
     pub body: BodyId,
     /// The force, N, in the axes of the ground.
     pub force: Vec3,
-    /// The point where it acts, m.
+    /// The point of application, m.
     pub point: Vec3,
     /// The couple, N·m.
     pub couple: Vec3,
@@ -56,7 +56,7 @@ impl BodyWrench {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct NetWrench {
     pub(crate) sum: Wrench,
-    /// Sums of absolute forces and of absolute moments: what rounding is relative to.
+    /// Sums of absolute forces and of absolute moments: the scale of rounding.
     pub(crate) terms: [f64; 2],
 }
 

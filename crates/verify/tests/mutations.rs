@@ -97,8 +97,8 @@ fn with_mutation(setup: &Setup, mutation: Mutation) -> DenseSubject {
     subject
 }
 
-/// Everything that depends on q̇² is wrong, nothing that depends on q̈ is. A dropped centrifugal
-/// force would have passed through the centre of mass, so a body's own moments do not miss it.
+/// Everything that depends on q̇² is wrong, nothing that depends on q̈ is. A dropped centrifugal force acts at the
+/// centre of mass, so the moments about it do not change.
 #[test]
 fn a_dropped_velocity_term() {
     let setup = inverted_slider_crank();
@@ -121,7 +121,7 @@ fn a_dropped_velocity_term() {
     );
 }
 
-/// A rotary inertia misread by a half: everything but the poses feels it.
+/// A rotary inertia misread by a half: it changes everything except the poses.
 #[test]
 fn a_halved_inertia() {
     let setup = single_dwell();
@@ -224,7 +224,7 @@ fn a_change_of_branch() {
     assert!(failing.contains(&"branch".to_owned()));
 }
 
-/// No answer, no number, too few numbers: failed findings, not a panic.
+/// Missing answers, NaN, and too few numbers give failed findings, not a panic.
 #[test]
 fn a_subject_without_answers() {
     struct Silent;

@@ -151,7 +151,7 @@ fn val_pendulum_and_flywheel() {
     }
 }
 
-/// Nothing has a mass: all coefficients are zero, and zero agrees with zero.
+/// All masses are zero: all coefficients are zero, and zero agrees with zero.
 #[test]
 fn val_massless() {
     let mut setup = crank_rocker();
@@ -159,8 +159,8 @@ fn val_massless() {
     check("massless", &setup);
 }
 
-/// Close to a change point the branches nearly cross. The checks stay on theirs, and widen their
-/// tolerances by what they can no longer know rather than blame the subject.
+/// Close to a change point the branches nearly cross. The checks stay on their branch, and widen their tolerances by
+/// the errors of their references.
 #[test]
 fn val_near_a_change_point() {
     for rocker in [1.6, 1.51, 1.501] {

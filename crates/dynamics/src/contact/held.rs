@@ -1,17 +1,17 @@
 //! The forces of all contacts at given modes.
 //!
-//! Surfaces that slide, or are at their limit, have the force of eq. (1) of the friction solver with φ = ±µ or ±µₛ. Those
-//! that hold keep their acceleration at zero:
+//! Surfaces that slide, or are at their limit, have the force of eq. (1) of the friction solver with φ = ±µ or ±µₛ. The
+//! acceleration of sticking surfaces is zero:
 //!
 //! ```text
 //! F_j = −(w_j/√D_jj) Σ_k t_jk η_k,    W_j = Σ_k t_jk W_k,    a_k = 0          k independent contacts that hold    (1)
 //! w_j = µₛ g_j(R)
 //! ```
 //!
-//! With as many independent contacts as hold, this is their force, whatever the weights w. With more, as where every pin of
-//! a four-bar holds, statics does not decide which of them holds how much: (1) gives each the same share of its limit
-//! where one coordinate is held, and shares in proportion to the speeds they would have where several are. So they reach
-//! their limits together. The motion does not depend on it while they hold.
+//! If the sticking contacts are independent, this determines their forces for any weights w. If they are not, as when every
+//! pin of a four-bar sticks, statics does not determine the single forces. Then (1) gives each contact the same share of
+//! its limit if one coordinate is held, and shares in proportion to the speeds that they would have if several are.
+//! Therefore they reach their limits together. The motion does not depend on the shares while they stick.
 
 use super::independent::{IndependentSet, independent};
 use super::mode::sign;
@@ -25,7 +25,7 @@ use dwell_numerics::{Scalar, lu};
 const MAX_ROUNDS: usize = 80;
 const AGREED: f64 = 4.0 * f64::EPSILON;
 const DAMPED: usize = 20;
-/// The weight of contacts that nothing presses together, where no others can hold, as a part of the largest.
+/// The weight of contacts without a normal force, relative to the largest weight, if no other contacts can stick.
 const SMALL_WEIGHT: f64 = 1e-9;
 
 /// The contacts of a machine at a state.
@@ -33,7 +33,8 @@ pub(crate) struct ContactProblem<'p, 's, T: Scalar, M: MachineModel> {
     pub(crate) contacts: &'p [Contact<M::CoordinateFunction>],
     pub(crate) state: &'p mut ForceState<'s, T, M>,
     pub(crate) workspace: &'p mut ContactWorkspace<T>,
-    /// Without the loads that depend on reactions: the reactions, and what a unit of each of these loads adds to them.
+    /// The reactions without the loads that depend on reactions, and the contribution of a unit of each of these loads
+    /// to them.
     pub(crate) unloaded: &'p [T],
     pub(crate) responses: &'p [InverseDynamics<T>],
 }
@@ -55,14 +56,14 @@ pub(super) struct HeldContacts<T> {
     equations: HoldingEquations<T>,
     /// The loads that depend on reactions and do not hold.
     others: Vec<usize>,
-    /// By contact that holds: its force without them; by each of them: what a unit of it adds.
+    /// By sticking contact: its force without the others, and the contribution of a unit of each of them.
     own: Vec<T>,
     by_other: Vec<T>,
 }
 
 impl<T: Scalar, M: MachineModel> ContactProblem<'_, '_, T, M> {
-    /// Finds the modes that are open, and solves for all forces: they become the magnitudes of their loads. `accelerations` are
-    /// those of the coordinates without the loads that depend on reactions, and by load what a unit of it adds.
+    /// Finds the undecided modes, solves for all forces, and sets the magnitudes of their loads. `accelerations` are those of the
+    /// coordinates without the loads that depend on reactions, and, by load, the contribution of a unit of it.
     ///
     /// # Errors
     /// [`KinetostaticsError::SelfLocking`](dwell_kinetostatics::KinetostaticsError::SelfLocking) where surfaces that slide have
@@ -150,7 +151,7 @@ impl<T: Scalar, M: MachineModel> ContactProblem<'_, '_, T, M> {
         }
     }
 
-    /// Solves for the forces of contacts that hold, with those of all others.
+    /// Solves for the forces of the sticking contacts together with those of all others.
     // Long because it is one loop: the weights of those that hold depend on the reactions under all forces.
     fn hold(&mut self, of: &mut HeldContacts<T>) -> Result<()> {
         let (contacts, responses) = (self.contacts, self.responses);
@@ -281,7 +282,7 @@ impl<T: Scalar> HeldContacts<T> {
         change
     }
 
-    /// The forces of those that hold, without the others and by a unit of each of them.
+    /// The forces of the sticking contacts, without the others and for a unit of each of them.
     fn solve_for_others(&mut self, workspace: &ContactWorkspace<T>) {
         let Self {
             held,
@@ -304,7 +305,7 @@ impl<T: Scalar> HeldContacts<T> {
         }
     }
 
-    /// Whether a contact is held by those that hold, whatever its own force is.
+    /// Whether the sticking contacts hold this contact at rest, independent of its own force.
     pub(super) fn hold_still(&self, i: usize, workspace: &ContactWorkspace<T>) -> bool {
         let mut with: Vec<usize> = self.basis.clone();
         if !with.contains(&i) {
@@ -324,11 +325,11 @@ struct HoldingEquations<T> {
     right_hand_side: Vec<T>,
 }
 
-/// The contacts that hold, the independent ones, and the rows of the first as sums of those of the others.
+/// The sticking contacts, the independent ones, and the rows of the former as sums of those of the latter.
 type HeldRows<'h, T> = (&'h [usize], &'h [usize], &'h [T]);
 
 impl<T: Scalar> HoldingEquations<T> {
-    /// Composes and factors them; where they are singular, no weight is far below the largest.
+    /// Composes and factors the equations; if they are singular, no weight is far below the largest.
     fn compose(&mut self, workspace: &ContactWorkspace<T>, of: HeldRows<'_, T>, weights: &[T]) {
         self.weights.clear();
         self.weights.extend_from_slice(weights);

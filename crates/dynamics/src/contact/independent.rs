@@ -1,13 +1,13 @@
-//! Which contacts are independent: whose rows are no sums of those of the others.
+//! Selects independent contacts, whose rows are not sums of the rows of others.
 
-/// A contact whose row is that of others to this part of it, squared, is not independent of them.
+/// Tolerance, relative and squared, within which the row of a dependent contact is a sum of the rows of others.
 const INDEPENDENT: f64 = 1e-11;
 
 /// A largest independent set of contacts, by the Cholesky factorisation of D with the largest pivots first; with the working
 /// memory to find it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct IndependentSet {
-    /// By contact: √D, and what is left of its pivot.
+    /// By contact: √D, and the remainder of its pivot.
     scale: Vec<f64>,
     left: Vec<f64>,
     /// The columns of the factor, one after another.
@@ -65,7 +65,7 @@ impl IndependentSet {
     }
 }
 
-/// The same with new working memory.
+/// The independent contacts, with new working memory.
 pub(crate) fn independent(of: &[usize], compliance: impl Fn(usize, usize) -> f64) -> Vec<usize> {
     IndependentSet::default().find(of, compliance).collect()
 }

@@ -1,11 +1,11 @@
-//! What the surfaces of a contact do.
+//! The modes of the surfaces of a contact.
 
 use crate::sliding::Sliding;
 
-/// What the surfaces of a friction do.
+/// The mode of the surfaces of a friction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ContactMode {
-    /// Not decided yet: as their speed says; at a speed of zero, whichever mode agrees with the forces.
+    /// Undecided: their speed decides, or, at a speed of zero, the forces.
     #[default]
     Undecided,
     /// They are at rest, and their mode is to be found; at their limit, if so, they do not hold.
@@ -72,12 +72,12 @@ pub(super) fn sign(forward: bool) -> f64 {
     if forward { 1.0 } else { -1.0 }
 }
 
-/// What happened to the contacts in the step before.
+/// The state of the contacts in the previous step.
 #[derive(Debug, Clone, Copy)]
 pub struct ContactStep<'s> {
     /// By contact: the largest speed of its surfaces.
     pub largest_speeds: &'s [f64],
-    /// By contact, and behind them by end stop: whether its surfaces come to rest, or its force to its limit.
+    /// By contact, and after the contacts by end stop: whether its surfaces come to rest, or its force to its limit.
     pub touched: &'s [bool],
     /// The length of the motion, s.
     pub span: f64,
@@ -92,11 +92,11 @@ pub enum ContactEvent {
     Friction {
         /// Time, s.
         t: f64,
-        /// The state of the machine behind it.
+        /// The state of the machine after the event.
         y: Vec<f64>,
         /// The load whose surfaces they are, by its index.
         load: usize,
-        /// From which mode.
+        /// The mode before the event.
         from: ContactMode,
         /// To which mode.
         to: ContactMode,
@@ -105,27 +105,27 @@ pub enum ContactEvent {
     Switch {
         /// Time, s.
         t: f64,
-        /// The state of the machine behind it.
+        /// The state of the machine after the event.
         y: Vec<f64>,
         /// The load that switches, by its index; those of the drives are the last.
         load: usize,
-        /// The pieces on both sides; none where the motion leaves the switch.
+        /// The pieces on both sides; `None` if the motion leaves the switch.
         sliding: Option<Sliding>,
     },
     /// A coordinate meets its end stop, rests on it or leaves it.
     Stop {
         /// Time, s.
         t: f64,
-        /// The state of the machine behind it.
+        /// The state of the machine after the event.
         y: Vec<f64>,
         /// Which of the machine's end stops, by its index.
         stop: usize,
-        /// What happens.
+        /// The change.
         change: StopChange,
     },
 }
 
-/// What happens at an end stop.
+/// A change at an end stop.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StopChange {
     /// The coordinate strikes it.
@@ -135,11 +135,11 @@ pub enum StopChange {
         /// By free coordinate: the change of its speed.
         changes: Vec<f64>,
     },
-    /// It comes to touch one that yields.
+    /// The coordinate touches a compliant stop.
     Touches,
-    /// It comes to rest on it.
+    /// The coordinate comes to rest on the stop.
     Rests,
-    /// It is lifted off.
+    /// The coordinate leaves the stop.
     Leaves,
 }
 
@@ -151,7 +151,7 @@ impl ContactEvent {
         }
     }
 
-    /// The state of the machine behind it.
+    /// The state of the machine after the event.
     pub fn y(&self) -> &[f64] {
         match self {
             Self::Friction { y, .. } | Self::Switch { y, .. } | Self::Stop { y, .. } => y,

@@ -1,11 +1,11 @@
-//! What a unit of each force does to the speeds of all surfaces:
+//! The effect of a unit of each force on the accelerations of all surfaces:
 //!
 //! ```text
 //! aᵢ = bᵢ + Σⱼ Dᵢⱼ Fⱼ,    Dᵢⱼ = Wᵢ M⁻¹ Wⱼᵀ,    vᵢ = Wᵢ q̇ + …,    bᵢ = Wᵢ q̈⁰ + Ẇᵢ q̇ + …
 //! ```
 //!
 //! with F the loads that depend on reactions, a the accelerations of the surfaces and q̈⁰ those of the coordinates without
-//! these loads. The terms that are left out are those of prescribed coordinates.
+//! these loads. The omitted terms are those of prescribed coordinates.
 
 use super::held::HeldContacts;
 use super::mode::sign;
@@ -18,7 +18,7 @@ use dwell_numerics::Scalar;
 pub(crate) struct ContactWorkspace<T> {
     /// By contact: its mode, found where the state left it open.
     pub(crate) modes: Vec<ContactMode>,
-    /// By contact that holds: its force as a part of the largest; zero where it does not.
+    /// By contact: its force relative to its limit if it sticks, otherwise zero.
     pub(crate) shares: Vec<f64>,
     /// By contact: the speed of its surfaces.
     pub(crate) speeds: Vec<f64>,
@@ -33,7 +33,7 @@ pub(crate) struct ContactWorkspace<T> {
     dependents: Vec<usize>,
     /// By load: F.
     pub(super) forces: Vec<T>,
-    /// The reactions under all forces, and those with the contacts that hold.
+    /// The reactions under all forces, and those with the sticking contacts.
     pub(super) reactions: Vec<T>,
     pub(super) held_reactions: Vec<T>,
     pub(super) held_responses: Vec<InverseDynamics<T>>,
@@ -44,7 +44,7 @@ pub(crate) struct ContactWorkspace<T> {
 }
 
 impl<T: Scalar> ContactWorkspace<T> {
-    /// For these contacts, so many free coordinates and loads, and results of this size.
+    /// Memory for these contacts, for given numbers of free coordinates and loads, and for results of this size.
     pub(crate) fn new<F>(
         contacts: &[Contact<F>],
         free: usize,
@@ -73,7 +73,7 @@ impl<T: Scalar> ContactWorkspace<T> {
     }
 
     /// Collects them at a state, whose bodies have the accelerations of prescribed coordinates alone; `accelerations` are
-    /// q̈⁰, and by load what a unit of it adds.
+    /// q̈⁰, and, by load, the contribution of a unit of it.
     pub(super) fn collect<M: MachineModel>(
         &mut self,
         contacts: &[Contact<M::CoordinateFunction>],
@@ -102,10 +102,10 @@ impl<T: Scalar> ContactWorkspace<T> {
         self.compliance[contact][self.dependents[other]]
     }
 
-    /// How far a contact is from a change of its mode: the speed that is left of surfaces that slide, the part of the largest
-    /// force that is left of those that hold.
+    /// The margin of a contact to a change of its mode: the remaining speed of sliding surfaces, or the remaining fraction of
+    /// the largest force of sticking surfaces.
     pub(crate) fn margin(&self, i: usize) -> f64 {
-        /// Far beyond its limit a force is without bounds where nothing presses.
+        /// Bound of a force relative to its limit, because the ratio is infinite without a normal force.
         const MAX_SHARE: f64 = 2.0;
         match self.modes[i] {
             ContactMode::Slides { forward } => sign(forward) * self.speeds[i],

@@ -13,7 +13,7 @@ use dwell_numerics::Scalar;
 
 /// Trials, and those more for each contact, after which no mode is found.
 const TRIALS: usize = 8;
-/// How far beyond its limit, as a part of it, a force counts as within.
+/// A force that exceeds its limit by this fraction counts as within it.
 const LIMIT_TOLERANCE: f64 = 1e-12;
 /// Contacts whose shares of their limits are the same to this part let go together.
 const TOGETHER: f64 = 1.0 - 1e-6;
@@ -79,14 +79,14 @@ impl<T: Scalar, M: MachineModel> ContactProblem<'_, '_, T, M> {
         Err(DynamicsError::NoContactMode { source_index: load })
     }
 
-    /// Those of some contacts that are to hold.
+    /// The contacts among these that are to stick.
     fn holding(&self, open: &[usize]) -> impl Iterator<Item = usize> {
         let open = open.iter().copied();
         open.filter(|&i| self.workspace.modes[i] == ContactMode::Holds)
     }
 
-    /// The contacts that are farthest beyond their limits, or move although they are to hold; those that share a load let go
-    /// together.
+    /// The contacts that are farthest beyond their limits, or move although they are to stick. Contacts that share a load
+    /// are released together.
     fn beyond_their_limit(&self, open: &[usize], held: &HeldContacts<T>) -> Vec<usize> {
         let workspace = &*self.workspace;
         let excess = |i: usize| {
@@ -108,7 +108,7 @@ impl<T: Scalar, M: MachineModel> ContactProblem<'_, '_, T, M> {
         beyond.map(|(_, i)| i).collect()
     }
 
-    /// Of the contacts that are to hold, the one that takes the largest force for it; none if none does.
+    /// The contact that needs the largest force to stick; `None` if none needs one.
     fn hardest_to_hold(&self, open: &[usize]) -> Option<usize> {
         let workspace = &*self.workspace;
         let force = |&i: &usize| workspace.free[i].value().abs() / workspace.of_two(i, i).value();
@@ -116,7 +116,7 @@ impl<T: Scalar, M: MachineModel> ContactProblem<'_, '_, T, M> {
         holds.max_by(|one, other| force(one).total_cmp(&force(other)))
     }
 
-    /// Distinguishes contacts that slide from those that are at their limit while others hold them.
+    /// Distinguishes sliding contacts from those that are at their limit while others hold them.
     fn set_moving(&mut self, open: &[usize]) {
         let workspace = &mut *self.workspace;
         let mut held = HeldContacts::default();

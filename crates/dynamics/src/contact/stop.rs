@@ -13,7 +13,7 @@ pub struct EndStop {
     pub max: Option<f64>,
     /// Coefficient of restitution e, from 0 to 1.
     pub restitution: f64,
-    /// Of one that yields: its spring and its damper, instead of impacts.
+    /// For a compliant stop: its spring and its damper, which replace impacts.
     pub yielding: Option<YieldingStop>,
 }
 
@@ -35,7 +35,7 @@ pub(crate) struct Stop {
     pub(crate) free: usize,
     /// The actuator of the coordinate.
     pub(crate) actuator: usize,
-    /// Where it is, rad or m.
+    /// Its position, rad or m.
     pub(crate) at: f64,
     /// 1 of a lower limit, −1 of an upper one: the direction in which it pushes.
     pub(crate) side: f64,
@@ -44,7 +44,7 @@ pub(crate) struct Stop {
 }
 
 impl Stop {
-    /// The force with which it pushes along its coordinate if it yields and is touched, negative where it would pull.
+    /// The force of a compliant stop in contact, along its coordinate, N·m or N; negative where it would pull.
     pub(crate) fn push<T: Scalar>(&self, q: T, speed: T) -> Option<T> {
         let YieldingStop { stiffness, damping } = self.yielding?;
         let side = T::from_f64(self.side);
@@ -52,8 +52,9 @@ impl Stop {
         Some(depth * T::from_f64(stiffness) - side * speed * T::from_f64(damping))
     }
 
-    /// How far its coordinate is from a change: to touch it or to leave it, while it is touched or not. A damper lets go before
-    /// the spring has its length again; then the coordinate is behind the limit, but does not touch the stop.
+    /// The margin of the coordinate to a change: to leaving the stop while it is touched, to touching it otherwise. Because of
+    /// the damper, contact ends before the spring has its free length; the coordinate is then beyond the limit, but does not
+    /// touch the stop.
     pub(crate) fn yielding_margin(&self, is_touched: bool, q: f64, speed: f64) -> Option<f64> {
         let push = self.push(q, speed)? / self.yielding?.stiffness;
         let distance = self.side * (q - self.at);
@@ -64,7 +65,7 @@ impl Stop {
     }
 }
 
-/// The sides of all end stops; none where a coordinate is not free.
+/// The sides of all end stops; `None` if a coordinate is not free.
 pub(crate) fn one_sided(stops: &[EndStop], free: &[usize]) -> Option<Vec<Stop>> {
     let mut all = Vec::new();
     for (stop, one) in stops.iter().enumerate() {

@@ -4,22 +4,22 @@
 //! M Δq̇ = eᵢ P,    q̇ᵢ⁺ = −e q̇ᵢ⁻                                  (1)
 //! ```
 //!
-//! and the other coordinates jump with it; friction during the impact is left out. Where what remains of the rebounds is
-//! shorter than [`LAST_REBOUNDS`] of the motion the coordinate rests at their limit: it is fixed there, by a force that can only push.
+//! and the other coordinates jump with it; friction during the impact is neglected. If the remaining rebounds are shorter than
+//! [`LAST_REBOUNDS`] of the motion, the coordinate comes to rest at the limit, where a force that can only push holds it.
 
 use super::Passage;
 use crate::contact::{ContactEvent, ContactMode, Stop, StopChange};
 use crate::error::{DynamicsError, Result};
 use crate::machine::MovingModel;
 
-/// Rebounds that last less in sum than this part of the motion are the last: the force changes in them by no more than
-/// such a part of itself, so that their sum is that of a geometric series to its square.
+/// Rebounds whose total duration is below this fraction of the motion are the last. The force changes during them by at
+/// most such a fraction, so that their duration is the sum of a geometric series with an error of its square.
 const LAST_REBOUNDS: f64 = 1e-7;
 /// Impacts at one instant, where some coordinates strike others, after which none is the last.
 const MAX_IMPACTS: usize = 1000;
 
 impl<M: MovingModel> Passage<'_, M> {
-    /// The modes of stops after the event, with the speeds behind the impacts; whether something is struck.
+    /// Sets the modes of stops after the event, and the speeds after the impacts; returns whether a stop is struck.
     ///
     /// # Errors
     /// [`DynamicsError`] where the state cannot be evaluated, or impacts follow each other without end.
@@ -78,7 +78,7 @@ impl<M: MovingModel> Passage<'_, M> {
         Ok(is_struck)
     }
 
-    /// What comes to rest on its stop stays there while the force pushes.
+    /// A coordinate that comes to rest on its stop stays there while the force pushes.
     fn rest(&mut self, k: usize, stop: &Stop) -> Result<()> {
         let speed_index = self.machine.free().len() + stop.free;
         self.evaluate()?;

@@ -1,4 +1,4 @@
-//! Locates the events of contacts during an integration: surfaces that come to rest, and forces of surfaces that hold that
+//! Locates the events of contacts during an integration: surfaces that come to rest, and forces of sticking surfaces that
 //! reach their limit. Each is the zero of a margin,
 //!
 //! ```text
@@ -8,14 +8,14 @@
 //!
 //! on the dense output: the modes are held within a step, so that everything is smooth, and a step may lead beyond.
 //!
-//! Where the force that keeps a coordinate q on its stop passes zero at t₁, the coordinate leaves with q̈ = 0, too:
+//! If the force that keeps a coordinate q on its stop passes zero at t₁, the coordinate leaves with q̈ = 0:
 //!
 //! ```text
 //! q − q₁ = ½ q̈(t₁)(t − t₁)² + ⅙ q⃛ (t − t₁)³ + …,    q̈(t₁) = 0 but for rounding,    q⃛ > 0                       (1)
 //! ```
 //!
-//! so that at first its distance is less than the error of the method, and the sign of what is computed says nothing. The
-//! sign of q̈ behind t₁ does: as long as it leads away from the stop, there is no contact.
+//! so that at first its distance is below the error of the method, and the sign of the computed distance is meaningless.
+//! The sign of q̈ after t₁ decides: as long as q̈ leads away from the stop, there is no contact.
 
 use crate::contact::ContactStep;
 use crate::crossings::{are_together, fall_below_zero, first_inside, first_of};
@@ -25,7 +25,7 @@ use dwell_numerics::root;
 
 /// How many events that happen together count as one without end.
 const MAX_TOGETHER: usize = 64;
-/// Events at one time, beside those of other contacts, after which they repeat each other.
+/// Number of events of a contact at one time after which they count as endless.
 const REPEATED: usize = 8;
 /// A margin below this is beyond its limit where a motion begins.
 const BEYOND: f64 = 1e-12;
@@ -43,13 +43,14 @@ pub(crate) struct ContactMonitor {
 /// The margin of a contact.
 #[derive(Debug, Clone, Copy)]
 struct Margin {
-    /// At the last points of the step, the latest first.
+    /// The margins at the last points of the step, the latest first.
     points: [(f64, f64); 2],
     /// The largest in the step.
     largest: f64,
     /// Whether it was positive since the integration began: surfaces that have just let go have no speed yet.
     is_inside: bool,
-    /// Of a coordinate that leaves its stop from rest, by (1): the state that is its speed, and the sign of the direction away.
+    /// For a coordinate that leaves its stop from rest, by (1): the index of its speed in the state, and the sign of the
+    /// direction away from the stop.
     leaving: Option<(usize, f64)>,
 }
 
@@ -71,7 +72,7 @@ impl ContactMonitor {
         })
     }
 
-    /// Decides the modes that are open where an integration begins, and those that another load or drive has changed.
+    /// Decides the undecided modes at the start of an integration, and those that another load or drive has changed.
     ///
     /// # Errors
     /// [`DynamicsError`] where no mode is found, or the state cannot be evaluated.
@@ -86,7 +87,7 @@ impl ContactMonitor {
         self.change_modes(system, at, &touched)
     }
 
-    /// Nothing is known of the margins with other modes, or behind other pieces.
+    /// Discards the margins, which are invalid for other modes and other pieces.
     fn begin_anew(&mut self) {
         for margin in &mut self.margins {
             margin.is_inside = false;
@@ -171,8 +172,8 @@ impl ContactMonitor {
         fall_below_zero(earlier, (t, value), margin_at)
     }
 
-    /// Which coordinates leave their stops from rest: those that a force of zero has let go, which is touched, and those that
-    /// no force holds; the others where no mode has changed go on doing so.
+    /// Finds the coordinates that leave their stops from rest: those that a force of zero releases, and those that no force
+    /// holds. Coordinates that already leave continue to do so if no mode has changed.
     fn find_leaving(
         &mut self,
         system: &mut dyn OdeSystem,

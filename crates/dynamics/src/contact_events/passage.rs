@@ -1,4 +1,5 @@
-//! Changes of modes at an event: which surfaces are at rest there, what they do next, and that they are exactly at rest.
+//! Changes of modes at an event: finds the surfaces at rest there and their next modes, and sets their speeds exactly to
+//! zero.
 
 use crate::contact::{Contact, ContactEvent, ContactMode, ContactStep, independent};
 use crate::error::Result;
@@ -17,14 +18,13 @@ pub(super) struct Passage<'a, M: MovingModel> {
     /// Time, s, and the state there.
     pub(super) t: f64,
     pub(super) y: &'a mut [f64],
-    /// What happened in the step before.
+    /// The state of the contacts in the previous step.
     pub(super) step: &'a ContactStep<'a>,
-    /// What changes.
+    /// The changes.
     pub(super) events: Vec<ContactEvent>,
 }
 
-/// Finds the modes anew at time `t` (s), writes them and the speeds that go with them into the state `y`, and yields what
-/// changed.
+/// Finds the modes at time `t` (s), writes them and the corresponding speeds into the state `y`, and returns the changes.
 ///
 /// # Errors
 /// [`DynamicsError`](crate::DynamicsError) where no mode is found, or the state cannot be evaluated.
@@ -120,7 +120,7 @@ impl<M: MovingModel> Passage<'_, M> {
         Ok(())
     }
 
-    /// Takes off the speeds that surfaces that hold have within rounding, with the least change of momentum. Those that only pass
+    /// Removes the speeds that sticking surfaces have within rounding, with the least change of momentum. Surfaces that only pass
     /// through a speed of zero are not stopped.
     fn stop_surfaces(&mut self) {
         let (machine, workspace) = (self.machine, &*self.workspace);

@@ -10,10 +10,10 @@ use crate::options::Options;
 use dwell_numerics::root;
 use std::f64::consts::TAU;
 
-/// A machine has come to rest if its speed, and what its acceleration adds in the time of a radian at the largest speed
-/// so far, are below this part of that speed.
+/// A machine has come to rest if its speed, and its acceleration times the time of a radian at the largest speed so
+/// far, are below this fraction of that speed.
 const REST_TOLERANCE: f64 = 1e-6;
-/// A machine that moves by less than this (rad) in so many steps has come to rest, too.
+/// A machine that moves by less than this (rad) in a number of steps has come to rest, too.
 const REST_ANGLE: f64 = 1e-6;
 const REST_STEPS: usize = 1000;
 
@@ -72,7 +72,7 @@ struct RestMonitor<'m, M: MovingModel> {
     states: usize,
     /// The largest value of each state so far.
     largest: Vec<f64>,
-    /// Where the machine was when it last moved, and the steps since.
+    /// The coordinate at the last movement of the machine, rad, and the steps since then.
     last: f64,
     still_steps: usize,
 }

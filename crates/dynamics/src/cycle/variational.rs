@@ -7,7 +7,7 @@ use crate::machine::MovingModel;
 use crate::machine_ode::MachineOde;
 use crate::ode::OdeSystem;
 
-/// Among the states time takes the place of the coordinate; the columns of S follow them.
+/// In the states, time replaces the coordinate; the columns of S follow.
 pub(super) struct VariationalSystem<'t, 'm, M: MovingModel> {
     problem: &'t CycleProblem<'m, M>,
     ode: MachineOde<'m, M>,

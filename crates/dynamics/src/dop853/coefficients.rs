@@ -1,7 +1,7 @@
 //! The coefficients of the method, as Hairer, Nørsett and Wanner publish them (Solving Ordinary Differential
 //! Equations I, 2nd ed. 1993, section II.10, code DOP853), to double precision.
 
-/// What a sum of rates weighs them by: the first one, and those from a place on.
+/// The weights of a sum of rates: that of the first rate, and those from an index on.
 pub(super) struct Row {
     pub(super) first: f64,
     pub(super) from: usize,

@@ -1,8 +1,8 @@
 //! Dense output of the method of order 8: the states within a step by its polynomial of degree 7, with three more stages.
 //!
-//! A step may be so long that a decaying part of the motion, which no longer counts at its end, is no polynomial within it:
-//! a step is then limited by stability, |λ| h being several units, and not by its error. Such a step is taken again in shorter parts, each
-//! with a polynomial of its own, where states within it are asked for.
+//! A step may be so long that a decaying part of the motion, which no longer counts at its end, is no polynomial within it: a step is then
+//! limited by stability, |λ| h being several units, and not by its error. If states within such a step are requested, the step is repeated
+//! in shorter parts, each with its own polynomial.
 
 use super::coefficients::{DENSE, EXTRA_NODES, EXTRA_STAGES};
 use super::{ALL_STAGES, END_STAGE, Stages};
@@ -24,7 +24,7 @@ pub(super) struct Interpolant {
     terms: Vec<[f64; TERMS]>,
     /// By state: how far the parts end from the end of the step.
     shift: Vec<f64>,
-    /// Rates at the end of the step, and what its sums have lost, while parts are taken.
+    /// Rates at the end of the step, and the compensations of its sums, saved while parts are taken.
     end_rates: Vec<f64>,
     compensation: Vec<f64>,
 }
@@ -41,7 +41,7 @@ impl Interpolant {
         }
     }
 
-    /// Of the step that was taken last, with its h |λ|.
+    /// Builds the interpolation of the last step, with its h |λ|.
     pub(super) fn build(
         &mut self,
         stages: &mut Stages<'_>,
@@ -96,7 +96,7 @@ impl Interpolant {
         stages.next_compensation.copy_from_slice(&self.compensation);
     }
 
-    /// The state at a fraction of the step: terms are multiplied alternately by the fraction behind and the fraction ahead.
+    /// The state at a fraction of the step: terms are multiplied alternately by the fraction and by one minus the fraction.
     pub(super) fn at(&self, fraction: f64, y: &mut [f64]) {
         let place = fraction * self.parts as f64;
         let part = (place.max(0.0) as usize).min(self.parts - 1);

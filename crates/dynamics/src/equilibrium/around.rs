@@ -1,4 +1,4 @@
-//! What is around an equilibrium: how far it is known, and the directions in which it goes on.
+//! The neighbourhood of an equilibrium: its error, and the directions in which equilibria continue.
 
 use super::at_rest::AtRest;
 use super::{Equilibrium, NeutralDirection, Stability};
@@ -6,15 +6,16 @@ use crate::error::Result;
 use crate::machine::MovingModel;
 use crate::state_space::{eigenvalues_about, linearise_where_it_holds};
 
-/// Below this part of the largest singular value the Jacobian says nothing of its direction, which is looked at over a
-/// distance.
+/// Below this fraction of the largest singular value the Jacobian does not decide on a direction, which is then
+/// examined over a distance.
 const WEAK: f64 = 1e-6;
-/// That distance, relative to 1 rad or the size of the mechanism, and the part of it that must be left where it goes on.
+/// This distance, relative to 1 rad or the size of the mechanism, and the fraction of it that must remain after the
+/// correction if equilibria continue.
 const NEUTRAL_DISTANCE: f64 = 0.02;
 const REMAINING_DISTANCE: f64 = 0.5;
 /// Corrections of a displaced state.
 const MAX_CORRECTIONS: usize = 12;
-/// The shortest distance over which a weak direction is looked at.
+/// The shortest distance over which a weak direction is examined.
 const SHORTEST: f64 = 1e-12;
 /// Steps towards the start along neutral directions, the longest of them, and the shortest that counts.
 const SLIDE_STEPS: usize = 64;
@@ -67,7 +68,7 @@ impl<M: MovingModel> AtRest<'_, M> {
         })
     }
 
-    /// Whether the machine is balanced, too, where it is displaced along a direction to one side, and corrected.
+    /// Whether the machine is still balanced after a displacement along a direction to one side, and a correction.
     fn stays_balanced(&mut self, at: &[f64], direction: &[f64], distance: f64) -> Result<bool> {
         for side in [-distance, distance] {
             self.y.copy_from_slice(at);
@@ -104,7 +105,7 @@ impl<M: MovingModel> AtRest<'_, M> {
         self.is_balanced()
     }
 
-    /// Moves an equilibrium along the directions in which it goes on to where it is nearest to `start`.
+    /// Moves an equilibrium along its neutral directions to the point nearest to `start`.
     pub(super) fn slide_towards(&mut self, start: &[f64]) -> Result<()> {
         for _ in 0..SLIDE_STEPS {
             let factored = self.factor_here()?;

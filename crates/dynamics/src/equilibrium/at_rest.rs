@@ -1,8 +1,8 @@
-//! A machine at rest: what an equilibrium brings to zero, and how much of it is rounding.
+//! A machine at rest: the equations of an equilibrium, and their rounding errors.
 //!
 //! The unknowns are the free coordinates and the states of the drives, the equations the accelerations q̈ and the rates
 //! of those states. Newton's method solves them by the pseudo-inverse of their Jacobian, in coordinates and forces that
-//! are scaled to the size of the mechanism, so that directions along which nothing changes do no harm.
+//! are scaled to the size of the mechanism, so that neutral directions do no harm.
 
 use crate::error::{DynamicsError, Result};
 use crate::machine::{Machine, MachineWorkspace, MovingModel};
@@ -11,26 +11,26 @@ use crate::ode::OdeSystem;
 use dwell_numerics::dense::Matrix;
 use dwell_numerics::{DoubleDouble, Scalar, lu};
 
-/// Steps of Newton's method, and halvings of one.
+/// Largest number of steps of Newton's method, and of halvings of a step.
 const MAX_NEWTON_STEPS: usize = 100;
 const MAX_HALVINGS: usize = 40;
 /// Largest change of a coordinate in a step, rad or m.
 const MAX_COORDINATE_STEP: f64 = 0.5;
 /// A step that does not reduce the residual and is smaller than this, relatively, is rounding.
 const STEP_TOLERANCE: f64 = 1e-9;
-/// A force below this part of the largest, and of what the loads come to, is zero.
+/// A force below this fraction of the largest force, and of the size of the loads, counts as zero.
 const FORCE_TOLERANCE: f64 = 64.0 * f64::EPSILON;
 /// A coordinate is known to this part of itself, or of 1 rad or the size of the mechanism, where a rate is compared with zero.
 const COORDINATE_TOLERANCE: f64 = 8.0 * f64::EPSILON;
 /// Rounding of a force, and of a coordinate, in an error estimate.
 const FORCE_ROUNDING: f64 = 2.0 * f64::EPSILON;
 const COORDINATE_ROUNDING: f64 = 2.0 * f64::EPSILON;
-/// Where a force is more than this part of the largest, Newton's method has found no equilibrium but a position whose inertia
-/// grows beyond all bounds, so that nothing accelerates it.
+/// If a force exceeds this fraction of the largest, Newton's method has found not an equilibrium, but a position of unbounded
+/// inertia, in which the acceleration is zero.
 const REMAINING_FORCE: f64 = 1e-7;
 /// A singular value below this part of the largest is zero to Newton's method.
 const SINGULAR: f64 = 1e-10;
-/// Size of a Jacobian of which all may be rounding.
+/// Size of a Jacobian below which all its entries may be rounding.
 const SMALL: f64 = 1e-4;
 /// A component of a direction below this part of its largest is zero.
 const NO_COMPONENT: f64 = 1e-6;
@@ -45,7 +45,7 @@ pub(super) struct AtRest<'m, M: MovingModel> {
     jacobian: Vec<f64>,
     /// By free coordinate: 1 rad, or the size of the mechanism, m.
     arms: Vec<f64>,
-    /// What the loads can do over that, J.
+    /// The work of the loads over this distance, J.
     work: f64,
 }
 
@@ -91,7 +91,7 @@ impl Factored {
         states
     }
 
-    /// Directions that span those of the singular values from `rank` on, with as few states in each as possible.
+    /// Directions that span the singular vectors from `rank` on, with as few states in each as possible.
     pub(super) fn null_directions(&self, rank: usize) -> Vec<Vec<f64>> {
         let n = self.columns.len();
         let mut basis: Vec<Vec<f64>> = (rank..n)
@@ -161,12 +161,12 @@ impl<'m, M: MovingModel> AtRest<'m, M> {
         (0..n).chain(self.machine.drive_states()).collect()
     }
 
-    /// By unknown: its own rate, of which the coordinate's is that of its speed.
+    /// By unknown: the index of its equation; for a coordinate, that of the rate of its speed.
     fn equations(&self) -> Vec<usize> {
         (self.free()..self.machine.drive_states().end).collect()
     }
 
-    /// Begins at a state, with nothing moving.
+    /// Starts at a state, with all speeds zero.
     pub(super) fn begin_at(&mut self, y: &[f64]) {
         let n = self.free();
         self.y.copy_from_slice(y);
@@ -254,14 +254,14 @@ impl<'m, M: MovingModel> AtRest<'m, M> {
         works.fold(0.0, |max, (force, arm)| max.max(force.abs() * arm))
     }
 
-    /// Counts the forces here among those beside which others are rounding.
+    /// Includes the forces here in the scale of the forces.
     pub(super) fn count_forces(&mut self) -> Result<Vec<f64>> {
         let forces = self.forces()?;
         self.work = self.work.max(self.largest_work(&forces));
         Ok(forces)
     }
 
-    /// Whether forces are left at the present position although nothing accelerates it.
+    /// Whether forces remain at the current position although its acceleration is zero.
     pub(super) fn has_forces(&mut self) -> Result<bool> {
         self.evaluate()?;
         let forces = self.forces()?;
@@ -285,18 +285,18 @@ impl<'m, M: MovingModel> AtRest<'m, M> {
         Ok(accelerations)
     }
 
-    /// Below what the acceleration of the only coordinate is zero here.
+    /// The size below which the acceleration of the only coordinate counts as zero here.
     pub(super) fn zero_acceleration(&mut self) -> Result<f64> {
         Ok(self.accelerations_of(FORCE_TOLERANCE)?[0])
     }
 
-    /// By equation: below what its rate is zero, where the Jacobian was found last.
+    /// By equation: the size below which its rate counts as zero, at the last Jacobian.
     fn zero_rates(&mut self) -> Result<Vec<f64>> {
         self.rounding_of_rates(FORCE_TOLERANCE, COORDINATE_TOLERANCE)
     }
 
-    /// By equation: the estimated rounding error of its rate, where the Jacobian was found last; the difference from
-    /// double-double numbers shows what closing the loops adds.
+    /// By equation: the estimated rounding error of its rate, at the last Jacobian. The difference from double-double
+    /// numbers includes the error of closing the loops.
     pub(super) fn rounding(&mut self) -> Result<Vec<f64>> {
         let mut rounding = self.rounding_of_rates(FORCE_ROUNDING, COORDINATE_ROUNDING)?;
         let mut workspace: MachineWorkspace<DoubleDouble, M> = self.machine.workspace();
@@ -326,7 +326,7 @@ impl<'m, M: MovingModel> AtRest<'m, M> {
         Ok(rounding)
     }
 
-    /// Whether every rate is zero here but for rounding.
+    /// Whether every rate is zero here within rounding.
     pub(super) fn is_balanced(&mut self) -> Result<bool> {
         self.evaluate()?;
         let equations = self.equations();
@@ -466,7 +466,7 @@ impl<'m, M: MovingModel> AtRest<'m, M> {
         }
     }
 
-    /// Whether some rates are zero at the last evaluation but for rounding.
+    /// Whether these rates are zero within rounding at the last evaluation.
     fn are_zero(&mut self, rows: &[usize]) -> Result<bool> {
         self.differentiate()?;
         let zero = self.zero_rates()?;
@@ -478,7 +478,7 @@ impl<'m, M: MovingModel> AtRest<'m, M> {
 /// Why Newton's method fails.
 const NOT_FROM_THERE: &str = "Newton's method finds none from there";
 
-/// That there is no equilibrium, and why.
+/// The error that there is no equilibrium, with the reason.
 pub(super) fn none<T>(what: &'static str) -> Result<T> {
     Err(DynamicsError::NoEquilibrium { what })
 }

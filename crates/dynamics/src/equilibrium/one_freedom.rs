@@ -1,9 +1,9 @@
 //! All equilibria of a machine of one free coordinate over an interval.
 //!
-//! The acceleration and its slope are evaluated at many positions, and between them where the cubic through both ends
-//! does not describe it. The zeros of the slope then part the interval into pieces on which the acceleration is monotone,
-//! so that each piece has one zero at most; a zero of both is a double one. Where the acceleration is zero but for
-//! rounding at several positions in a row, there is an equilibrium everywhere between them.
+//! The acceleration and its slope are evaluated at many positions, and at further positions between them if the cubic
+//! through both ends does not describe it. The zeros of the slope then divide the interval into pieces on which the
+//! acceleration is monotone, so that each piece has at most one zero; a zero of both is a double zero. If the
+//! acceleration is zero within rounding at several successive positions, every position between them is an equilibrium.
 
 use super::at_rest::{AtRest, none};
 use super::{Equilibrium, NeutralDirection, Stability};
@@ -17,14 +17,14 @@ const PARTS: usize = 512;
 const MAX_HALVINGS: usize = 10;
 /// A part is halved where the cubic errs at its middle by more than this part of its largest value.
 const CUBIC_TOLERANCE: f64 = 0.02;
-/// So many positions in a row without a force are no zero but an interval of them.
+/// Least number of successive positions without a force that form an interval of equilibria.
 const FLAT_POSITIONS: usize = 4;
 /// Bisections for its ends.
 const BISECTIONS: usize = 60;
 /// Zeros that are nearer than this, relative to the interval, are one.
 const SAME_ZERO: f64 = 1e-13;
 
-/// The acceleration at a position, its slope, and below what it is zero.
+/// The acceleration at a position, its slope, and the size below which it counts as zero.
 #[derive(Debug, Clone, Copy)]
 struct Sample {
     q: f64,
@@ -39,7 +39,7 @@ impl Sample {
     }
 }
 
-/// Where the acceleration is zero: at a position, or everywhere in an interval.
+/// A zero of the acceleration: a position, or an interval.
 enum Zero {
     At(f64),
     Between([f64; 2]),
@@ -47,12 +47,12 @@ enum Zero {
 
 /// All equilibria of a machine of one free coordinate between two values of it, in their order.
 ///
-/// Of a whole revolution only one end counts. Where every position of an interval is an equilibrium, it is one, at the
-/// middle, with the interval as its [`NeutralDirection::extent`].
+/// For a whole revolution only one end counts. An interval of equilibria is one equilibrium at its middle, with the
+/// interval as its [`NeutralDirection::extent`].
 ///
 /// # Errors
-/// [`DynamicsError::NoEquilibrium`](crate::DynamicsError::NoEquilibrium) where a drive never settles; and what stands in
-/// the way of an evaluation.
+/// [`DynamicsError::NoEquilibrium`](crate::DynamicsError::NoEquilibrium) if a drive never settles; and the errors of
+/// evaluations.
 pub fn equilibria<M: MovingModel>(
     machine: &Machine<M>,
     [from, to]: [f64; 2],
@@ -159,7 +159,7 @@ impl<'m, M: MovingModel> Search<'m, M> {
         })
     }
 
-    /// Adds the positions after one sample up to another, so that cubics describe what is between them.
+    /// Adds the positions after one sample up to another, so that cubics describe the acceleration between them.
     fn add_until(&mut self, before: Sample, now: Sample, halvings: usize) -> Result<()> {
         let width = now.q - before.q;
         let middle = self.sample(before.q + 0.5 * width)?;
@@ -182,7 +182,7 @@ impl<'m, M: MovingModel> Search<'m, M> {
         self.add_until(middle, now, halvings - 1)
     }
 
-    /// Where the acceleration is zero, in order.
+    /// The zeros of the acceleration, in order.
     fn zeros(&mut self) -> Result<Vec<Zero>> {
         let samples = std::mem::take(&mut self.samples);
         let (Some(&first), Some(&last)) = (samples.first(), samples.last()) else {
@@ -278,7 +278,7 @@ impl<'m, M: MovingModel> Search<'m, M> {
         Ok(())
     }
 
-    /// Where the slope of the acceleration is zero between two samples, as far as its cubic shows.
+    /// The zeros of the slope of the acceleration between two samples, by its cubic.
     fn zeros_of_slope(&mut self, before: Sample, now: Sample) -> Result<Vec<f64>> {
         let width = now.q - before.q;
         let mut ends = vec![before.q, now.q];

@@ -9,16 +9,16 @@ use crate::error::{DynamicsError, Result};
 use crate::machine::{Machine, MovingModel};
 use std::f64::consts::TAU;
 
-/// Two equilibria are the same whose coordinates differ by less, rad or m, beside their errors.
+/// Two equilibria are equal if their coordinates differ by less than this, rad or m, in addition to their errors.
 const SAME: f64 = 1e-6;
 
 /// The equilibria that Newton's method finds within the `ranges` of the free coordinates (rad or m), from the state `first`
-/// and from as many more `starts` in these ranges, in the order of the coordinates. Where equilibria go on along some
+/// and from as many more `starts` in these ranges, in the order of the coordinates. If equilibria continue along some
 /// directions, the one nearest to `first` is found.
 ///
 /// # Errors
-/// [`DynamicsError::Unbalanced`] or [`DynamicsError::NoEquilibrium`] where there is none; and what stands in the way of
-/// the evaluation of every start.
+/// [`DynamicsError::Unbalanced`] or [`DynamicsError::NoEquilibrium`] if there is none; and the error of an evaluation if
+/// every start fails.
 pub fn equilibria_from_starts<M: MovingModel>(
     machine: &Machine<M>,
     first: &[f64],
@@ -165,11 +165,11 @@ impl<M: MovingModel> Search<'_, '_, M> {
     }
 }
 
-/// The equilibrium that Newton's method finds from a state, whatever the number of free coordinates; where equilibria go on
+/// The equilibrium that Newton's method finds from a state, whatever the number of free coordinates; if equilibria continue
 /// along some directions, the one nearest to that state.
 ///
 /// # Errors
-/// [`DynamicsError::NoEquilibrium`] where it finds none; and what stands in the way of an evaluation.
+/// [`DynamicsError::NoEquilibrium`] if it finds none; and the errors of evaluations.
 pub fn equilibrium_near<M: MovingModel>(machine: &Machine<M>, y: &[f64]) -> Result<Equilibrium> {
     let mut at_rest = AtRest::new(machine)?;
     if machine.free().is_empty() {

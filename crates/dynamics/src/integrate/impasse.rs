@@ -1,8 +1,9 @@
-//! Where a motion can go no further: the end of a range, or a singular position, behind which nothing can be evaluated.
+//! Detects positions at which a motion cannot continue: the end of a range, or a singular position beyond which nothing can be
+//! evaluated.
 //!
-//! Methods of diffsol shorten a step that fails to three tenths, take it, and lengthen the next. In front of such an end their steps
-//! become shorter than the rounding of time or of the state, go nowhere and never end: 2 000 000 steps of ESDIRK34 for a screw jack that
-//! comes to the end of its range, where now it takes 67.
+//! Methods of diffsol shorten a step that fails to three tenths, take it, and lengthen the next. Before such an end their steps become
+//! shorter than the rounding of time or of the state, make no progress and never end: ESDIRK34 took 2 000 000 steps for a screw jack at
+//! the end of its range, and takes 67 with this detection.
 
 use crate::integration_parts::Part;
 use crate::ode::OdeState;
@@ -11,18 +12,18 @@ use crate::pace::Pace;
 /// A change of the state below this part of its tolerance is none, and so is a step below this part of the time that has passed: next to a
 /// large coordinate that moves slowly, much time passes in steps below the rounding of the coordinate.
 const IMMATERIAL: f64 = 1e-3;
-/// So many steps in a row that changed nothing where longer ones failed are the end. Each is at most three tenths of one that failed: together
-/// they would lead 1e10 times as near to a place that is not the end.
+/// Number of successive steps without a change, after longer ones failed, that mark the end. Each is at most three tenths of a failed step:
+/// together they would come 1e10 times nearer to a position that is not the end.
 const MAX_FAILED: usize = 20;
-/// After so many steps that failed, not in a row, their pace is looked at.
+/// Number of failed steps, not successive, after which their pace is checked.
 const FAILED_AT_A_PACE: usize = 20;
 /// Steps that fail belong together where no more lie between them.
 const RECENT: usize = 1000;
-/// A balance that changes by so large a part of the kinetic energy while steps fail is broken: next to singular positions it was seen to
-/// change by 0.3 to 10 times that, otherwise by the tolerance.
+/// A balance that changes by this fraction of the kinetic energy while steps fail is broken: next to singular positions, changes by 0.3
+/// to 10 times the kinetic energy were observed, otherwise changes of the size of the tolerance.
 const BROKEN: f64 = 0.01;
 
-/// Counts the steps that fail, or change nothing because longer ones do.
+/// Counts the steps that fail, and those that are so short after failures that they change nothing.
 pub(super) struct Impasse {
     start: f64,
     relative: f64,
@@ -30,17 +31,18 @@ pub(super) struct Impasse {
     pub(super) absolute: Vec<f64>,
     failed: usize,
     pub(super) pace: Pace,
-    /// Of the steps that failed since they were looked at last: how many, and how many steps and which time, s, there were then.
+    /// The number of failed steps since the last check, and the number of steps and the time, s, at that check.
     slow: (usize, usize, f64),
     is_slow: bool,
     /// The kinetic energy and the balance, J, before the first of the steps that fail, and after how many steps one has failed last.
     before: Option<([f64; 2], usize)>,
-    /// The length of a step that could not be evaluated and was not shortened, s; none where it is below the rounding of time.
+    /// The length of a step that could not be evaluated and was not shortened, s; `None` if it is below the rounding of time.
     pub(super) failed_step: Option<f64>,
 }
 
 impl Impasse {
-    /// Of an integration, to an absolute tolerance by state; `function` is the first load that a program computes.
+    /// The detection for an integration with an absolute tolerance for each state; `function` is the first load given
+    /// as a function of a program.
     pub(super) fn new(of: &Part, absolute: Vec<f64>, function: Option<usize>) -> Self {
         Self {
             start: of.start.t,
@@ -99,7 +101,7 @@ impl Impasse {
         both.is_some_and(|([kinetic, before], [_, now])| (now - before).abs() > BROKEN * kinetic)
     }
 
-    /// Whether nothing leads on.
+    /// Whether the motion cannot continue.
     pub(super) fn is_reached(&self) -> bool {
         self.failed >= MAX_FAILED || self.is_slow
     }

@@ -30,7 +30,7 @@ pub(super) fn solver_error(error: &DiffsolError, t: f64) -> DynamicsError {
     }
 }
 
-/// What all steps of an integration share.
+/// The data that all steps of an integration share.
 pub(super) struct StepLoop<'g, 'f> {
     pub(super) part: &'g Part,
     /// The error of the last evaluation that failed.

@@ -8,7 +8,7 @@ use dwell_numerics::Scalar;
 use std::ops::Range;
 
 impl<M: MovingModel> Machine<M> {
-    /// The same with end stops.
+    /// This machine with end stops.
     ///
     /// # Errors
     /// [`MachineError::Stop`] for one that cannot be used.
@@ -65,7 +65,7 @@ impl<M: MovingModel> Machine<M> {
         self.contacts.iter().map(|contact| contact.load)
     }
 
-    /// Which coordinates rest on their stops, and the forces of those that yield.
+    /// Sets the coordinates that rest on their stops, and the forces of compliant stops.
     // Most machines have no stops: out of the path of every evaluation.
     #[cold]
     #[inline(never)]
@@ -85,20 +85,20 @@ impl<M: MovingModel> Machine<M> {
         }
     }
 
-    /// The loads, those of the drives last, that switch as coordinates and speeds move.
+    /// The loads, those of the drives last, that switch with coordinates and speeds.
     pub fn switching_loads(&self) -> Vec<usize> {
         self.state_switches.loads().collect()
     }
 
-    /// The loads whose magnitudes are known from the motion alone: those of drives and contacts, and those that switch, which at a switch may have
-    /// either value.
+    /// The loads whose magnitudes must be taken from the motion: those of drives and contacts, and those that switch, which may have either
+    /// value at a switch.
     pub fn given_loads(&self) -> impl Iterator<Item = usize> + '_ {
         let drives = self.drives.iter().map(|drive| drive.load);
         let all = drives.chain(self.contact_loads());
         all.chain(self.state_switches.loads())
     }
 
-    /// Refuses an analysis of smooth motions where friction holds at rest; `what` says why.
+    /// Rejects an analysis of smooth motions if friction sticks; `what` states the reason.
     pub(crate) fn require_smooth(&self, what: &'static str) -> Result<()> {
         if let Some(stop) = self.stops.first() {
             return Err(DynamicsError::Stops {
@@ -113,7 +113,7 @@ impl<M: MovingModel> Machine<M> {
         })
     }
 
-    /// Refuses a search of equilibria where they are no points or intervals: with friction that holds, and several free
+    /// Rejects a search for equilibria that are not points or intervals, as with sticking friction and several free
     /// coordinates.
     pub(crate) fn require_intervals(&self) -> Result<()> {
         if self.free.len() == 1 && self.stops.is_empty() {

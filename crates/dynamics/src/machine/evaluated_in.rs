@@ -1,5 +1,5 @@
 //! Machines are evaluated in four kinds of number: in `f64` as they move, in [`Dual`] for Jacobians, in [`DoubleDouble`] where
-//! rounding decides, in `f32` to see what it costs. Each of the two models has a function of its own for each kind, compiled
+//! rounding decides, in `f32` to measure its cost. Each of the two models has a function of its own for each kind, compiled
 //! here. A generic function would be compiled again, with all that it calls down to Newton's method, in every crate that
 //! evaluates a machine.
 

@@ -1,4 +1,4 @@
-//! What an impact on an end stop does to a machine: speeds and works.
+//! The effect of an impact on an end stop on a machine: speeds and works.
 
 use super::{Machine, MachineWorkspace, MovingModel, NonconservativeSource};
 use crate::contact::Stop;

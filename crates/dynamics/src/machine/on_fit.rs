@@ -16,9 +16,9 @@ use std::fmt::Debug;
 const REACTION_NODES: usize = 8;
 const REACTION_DEGREE: usize = 8;
 
-/// A model that moves: with what takes its place where a motion crosses a change point, if it can.
+/// A model for motions, with the fit that replaces it where a motion crosses a change point, if it has one.
 ///
-/// A machine in space is made as one in the plane:
+/// A machine in space is built as one in the plane:
 ///
 /// ```
 /// use dwell_dynamics::{CoordinateMode, Machine, Orbit, ReducedState};
@@ -56,7 +56,7 @@ const REACTION_DEGREE: usize = 8;
 pub trait MovingModel:
     MachineModel + EvaluatedIn<f64> + EvaluatedIn<Dual> + EvaluatedIn<DoubleDouble> + EvaluatedIn<f32>
 {
-    /// The part of the coordinate on which a fit takes the place of the model.
+    /// The interval of the coordinate in which a fit replaces the model.
     type FitWindow: Debug + Clone + PartialEq + Send + Sync;
 
     /// Whether a position follows a function of the scene, such as that of a cam.
@@ -116,7 +116,7 @@ impl<M: MovingModel> Machine<M> {
 
 /// The equation of motion (1) within a window, in the plane and in space.
 impl<M: MovingModel> Machine<M> {
-    /// m and ½m′ of the bodies with what rotors and flywheels add, where the coordinates of drives move so at unit speed.
+    /// m and ½m′ of the bodies, rotors and flywheels, with the given rates of the drives' coordinates at unit speed.
     ///
     /// # Errors
     /// [`DynamicsError::NoInertia`](crate::DynamicsError::NoInertia).
@@ -225,7 +225,7 @@ impl MovingModel for Model {
         Ok(state)
     }
 
-    /// A reaction that is not determined at the change point is not a number.
+    /// A reaction that is not determined at the change point is NaN.
     fn outputs_on_fit<'o>(
         machine_state: &MachineState<'_>,
         (window, x): (&FitWindow, f64),

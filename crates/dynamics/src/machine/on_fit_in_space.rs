@@ -1,5 +1,5 @@
 //! A machine in space across the change points in its range: within a window about each, its branch is a fit, and (1) of
-//! [`crate::change_point_fit`] is its equation of motion. Behind a change point the branch is that of the same plan.
+//! [`crate::change_point_fit`] is its equation of motion. Beyond a change point the branch is that of the same plan.
 
 use super::workspace::EquationWorkspace;
 use super::{Machine, MachineState, MovingModel};
@@ -12,10 +12,10 @@ use dwell_kinetostatics::{EvaluatedState, ForceState, InverseDynamics, MachineMo
 use dwell_numerics::Scalar;
 use std::sync::Arc;
 
-/// Of the way to the next change point, or to the end of the range.
+/// Largest half-width as a fraction of the distance to the next change point, or to the end of the range.
 const FREE_PART: f64 = 0.45;
 
-/// The part of the coordinate about a change point on which a fit takes the place of the model.
+/// The interval of the coordinate about a change point in which a fit replaces the model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpaceFitWindow {
     /// The change point.
@@ -61,7 +61,7 @@ impl SpaceFitWindow {
 }
 
 impl Machine<Model> {
-    /// The same with fits across the change points of its only coordinate, for integrations to a tolerance.
+    /// This machine with fits across the change points of its only coordinate, for integrations to a tolerance.
     #[must_use]
     pub fn with_change_points(mut self, tolerance: f64) -> Self {
         self.fit_windows.clear();

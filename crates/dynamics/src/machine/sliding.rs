@@ -1,5 +1,5 @@
-//! A machine at a state of a motion: on the pieces that its loads and drives are held on there, or sliding along the switch of one, with what acts on
-//! both sides of it, by the part of each.
+//! A machine at a state of a motion: on the held pieces of its loads and drives, or sliding along a switch, with the weighted mean of the
+//! forces on both sides.
 
 use super::workspace::EquationWorkspace;
 use super::{Machine, MachineState, MachineWorkspace, MovingModel};
@@ -10,7 +10,7 @@ use crate::sliding::SideRates;
 use crate::state_switches::HeldSource;
 
 impl<M: MovingModel> Machine<M> {
-    /// Evaluates a state of a motion in the mode that it is in on a side of an event. What is held then stays held in the workspace.
+    /// Evaluates a state of a motion in its mode on a side of an event. The held pieces stay held in the workspace.
     ///
     /// # Errors
     /// As [`Machine::evaluate`].
@@ -27,7 +27,7 @@ impl<M: MovingModel> Machine<M> {
         }
     }
 
-    /// The same in a mode that is known.
+    /// Evaluates a state in a given mode.
     fn evaluate_in_mode<'a>(
         &'a self,
         mode: &Mode<'_>,
@@ -62,7 +62,7 @@ impl<M: MovingModel> Machine<M> {
         Ok(state)
     }
 
-    /// Holds loads and drives on these pieces; what is held.
+    /// Holds loads and drives on these pieces; returns the held pieces.
     fn hold_pieces(
         &self,
         pieces: &[Option<f64>],

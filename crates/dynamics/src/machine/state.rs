@@ -72,7 +72,7 @@ impl<T: Scalar, M: MovingModel> MachineState<'_, T, M> {
         self.forces.coordinate_motion(of)
     }
 
-    /// The accelerations of the bodies become those of the motion.
+    /// Sets the accelerations of the bodies to those of the motion.
     fn accelerate_bodies(&mut self) {
         if self.machine.fit_at(self.equation.q.first()).is_some() {
             // With the accelerations of the fit.
@@ -130,7 +130,7 @@ impl<T: Scalar> MachineState<'_, T> {
 }
 
 impl<M: MovingModel> Machine<M> {
-    /// [`MachineState::energy`] at time `t` (s) and state `y`, for which no force is computed.
+    /// [`MachineState::energy`] at time `t` (s) and state `y`, without computing forces.
     ///
     /// # Errors
     /// [`DynamicsError`](crate::DynamicsError) where there is no pose.
@@ -186,7 +186,7 @@ impl<M: MovingModel> MachineState<'_, f64, M> {
 
     /// Evaluates another model of the same mechanism and loads at this state: its reactions are then
     /// in `result`. Within the window of a change-point
-    /// fit, a reaction that is not determined at the change point is not a number.
+    /// fit, a reaction that is not determined at the change point is NaN.
     ///
     /// # Errors
     /// [`DynamicsError`](crate::DynamicsError) as of [`Machine::evaluate`].

@@ -1,4 +1,4 @@
-//! A machine of one coordinate that nothing acts on:
+//! A machine of one coordinate without loads:
 //!
 //! ```text
 //! q̈ = −½m′ q̇² / (m + J)                                        (1)
@@ -12,8 +12,8 @@ use crate::error::Result;
 use dwell_numerics::Scalar;
 
 impl<M: MovingModel> Machine<M> {
-    /// The derivatives of the state [q, q̇] by (1); false where the machine has more to it, or no inertia, which
-    /// [`Machine::evaluate`] takes or refuses.
+    /// The derivatives of the state [q, q̇] by (1). Returns false if (1) does not describe the machine, or it has no
+    /// inertia; [`Machine::evaluate`] handles these cases.
     ///
     /// # Errors
     /// [`DynamicsError::Position`](crate::DynamicsError::Position) where there is no pose.

@@ -1,6 +1,6 @@
-//! What does work for which no potential accounts, and which of these works are states of their own.
+//! The sources of work without a potential, and the works that are separate states.
 
-/// So many loads have works of their own.
+/// Largest number of loads with separate works.
 const MAX_SEPARATE_WORKS: usize = 32;
 
 /// Something that does work for which no potential accounts.
@@ -15,7 +15,7 @@ pub enum NonconservativeSource {
     Drive(usize),
     /// The prescribed motion of an actuator.
     Prescribed(usize),
-    /// An end stop, by its index: what its impacts lose.
+    /// An end stop, by its index: the energy lost in its impacts.
     Stop(usize),
 }
 

@@ -91,7 +91,7 @@ pub struct EquationWorkspace<T> {
     pub(super) contacts: ContactWorkspace<T>,
     /// By free coordinate: whether it rests on an end stop.
     pub(super) locked: Vec<bool>,
-    /// By side of an end stop: the force along its coordinate of one that yields, N·m or N.
+    /// By side of an end stop: the force of a compliant stop along its coordinate, N·m or N.
     pub(super) stop_forces: Vec<T>,
 }
 

@@ -58,7 +58,7 @@ fn class_of(
     (class, hill.evaluations)
 }
 
-/// What many steps at once say of a pendulum is what its closed form says, with fewer evaluations than steps.
+/// Joined steps give the closed form of a pendulum, with fewer evaluations than steps.
 #[test]
 fn steps_in_which_nothing_happens_are_one() {
     let pendulum = |q: f64| [-q.cos(), -q.sin()];

@@ -33,7 +33,7 @@ pub enum EventKind<C = CoordinateFunction> {
 pub struct Event<C = CoordinateFunction> {
     /// Its function.
     pub kind: EventKind<C>,
-    /// The motion ends with this occurrence of the event; none: it goes on.
+    /// The motion ends with this occurrence of the event; `None` if it continues.
     pub terminal: Option<NonZeroUsize>,
 }
 
@@ -56,7 +56,7 @@ pub(super) type FoundEvent = (EventOccurrence, bool);
 pub(crate) struct TouchTolerance {
     /// rad or m, and per s; not of reactions.
     pub(crate) absolute: f64,
-    /// As a part of the function's largest value.
+    /// Size relative to the function's largest value.
     pub(crate) relative: f64,
 }
 
@@ -67,7 +67,7 @@ impl TouchTolerance {
         relative: 0.0,
     };
 
-    /// Of an integration.
+    /// The touch of an integration.
     pub(crate) fn of_integration(options: &Options) -> Self {
         /// Errors of an amplitude over ten periods, in tolerances: up to 15 by explicit methods. By implicit ones they
         /// are hundreds and more, but none gains more than this (`tests/grazing.rs`).

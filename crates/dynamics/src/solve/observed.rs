@@ -23,7 +23,7 @@ pub trait Observed {
     /// [`DynamicsError`](crate::DynamicsError) where the state cannot be evaluated.
     fn reaction(&mut self, index: usize, at: &OdeState) -> Result<f64>;
 
-    /// The largest change of one of its angles from one state to another, rad: events are looked for at points that
+    /// The largest change of one of its angles from one state to another, rad: events are searched for at points that
     /// are near each other in it.
     fn angle_between(&self, from: &OdeState, to: &OdeState) -> f64;
 }
@@ -35,7 +35,7 @@ pub struct ObservedValue {
     pub value: f64,
     /// Its rate, per s.
     pub rate: f64,
-    /// Of an angle: whether it counts whole revolutions.
+    /// For an angle: whether it counts whole revolutions.
     pub revolutions_counted: Option<bool>,
 }
 
@@ -47,7 +47,7 @@ pub struct ObservedMachine<'m, M: MovingModel = Model> {
     workspace: MachineWorkspace<f64, M>,
     output_workspace: M::Workspace<f64>,
     inverse_dynamics: InverseDynamics<f64>,
-    /// The modes of the motion, where it has any.
+    /// The modes of the motion, if it has any.
     modes: SharedModes,
 }
 
@@ -65,7 +65,7 @@ impl<'m, M: MovingModel> ObservedMachine<'m, M> {
         }
     }
 
-    /// The same in the modes of a motion that is being integrated.
+    /// This machine in the modes of a motion that is being integrated.
     #[must_use]
     pub fn in_modes(mut self, modes: &SharedModes) -> Self {
         self.modes = modes.clone();

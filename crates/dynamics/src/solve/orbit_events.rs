@@ -1,9 +1,9 @@
-//! The events along an orbit: looked for in as many periods as it takes until they repeat themselves, and from there on
-//! at equal distances in time.
+//! The events along an orbit. They are searched for in the periods until they repeat, and then continue at equal
+//! distances in time.
 //!
-//! Of a coordinate that grows by D in those periods, the k-th later passage of a value is the passage now of the value
-//! less kD. It happens once, and is looked for only in the periods in which the coordinate can be there. A revolution
-//! is completed in every period, since D is a multiple of 2π.
+//! If a coordinate grows by D in those periods, the k-th later passage of a value is the present passage of the value
+//! minus kD. It occurs once, and is searched for only in the periods in which the coordinate can have this value. A
+//! revolution is completed in every period, since D is a multiple of 2π.
 
 use super::event::{Event, EventKind, EventOccurrence, FoundEvent, TouchTolerance};
 use super::observed::Observed;
@@ -17,9 +17,9 @@ use crate::orbit::Orbit;
 use std::f64::consts::TAU;
 use std::num::NonZeroUsize;
 
-/// Parts of a period, equal in phase, that take the place of steps.
+/// Number of parts of a period, equal in phase, that replace steps.
 const PARTS: usize = 64;
-/// Periods after which what has not repeated itself is followed to the end.
+/// Number of periods after which events without repetition are followed to the end.
 const MAX_PERIODS: usize = 64;
 /// Functions that differ by less of their size repeat themselves: solutions of large groups differ by some rounding.
 const REPETITION_TOLERANCE: f64 = 1e-8;
@@ -28,7 +28,7 @@ const REPETITION_TOLERANCE: f64 = 1e-8;
 pub(super) struct OrbitEvents {
     /// In order of time.
     pub(super) occurrences: Vec<EventOccurrence>,
-    /// Where the motion ends before its end, and the error if that is why.
+    /// The state at which the motion ends early, and the error, if it is the cause.
     pub(super) end: Option<(OdeState, Option<DynamicsError>)>,
 }
 
@@ -168,7 +168,7 @@ impl<'s, O: Observed> Search<'s, O> {
         self.found.len() > MAX_OCCURRENCES
     }
 
-    /// What was found so far.
+    /// The events found so far.
     fn into_events(mut self) -> OrbitEvents {
         let mut end = stop_at_terminal(&mut self.found).map(|state| (state, None));
         if let Some((last, _)) = self
@@ -214,7 +214,7 @@ impl<'s, O: Observed> Search<'s, O> {
         growth.map(|growth| Repetition { periods, growth })
     }
 
-    /// The events of the motion from here on, of which the last periods show how they repeat themselves.
+    /// The further events of the motion; the last periods show how they repeat.
     fn repeat(mut self, repetition: &Repetition) -> Result<OrbitEvents> {
         // One part more: what happens at the end of a period is a rounding before or behind it.
         if self.step()? {
@@ -270,7 +270,7 @@ impl<'s, O: Observed> Search<'s, O> {
         Ok(self.into_events())
     }
 
-    /// A time (s) in the part behind a number of parts that is far from all events.
+    /// A time (s) in the part after a number of parts that is far from all events.
     fn quiet_time(&self, parts: usize) -> f64 {
         let [from, to] = [parts, parts + 1].map(|k| self.time_after(k));
         let times = self.found.iter().map(|(o, _)| o.state.t);

@@ -10,13 +10,13 @@ use crate::orbit::Orbit;
 /// Parts of the first period whose ends are among the steps: every later period is like it.
 const PARTS: usize = 64;
 
-/// The solution along an orbit until `end` (s), or until a terminal event, at a cost by its samples and events,
-/// however many periods lie between them. The tolerances of the options are the error of the orbit: what an event
-/// must pass its value by.
+/// The solution along an orbit until `end` (s), or until a terminal event, at a cost proportional to its samples and
+/// events, independent of the number of periods. The tolerances of the options are the error of the orbit, by which an
+/// event must pass its value.
 ///
 /// # Errors
-/// [`DynamicsError`](crate::DynamicsError) where the start cannot be evaluated, or an option cannot be used. That there
-/// are more events than can be kept is in [`Solution::error`], and the solution ends there.
+/// [`DynamicsError`](crate::DynamicsError) where the start cannot be evaluated, or an option cannot be used. If there
+/// are more events than can be stored, [`Solution::error`] has the error, and the solution ends there.
 pub fn solve_orbit<O: Observed>(
     orbit: &Orbit,
     observed: O,

@@ -1,8 +1,8 @@
 //! The search for one event over the steps of a motion: on the dense output, to rounding.
 //!
 //! A step is divided so that its ends are near each other in angle. Between two points on different sides of the value
-//! lies a passage; between two on one side a polynomial through five points shows whether the function may come to the
-//! value and return, and only then its minimum is looked for. A passage counts when the function has gone beyond the
+//! lies a passage; between two on one side a polynomial through five points shows whether the function may reach the
+//! value and return, and only then its minimum is searched for. A passage counts when the function has gone beyond the
 //! value by more than a touch; its time is that of the zero.
 
 use super::event::{Event, EventKind, EventOccurrence, FoundEvent, TouchTolerance};
@@ -17,7 +17,7 @@ use std::num::NonZeroUsize;
 /// Parts of a step, and of each angle of this size if it is longer.
 const SUBINTERVALS: usize = 4;
 const MAX_ANGLE: f64 = FRAC_PI_4;
-/// Parts of a step beyond which events are not looked for: 8192 revolutions.
+/// Largest number of parts of a step in which events are searched for: 8192 revolutions.
 const MAX_PARTS: usize = 1 << 18;
 /// Resolution of a minimum in time, as a part of a subinterval.
 const RESOLUTION: f64 = 1e-5;
@@ -30,18 +30,18 @@ pub(crate) struct EventTracker<C> {
     tolerance: TouchTolerance,
     /// Time and value of the last evaluation: angles whose revolutions are not counted are continued from it.
     previous: (f64, ObservedValue),
-    /// What the function was expected to change by over each of the last two subintervals.
+    /// The expected change of the function over each of the last two subintervals.
     expected_changes: [f64; 2],
     /// Revolutions, rad, that a counted angle differs by from the continued one since another system took over.
     revolution_offset: f64,
-    /// Of revolutions: the value at the start, and the number passed.
+    /// For revolutions: the value at the start, and the number passed.
     origin: f64,
     revolutions: f64,
     /// The largest absolute value so far.
     size: f64,
     /// The sign of the distance from the value when it was last more than a touch; 0 before.
     side: f64,
-    /// A value, and the zero behind which the function is by no more than a touch.
+    /// A value, and the zero that the function has passed by no more than a touch.
     pending: Option<(f64, EventOccurrence)>,
     occurrences: usize,
     /// Points of the last step.
@@ -94,7 +94,7 @@ impl<C: Copy> EventTracker<C> {
         self.previous.1.value
     }
 
-    /// The same at its start with another count of revolutions, by which the function is near a value.
+    /// This tracker at its start with another count of revolutions, so that the function is near a value.
     pub(super) fn with_value_near(mut self, value: f64) -> Self {
         let now = &mut self.previous.1;
         if now.revolutions_counted == Some(false) {
@@ -144,7 +144,7 @@ impl<C: Copy> EventTracker<C> {
         Ok(value)
     }
 
-    /// What of a passage is no more than a touch.
+    /// The size of a touch.
     fn touch(&self) -> f64 {
         let absolute = match self.event.kind {
             EventKind::Reaction(..) => 0.0,
@@ -332,8 +332,8 @@ impl<C: Copy> EventTracker<C> {
         }
     }
 
-    /// The passage at the end of a motion, if the function has come to the value and goes on: whether it is a rounding
-    /// before or behind it there is chance.
+    /// The passage at the end of a motion, if the function has reached the value and continues: at the end, rounding
+    /// decides whether it has passed the value.
     pub(super) fn at_end(&mut self, end: &OdeState, found: &mut Vec<FoundEvent>) {
         let touch = self.touch();
         let value = self.value();

@@ -8,10 +8,12 @@ use crate::error::Result;
 use crate::ode::{OdeState, OdeSystem};
 use dwell_laws::SwitchKind;
 
-/// Within this part of the last step a function that an event leaves beside its bound is on it, but for rounding.
+/// Relative to the last step: within this distance of its bound, a function at an event is on the bound, except for
+/// rounding.
 const ON_BOUND: f64 = 1e-13;
 
-/// So many functions at a time are tried on all pieces on whose bound they are; others where their own rates lead.
+/// Largest number of functions that are tried together on all pieces on whose bound they are; others follow their own
+/// rates.
 const MAX_TOGETHER: usize = 6;
 
 /// Decisions that are being taken.
@@ -93,9 +95,9 @@ impl SwitchMonitor {
         }
     }
 
-    /// Takes the decisions anew that are `open` or depend on others which have changed, so that the motion on all pieces agrees with them;
-    /// what changes by that is marked, too, and so that it leads away from the switches that it has just `passed`, where it can. Where no
-    /// motion agrees, each is decided by its own rate; whether one does.
+    /// Repeats the decisions that are `open` or depend on changed ones, so that the motion on all pieces agrees with them and, if
+    /// possible, leads away from the switches that it has just `passed`. Further changes are marked, too. If no motion agrees, each
+    /// function is decided by its own rate. Returns whether a motion agrees.
     ///
     /// # Errors
     /// Where the state cannot be evaluated.
@@ -129,7 +131,7 @@ impl SwitchMonitor {
         Ok(agrees)
     }
 
-    /// Passes with a switch those of its operands that are passed within a rounding of the same time: what they decide comes first.
+    /// Adds the operands of a passed switch that are passed within a rounding of the same time, because their decisions come first.
     ///
     /// # Errors
     /// Where the state cannot be evaluated.
@@ -186,8 +188,8 @@ impl SwitchMonitor {
         Ok(false)
     }
 
-    /// The pieces on which a function may be, with the sign of its rate there: by its value on the pieces of its operands; on its bound, or
-    /// where it was passed, that to which it leads first.
+    /// The pieces on which a function may be, with the sign of its rate there: by its value on the pieces of its operands. On its bound, or
+    /// after its passage, the piece to which it leads is first.
     fn possible_pieces(
         &mut self,
         k: usize,
@@ -220,7 +222,7 @@ impl SwitchMonitor {
         })
     }
 
-    /// Whether the rates of some functions soon behind a state, on the pieces that are held, have these signs.
+    /// Whether the rates of some functions shortly after a state, on the held pieces, have these signs.
     fn agrees(
         &mut self,
         ties: &[(usize, f64)],
@@ -257,7 +259,7 @@ impl SwitchMonitor {
         Ok(rests)
     }
 
-    /// The rate of a function soon behind a state, where it is held on a side of zero.
+    /// The rate of a function shortly after a state, held on a side of zero.
     fn rate_on(
         &mut self,
         side: f64,
@@ -271,8 +273,8 @@ impl SwitchMonitor {
         Ok(rate)
     }
 
-    /// The values and the rates of all functions soon behind a state, on the pieces that are held. What begins at rest has moved there, too:
-    /// by the second order of a step.
+    /// The values and the rates of all functions shortly after a state, on the held pieces. Functions that start at rest have moved there,
+    /// too, by the second order of a step.
     fn shortly_after(
         &mut self,
         system: &mut dyn OdeSystem,

@@ -1,4 +1,4 @@
-//! Where a motion begins to slide along a switch, and where it leaves it.
+//! Start and end of sliding motions along a switch.
 
 use super::{Crossing, PROBE, SlideChange, SwitchMonitor};
 use crate::error::{DynamicsError, Result};
@@ -60,8 +60,8 @@ impl SwitchMonitor {
         self.slide(sides, (switches, value), system, &mut crossing.state)
     }
 
-    /// Where a switch that is passed has no rate behind it: puts the state exactly on it, where comparisons hold by equality. Whether the
-    /// motion rests there: beside the switch, by a rounding, it would be held on neither piece.
+    /// If a passed switch has no rate after the passage, puts the state exactly on it, where comparisons hold by equality. Returns
+    /// whether the motion rests there: at a rounding beside the switch, it would be held on neither piece.
     pub(super) fn rest(
         &mut self,
         before: Vec<Option<f64>>,
@@ -181,7 +181,8 @@ impl SwitchMonitor {
         Ok(true)
     }
 
-    /// Decides what depends on a switch by its values beside it, on each side: the motions there may both lead back.
+    /// Decides the functions that depend on a switch by the values on each side of it: the motions on both sides may
+    /// lead back.
     fn decide_by_values(
         &self,
         sides: &mut [Vec<Option<f64>>; 2],
@@ -233,7 +234,7 @@ impl SwitchMonitor {
         }
     }
 
-    /// What changes of a sliding motion in a step: it leaves its switch, or another one is passed on one side of it alone.
+    /// The change of a sliding motion in a step: it leaves its switch, or another switch is passed on one side alone.
     ///
     /// # Errors
     /// Where a state cannot be evaluated.
@@ -275,8 +276,8 @@ impl SwitchMonitor {
         Ok(beside)
     }
 
-    /// Where a switch that is decided by the side of the motion leaves its piece on that side first in a step: the function of a load beside
-    /// the switch goes on changing although the motion does not go there.
+    /// The first time in a step at which a switch that depends on the side leaves its piece on that side: the function of a load beside the
+    /// switch changes although the motion does not go there.
     fn passing_beside(
         &self,
         system: &mut SlidingSystem<'_, '_>,
@@ -398,7 +399,7 @@ impl SwitchMonitor {
         self.slide_on(sliding, &crossing.passed, system, at)
     }
 
-    /// Slides on with other pieces on the sides, behind some switches that are `passed`; or leaves the switch.
+    /// Continues the sliding with other pieces on the sides, after some switches are `passed`; or leaves the switch.
     fn slide_on(
         &mut self,
         sliding: Sliding,

@@ -1,4 +1,4 @@
-//! What loads do between the points of a step at which they are looked at: conditions that change in a window, and pulses.
+//! Features of loads between the evaluated points of a step: conditions that change in a window, and pulses.
 
 use super::{Crossing, SwitchMonitor};
 use crate::crossings::{are_together, passed_soon};
@@ -9,7 +9,7 @@ use dwell_numerics::root;
 
 /// Points of a step through which the variables of the loads are polynomials.
 const POINTS: usize = 5;
-/// Where a polynomial is not exact enough to show a window, a part of the step around it is looked at, so often.
+/// Number of refinements of the step around a window that a polynomial is not exact enough to show.
 const LEVELS: usize = 8;
 /// Half of that part.
 const ZOOM: f64 = 1.0 / 16.0;
@@ -19,21 +19,21 @@ const STEPS_OF_A_RISE: f64 = 4.0;
 /// Slopes of two steps that differ by less than this part leave the variable one direction in both.
 const STRAIGHT: f64 = 0.25;
 
-/// What is looked at between the points of a step.
+/// The check between the points of a step.
 #[derive(Default)]
 pub(super) struct Between {
     /// The variables of the loads at equally spaced points.
     samples: [Vec<f64>; POINTS],
-    /// Those that must turn for anything to happen there, if others do not count.
+    /// The variables that must reverse for a feature between the points, if no others count.
     followed: Option<Vec<usize>>,
-    /// The ends of the last steps, the latest first, with the variables; a time that is no number where there was none.
+    /// The ends of the last steps, the latest first, with the variables; the time is NaN without an earlier step.
     ends: [(OdeState, Vec<f64>); 3],
     /// The longest step (s) until a time (s) up to which a pulse rises.
     pub(super) fine: Option<(f64, f64)>,
 }
 
 impl Between {
-    /// Of a system whose loads may vary there; else none.
+    /// The check for a system whose loads may vary between the points; otherwise `None`.
     pub(super) fn of(system: &dyn OdeSystem) -> Option<Self> {
         system.may_hide().then(|| Self {
             followed: system.followed_signals(),
@@ -63,8 +63,8 @@ impl SwitchMonitor {
         }
     }
 
-    /// Whether nothing happens between the points of a step because the variables go on as in the step before: one look at its end
-    /// shows that.
+    /// Whether there is no feature between the points of a step because the variables continue as in the step before, which its
+    /// end shows.
     pub(super) fn goes_straight_on(
         &mut self,
         system: &mut dyn OdeSystem,
@@ -97,8 +97,8 @@ impl SwitchMonitor {
         Ok(slopes.all(|(last, slope)| (slope - last).abs() <= STRAIGHT * slope.abs()))
     }
 
-    /// What happens between the points of a step, or where a pulse has risen, so that the integration begins anew; `crossing` is
-    /// found at its points.
+    /// The feature between the points of a step, or the rise of a pulse, at which the integration restarts; `crossing` is the
+    /// one found at the points.
     pub(super) fn earlier_between(
         &mut self,
         crossing: Option<Crossing>,
@@ -219,7 +219,7 @@ impl SwitchMonitor {
 }
 
 impl Crossing {
-    /// Where the integration begins anew, and nothing is passed.
+    /// A restart of the integration without a passage.
     pub(super) fn begin_anew(state: OdeState) -> Self {
         let (passed, slide) = (Vec::new(), None);
         Self {

@@ -24,14 +24,15 @@ pub struct TabulatedMachineOde<'t> {
     energy_scale: f64,
     /// By switching load: its held pieces.
     held: Vec<HeldSource>,
-    /// The variables of the loads that switch, where they were looked at last.
+    /// The variables of the loads that switch, at the last check.
     seen: Vec<f64>,
     contact_events: Vec<ContactEvent>,
     modes: SharedModes,
 }
 
 impl TabulatedMachineOde<'_> {
-    /// Where the motion so far began to slide along a switch of a load, and where it left it; they are taken.
+    /// Removes and returns the events so far: where the motion began to slide along a switch of a load, and where it
+    /// left it.
     pub fn take_contact_events(&mut self) -> Vec<ContactEvent> {
         std::mem::take(&mut self.contact_events)
     }
@@ -72,7 +73,7 @@ struct LoadContribution<T> {
     force: T,
     /// The generalised force.
     generalised_force: T,
-    /// Of a drive with a state of its own: the index of that state, and its rate.
+    /// For a drive with a state: the index of the state, and its rate.
     drive_state_rate: Option<(usize, T)>,
 }
 
@@ -143,7 +144,7 @@ impl TabulatedMachine {
         Ok(())
     }
 
-    /// What a load or drive does at a state of which the columns are known.
+    /// The contribution of a load or drive at a state with known columns.
     fn load_contribution<T: Scalar>(
         &self,
         k: usize,

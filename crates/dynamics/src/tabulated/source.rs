@@ -124,7 +124,7 @@ pub(super) struct TotalPotential {
 }
 
 impl TotalPotential {
-    /// None where no load has a potential.
+    /// `None` if no load has a potential.
     pub(super) fn new(machine: &Machine) -> Option<Self> {
         let entry = machine.model().loads().iter().enumerate();
         let loads: Vec<(usize, f64)> = entry
@@ -258,7 +258,7 @@ impl AuxiliaryColumns {
         })
     }
 
-    /// The index of the column of a quantity, which is added where it is not there yet.
+    /// The index of the column of a quantity; adds the column if it does not exist.
     fn column(
         &mut self,
         measured: CoordinateFunction,

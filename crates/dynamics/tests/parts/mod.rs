@@ -1,4 +1,4 @@
-//! Mechanisms and what the tests ask of a journey.
+//! Mechanisms, and the assertions on a journey.
 #![allow(dead_code, reason = "each test binary takes what it needs")]
 #![allow(clippy::expect_used, reason = "tests")]
 

@@ -1,4 +1,4 @@
-//! Operations as statements in C, and what headers and sources of one and of several degrees of freedom share.
+//! Operations as statements in C, and common parts of headers and sources of one and of several degrees of freedom.
 
 use super::{ACCESS, CWriter};
 use crate::identifiers::comment;
@@ -6,9 +6,9 @@ use crate::part::Precision;
 use dwell_numerics::{Operand, Operation, OperationKind, StraightLine};
 use std::fmt::Write as _;
 
-/// What the operations of a model need.
+/// The note on calls and memory of the operations of a model.
 pub(crate) const CALLED: &str = "No function allocates, recurses or keeps anything between calls. Of the library they call sqrt, sin, cos and atan2 of math.h, each only if it is needed.";
-/// What a compiler must not do.
+/// The note on compiler options.
 pub(crate) const COMPILE: &str = "Compile without -ffast-math and with doubles that stay doubles: the sums of a step carry their rounding.";
 
 impl<E> CWriter<'_, E> {
@@ -34,7 +34,7 @@ impl<E> CWriter<'_, E> {
         }
     }
 
-    /// The operations of a code, and what its outputs are assigned to.
+    /// The operations of a code, and the assignments of its outputs.
     pub(crate) fn assignments(
         &self,
         code: &StraightLine,
@@ -95,7 +95,7 @@ impl<E> CWriter<'_, E> {
         format!("/*\n{lines} */\n")
     }
 
-    /// Assigns what the scene has to parameters and inputs.
+    /// Assigns the values of the scene to parameters and inputs.
     pub(crate) fn assign_constants(&self, text: &mut String) {
         for (name, value, _) in self.parameters() {
             _ = writeln!(text, "    parameters->{name} = {};", self.number(value));

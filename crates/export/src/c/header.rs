@@ -1,11 +1,11 @@
-//! The header: what the code is worth, its types and its functions.
+//! The header: a description with errors, types and functions.
 
 use super::CWriter;
 use crate::identifiers::comment;
 use std::fmt::Write as _;
 
 impl<E> CWriter<'_, E> {
-    /// The header with a description; `own` has what its template lacks besides members.
+    /// The header with a description; `own` has the replacements of its template, in addition to members.
     pub(crate) fn header(&self, description: &[String], own: &[(&str, String)]) -> String {
         let mut inputs = members(self.inputs());
         if inputs.is_empty() {
@@ -32,7 +32,7 @@ impl<E> CWriter<'_, E> {
     }
 }
 
-/// The indices of what there are several of, and how many there are.
+/// The indices of a list, and its length.
 pub(crate) fn count(what: &str, list: &[[String; 2]]) -> String {
     let mut text = String::new();
     for (k, [name, meaning]) in list.iter().enumerate() {

@@ -5,7 +5,7 @@ use crate::export::Export;
 use std::fmt::Write as _;
 
 impl CWriter<'_, Export> {
-    /// The counter of a sum of w F over the loads, and the sum, each with what it is added to.
+    /// The counter of a sum of w F over the loads, and the sum, each with its initial text.
     pub(super) fn sum_over_loads(&self, sum: &str) -> (&'static str, String) {
         match self.has_loads() {
             true => (

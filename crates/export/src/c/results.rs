@@ -6,7 +6,7 @@ use crate::writer::reflected;
 use std::fmt::Write as _;
 
 impl CWriter<'_, Export> {
-    /// F of every load, and m and ½m′ with what is added.
+    /// F of every load, and m and ½m′ with the added inertia.
     pub(super) fn forces(&self, text: &mut String) {
         *text += "typedef struct {\n    @p@_real m, half_dm;\n";
         if self.has_loads() {

@@ -1,4 +1,4 @@
-//! The source: constants, coefficients, and what follows from them.
+//! The source: constants, coefficients, and derived functions.
 
 use super::{CWriter, tables};
 use crate::export::Export;

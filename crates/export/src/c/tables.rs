@@ -62,12 +62,12 @@ impl CWriter<'_, Export> {
         );
     }
 
-    /// Where the numbers of a column begin in a cell.
+    /// Start of the numbers of a column in a cell.
     pub(super) fn offset(&self, kind: PartKind, tabulated: usize) -> usize {
         HEAD + CURVE * self.part(kind).curves.len() + TERMS * tabulated
     }
 
-    /// Assigns columns to arrays, runs of neighbours in loops. `targets` are array and place of each column.
+    /// Assigns columns to arrays, runs of neighbours in loops. `targets` are array and index of each column.
     pub(super) fn assign_columns(
         &self,
         kind: PartKind,

@@ -1,4 +1,4 @@
-//! What a load does at a state, with the value of its parameter or input in the scene.
+//! The effect of a load at a state, with the value of its parameter or input in the scene.
 
 use crate::machine::{LoadDescription, LoadEffect, Resistance};
 use dwell_numerics::Real;
@@ -9,14 +9,14 @@ pub(crate) struct Load<R> {
     pub(crate) effect: LoadEffect,
     /// The value of its parameter or input in the scene.
     pub(crate) value: R,
-    /// Of a motor: N k, R, L, N² J.
+    /// For a motor: N k, R, L, N² J.
     motor: [R; 4],
-    /// The place of its current in the state.
+    /// The index of its current in the state.
     current: Option<usize>,
 }
 
 impl<R: Real> Load<R> {
-    /// Those of a machine, and the numbers of its state: coordinates, velocities, currents.
+    /// The loads of a machine, and the numbers of its state: coordinates, velocities, currents.
     pub(crate) fn all(loads: &[LoadDescription], freedoms: usize) -> (Vec<Self>, usize) {
         let mut order = 2 * freedoms;
         let load = |LoadDescription { effect, .. }: &LoadDescription| {
@@ -42,7 +42,7 @@ impl<R: Real> Load<R> {
         (loads.iter().map(load).collect(), order)
     }
 
-    /// F at a state, without that of a rotor. `along` multiplies by the velocity of the load, w q̇.
+    /// F at a state, without the force that accelerates a rotor. `along` multiplies by the velocity of the load, w q̇.
     pub(crate) fn force(&self, y: &[R], along: impl Fn(R) -> R) -> R {
         let [constant, resistance, ..] = self.motor;
         match (&self.effect, self.current) {
@@ -58,7 +58,7 @@ impl<R: Real> Load<R> {
         }
     }
 
-    /// The place of its current in the state, and its rate there.
+    /// The index of its current in the state, and the rate of the current.
     pub(crate) fn current_rate(&self, y: &[R], along: impl Fn(R) -> R) -> Option<(usize, R)> {
         let place = self.current?;
         let [constant, resistance, inductance, _] = self.motor;

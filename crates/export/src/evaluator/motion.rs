@@ -7,7 +7,7 @@ use crate::part::{Part, Precision, Wrapping};
 use dwell_numerics::Real;
 use dwell_numerics::StraightLine;
 
-/// What the equation of motion needs at a coordinate.
+/// The terms of the equation of motion at a coordinate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionTerms<R> {
     /// m of the bodies.
@@ -18,11 +18,11 @@ pub struct MotionTerms<R> {
     pub w: Vec<R>,
     /// The derivative of w of each motor with a rotor; zero of other loads.
     pub dw: Vec<R>,
-    /// The potential of one unit of each conservative load; zero of others.
+    /// The potential of one unit of each conservative load; zero for others.
     pub v: Vec<R>,
 }
 
-/// What the reactions need at a coordinate.
+/// The terms of the reactions at a coordinate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReactionTerms<R> {
     /// By reaction.
@@ -33,12 +33,12 @@ pub struct ReactionTerms<R> {
     pub c: Vec<R>,
 }
 
-/// A state of a motion: what the step needs.
+/// A state of a motion, with the data of the step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct State<R> {
     /// q within the domain, q̇, then the currents of motors with inductance.
     pub y: Vec<R>,
-    /// What the sums in `y` have lost by rounding so far.
+    /// The accumulated rounding errors of the sums in `y`.
     pub carry: Vec<R>,
     /// Whole periods that were subtracted from q.
     pub periods: i32,
@@ -51,15 +51,15 @@ pub struct Evaluator<R> {
     wrapping: Option<[R; 2]>,
     parts: [Functions<R>; 3],
     reactions: usize,
-    /// How many values of motion are those of curves, and how many columns follow.
+    /// The number of values of curves in the part of motion, and the number of columns after them.
     motion_values: [usize; 2],
-    /// By load: itself, and the place of its curve or column.
+    /// By load: the load, and the index of its curve or column.
     loads: Vec<(Load<R>, usize)>,
     order: usize,
 }
 
 impl<R: Real> Evaluator<R> {
-    /// Of a machine and its fitted parts, in the order of [`PartKind::ALL`].
+    /// The evaluator of a machine and its fitted parts, in the order of [`PartKind::ALL`].
     pub fn new(machine: &MachineDescription, parts: &[Part; 3], precision: Precision) -> Self {
         let cells = |part, slopes| Functions::Cells(Pieces::new(part, machine.domain, slopes));
         let [motion, reactions, positions] = parts;
@@ -71,7 +71,7 @@ impl<R: Real> Evaluator<R> {
         Self::of_functions(machine, parts, precision)
     }
 
-    /// Of a machine and the operations of its functions, as [`Export::exact`](crate::Export::exact) takes them.
+    /// The evaluator of a machine and the operations of its functions, as in [`Export::exact`](crate::Export::exact).
     pub fn exact(
         machine: &MachineDescription,
         code: &[StraightLine; 3],
@@ -167,10 +167,10 @@ impl<R: Real> Evaluator<R> {
         (forces, inertia)
     }
 
-    /// The rates of a state's `y`: q̇, q̈ and those of the currents.
+    /// The rates of a state's `y`: q̇, q̈ and the rates of the currents.
     ///
     /// # Errors
-    /// [`Status`] outside the domain, without inertia, or where the rates are not finite.
+    /// [`Status`] outside the domain, without inertia, or if the rates are not finite.
     pub fn rates(&self, y: &[R]) -> Result<Vec<R>, Status> {
         let terms = self.motion_terms(y[0])?;
         let (forces, [m, half_dm]) = self.forces(&terms, y);
@@ -257,7 +257,7 @@ impl<R: Real> Evaluator<R> {
     /// One step of the classical Runge–Kutta method of fourth order, s.
     ///
     /// # Errors
-    /// [`Status`] where a stage has no rates; the state is then as it was.
+    /// [`Status`] if a stage has no rates; the state is then not changed.
     pub fn step(&self, h: R, state: &mut State<R>) -> Result<(), Status> {
         let changes = runge_kutta(&state.y, h, |y| self.rates(y))?;
         let mut next = state.clone();

@@ -6,13 +6,13 @@ use crate::part::{CURVE, Column, HEAD, Part, Precision, TERMS, Wrapping};
 use dwell_numerics::Real;
 use dwell_numerics::StraightLine;
 
-/// Where the functions of a part come from. Their values are value and half slope of each curve, the columns, then the slopes
-/// of the columns of motion: of one that moves no rotor, zero.
+/// The source of the functions of a part. Their values are value and half slope of each curve, the columns, then the slopes
+/// of the columns of motion (zero for a column that moves no rotor).
 #[derive(Debug, Clone)]
 pub(crate) enum Functions<R> {
-    /// From cells.
+    /// Functions in cells.
     Cells(Pieces<R>),
-    /// From operations.
+    /// Functions as operations.
     Code(StraightLine),
 }
 
@@ -36,7 +36,7 @@ pub(crate) struct Pieces<R> {
     bins_per_unit: R,
     curves: usize,
     columns: Vec<Column>,
-    /// Of the columns of motion: whether the slope is needed.
+    /// For the columns of motion: whether the slope is needed.
     slopes: Vec<bool>,
 }
 

@@ -1,4 +1,4 @@
-//! What an export states about itself: errors, operations and the error of its step, measured before it is written.
+//! The measured properties of an export: errors, operations and the error of its step, measured before it is written.
 
 use super::Export;
 use crate::counted::Counted;
@@ -19,20 +19,20 @@ const STATED_STEPS: usize = 1000;
 /// Parts of a step of the motion that the step is compared with.
 const REFINEMENT: usize = 16;
 
-/// The largest errors of the exported functions, each as a part of its scale.
+/// The largest errors of the exported functions, each relative to its scale.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Errors {
-    /// Of m.
+    /// Error of m.
     pub m: f64,
-    /// Of ½m′.
+    /// Error of ½m′.
     pub half_dm: f64,
-    /// Of every w and potential.
+    /// Error of every w and potential.
     pub loads: f64,
-    /// Of every a and b.
+    /// Error of every a and b.
     pub reactions: f64,
-    /// Of every c.
+    /// Error of every c.
     pub load_reactions: f64,
-    /// Of every position.
+    /// Error of every position.
     pub positions: f64,
 }
 
@@ -213,7 +213,7 @@ fn by_kind(machine: &MachineDescription, relative: &[f64]) -> Errors {
     }
 }
 
-/// Counts of operations: the same at every coordinate but for the subtraction of periods.
+/// Counts of operations: the same at every coordinate, except for the subtraction of periods.
 fn operations(export: &Export) -> [u64; 3] {
     let counting = export.evaluator::<Counted>();
     // Below a periodic domain the period is added.

@@ -101,7 +101,7 @@ fn units(variables: &[Variable], text: &mut String) {
     *text += "  </UnitDefinitions>\n";
 }
 
-/// Causality, variability and the rest that both versions write alike, and the value at the start of what has one.
+/// Causality, variability and the other attributes that both versions share, and the start value, if there is one.
 fn properties(variable: &Variable) -> (String, String) {
     let (causality, variability, initial) = match variable.role {
         Role::Time => ("independent", "continuous", ""),
@@ -140,7 +140,7 @@ fn is_initial_unknown(variable: &Variable) -> bool {
     matches!(variable.role, Role::Rate(_) | Role::Output | Role::Periods)
 }
 
-/// The elements of the structure in 3.0 and in 2.0, which has no list of indicators, and what they are of.
+/// The elements of the structure in 3.0 and in 2.0, which has no list of indicators, with the variables in each.
 type Listed = (&'static str, &'static str, fn(&Variable) -> bool);
 const STRUCTURE: [Listed; 4] = [
     ("Output", "Outputs", is_output),

@@ -1,11 +1,11 @@
-//! What an interface needs of the exported C: variables by number, states, rates, indicators and steps.
+//! The parts of the exported C for an FMI interface: variables by number, states, rates, indicators and steps.
 
 use super::variables::{Role, Variable};
 use crate::export::Export;
 use crate::writer::{Access, Members};
 use std::fmt::Write as _;
 
-/// What does not depend on the machine.
+/// The text that does not depend on the machine.
 const GENERAL: &str = r"
 /* The sensitivity of unknowns to a direction of knowns, by central differences. */
 static int model_directional(const model *m, const unsigned *unknowns, size_t n, const unsigned *knowns, size_t n_knowns,
@@ -94,7 +94,7 @@ pub(super) fn model(export: &Export, variables: &[Variable]) -> String {
         .replace("@U@", &members.names.capitals)
 }
 
-/// What ties a description to its library: the scene, the exporter and what was asked for.
+/// The token that ties a description to its library: the scene, the exporter and the request.
 pub(super) fn token(export: &Export) -> String {
     let safe = |text: &str| -> String {
         let plain = |c: &char| c.is_ascii_alphanumeric() || "-.".contains(*c);

@@ -3,7 +3,7 @@
 use crate::export::Export;
 use crate::writer::Members;
 
-/// What a variable is.
+/// The role of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
     /// The independent variable.
@@ -65,7 +65,8 @@ impl List {
         &mut self.0[place]
     }
 
-    /// A state by its place, name, member of the state and start, with its derivative behind it: unit and meaning of both.
+    /// Adds a state by its index, name, member of the state and start value, followed by its derivative, with unit and
+    /// meaning of both.
     fn add_state(
         &mut self,
         k: usize,
@@ -114,7 +115,7 @@ pub(super) fn variables(export: &Export) -> Vec<Variable> {
     list.0
 }
 
-/// States, each with its derivative behind it.
+/// Adds the states, each followed by its derivative.
 fn states(export: &Export, members: &Members<'_>, list: &mut List) {
     let machine = &export.machine;
     let unit = machine.unit();
@@ -135,7 +136,7 @@ fn states(export: &Export, members: &Members<'_>, list: &mut List) {
     }
 }
 
-/// What follows from states, parameters and inputs.
+/// Adds the outputs, which follow from states, parameters and inputs.
 fn outputs(members: &Members<'_>, list: &mut List) {
     for (k, kind) in ["kinetic", "potential"].iter().enumerate() {
         let (name, meaning) = (format!("energy.{kind}"), format!("{kind} energy"));

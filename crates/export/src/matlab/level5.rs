@@ -33,7 +33,7 @@ impl MatFile {
         Self(header)
     }
 
-    /// Numbers in rows of so many columns.
+    /// Adds numbers in rows of `columns` columns.
     pub(super) fn add_rows(&mut self, name: &str, columns: usize, values: &[f64]) {
         let rows = values.len().checked_div(columns).unwrap_or(0);
         let columns = if rows == 0 { 0 } else { columns };

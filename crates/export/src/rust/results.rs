@@ -53,7 +53,7 @@ impl RustWriter<'_> {
         );
     }
 
-    /// F of every load, and m and ½m′ with what is added.
+    /// F of every load, and m and ½m′ with the added inertia.
     fn forces(&self, text: &mut String) {
         *text += "/// F of every load, and m and half_dm with what is added.\n#[allow(unused_variables, unused_mut)]\nfn forces(p: &Parameters, inputs: &Inputs, t: &MotionTerms, s: &State) -> ([Real; LOAD_COUNT], Real, Real) {\n    let (mut m, mut half_dm) = (t.m + p.added_inertia, t.half_dm);\n";
         let mut forces = Vec::new();

@@ -45,7 +45,7 @@ pub fn c_files_of_several_freedoms(export: &SeveralFreedomsExport) -> [(String, 
     writer.files(&header, &writer.source())
 }
 
-/// What the code is, and what it is worth.
+/// The description of the code and of its errors.
 fn description(export: &SeveralFreedomsExport) -> Vec<String> {
     let (machine, errors) = (&export.machine, &export.errors);
     let n = machine.freedoms();

@@ -21,7 +21,7 @@ pub struct SeveralFreedomsDescription {
     pub reactions: Vec<(String, &'static str)>,
     /// The points whose positions are exported.
     pub points: Vec<String>,
-    /// Sentences about what the scene has and the export has not.
+    /// Sentences about the parts of the scene that are not exported.
     pub left_out: Vec<String>,
 }
 
@@ -30,7 +30,7 @@ pub struct SeveralFreedomsDescription {
 pub struct FreeCoordinate {
     /// Its name.
     pub name: String,
-    /// Whether it is an angle (rad), else a length (m).
+    /// Whether it is an angle (rad); otherwise it is a length (m).
     pub is_angle: bool,
     /// q and q̇ at the start, rad and rad/s, or m and m/s.
     pub initial: [f64; 2],

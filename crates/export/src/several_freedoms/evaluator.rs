@@ -17,7 +17,7 @@ pub struct SeveralFreedomsEvaluator<'a, R> {
 }
 
 impl<'a, R: Real> SeveralFreedomsEvaluator<'a, R> {
-    /// Of a machine and the operations of its functions.
+    /// The evaluator of a machine and the operations of its functions.
     pub fn new(machine: &SeveralFreedomsDescription, code: &'a [StraightLine; 3]) -> Self {
         let (loads, order) = Load::all(&machine.loads, machine.freedoms());
         Self {
@@ -61,7 +61,7 @@ impl<'a, R: Real> SeveralFreedomsEvaluator<'a, R> {
         (0..n).map(sum).collect()
     }
 
-    /// The velocity of a load's line, or what its w is multiplied by.
+    /// The velocity along a load's line, or the sum of its w with other factors.
     fn along(&self, terms: &[R], load: usize, of: &[R]) -> R {
         let w = self.w(terms, load).iter().zip(of);
         w.fold(R::of(0.0), |sum, (w, x)| sum + *w * *x)
@@ -73,7 +73,7 @@ impl<'a, R: Real> SeveralFreedomsEvaluator<'a, R> {
         &terms[self.pairs.len() * (n + 1) + load * n..][..n]
     }
 
-    /// F of each load at a state, without that of rotors.
+    /// F of each load at a state, without the forces that accelerate rotors.
     fn forces(&self, terms: &[R], y: &[R]) -> Vec<R> {
         let n = self.freedoms;
         let force = |(k, load): (usize, &Load<R>)| {
@@ -127,7 +127,7 @@ impl<'a, R: Real> SeveralFreedomsEvaluator<'a, R> {
     /// The rates of a state: velocities, accelerations, and those of the currents.
     ///
     /// # Errors
-    /// [`Status`] where the mechanism cannot be assembled, or its mass matrix is not positive definite.
+    /// [`Status`] if the mechanism cannot be assembled, or its mass matrix is not positive definite.
     pub fn rates(&self, y: &[R]) -> Result<Vec<R>, Status> {
         let n = self.freedoms;
         let rest = self.required_forces(y, &vec![R::of(0.0); n])?;
@@ -192,7 +192,7 @@ impl<'a, R: Real> SeveralFreedomsEvaluator<'a, R> {
     /// One step of the classical Runge–Kutta method of fourth order, s.
     ///
     /// # Errors
-    /// [`Status`] where a stage has no rates; the state is then as it was.
+    /// [`Status`] if a stage has no rates; the state is then not changed.
     pub fn step(&self, h: R, y: &mut [R]) -> Result<(), Status> {
         let changes = runge_kutta(y, h, |y| self.rates(y))?;
         for (y, change) in y.iter_mut().zip(changes) {

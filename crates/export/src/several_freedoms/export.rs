@@ -1,4 +1,4 @@
-//! A machine with its operations and what was measured of them.
+//! A machine with its operations and their measured errors.
 
 use super::description::SeveralFreedomsDescription;
 use super::measure::{SampledState, SeveralFreedomsErrors, measure};
@@ -23,7 +23,8 @@ pub struct SeveralFreedomsExport {
 }
 
 impl SeveralFreedomsExport {
-    /// Measures the operations of a machine against its exact functions at positions: `exact` gives the outputs of each code.
+    /// Measures the operations of a machine against its exact functions at positions: `exact` returns the outputs of each
+    /// code.
     ///
     /// # Errors
     /// That of `exact`.

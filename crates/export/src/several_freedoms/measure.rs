@@ -15,15 +15,15 @@ pub(super) const MOTION: (usize, f64) = (100, 1e-3);
 /// The largest differences of the operations from the model, relative to the largest value of each kind.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SeveralFreedomsErrors {
-    /// Of the mass matrix.
+    /// Error of the mass matrix.
     pub mass_matrix: f64,
-    /// Of the terms of velocities.
+    /// Error of the terms of velocities.
     pub velocity_terms: f64,
-    /// Of every w and potential.
+    /// Error of every w and potential.
     pub loads: f64,
-    /// Of every a, b and c.
+    /// Error of every a, b and c.
     pub reactions: f64,
-    /// Of every position.
+    /// Error of every position.
     pub positions: f64,
 }
 
@@ -47,15 +47,15 @@ impl SeveralFreedomsErrors {
     }
 }
 
-/// A state of the self-test with what follows from it in double precision.
+/// A state of the self-test with its results in double precision.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SampledState {
     /// Coordinates, velocities, currents.
     pub y: Vec<f64>,
-    /// Accelerations, reactions, kinetic and potential energy, and the forces that keep the velocities; none where a loose
+    /// Accelerations, reactions, kinetic and potential energy, and the forces that keep the velocities; `None` if a loose
     /// mass matrix has no accelerations.
     pub values: Option<[Vec<f64>; 4]>,
-    /// The state after the motion of the self-test; none where it ends before.
+    /// The state after the motion of the self-test; `None` if it ends before.
     pub end: Option<Vec<f64>>,
     /// How far the code may be off from each of the values' lists, and from the end: parts of its largest value.
     pub tolerances: [f64; 5],

@@ -47,7 +47,7 @@ int main(void)
 }
 "#;
 
-/// What the compiled program prints.
+/// The output of the compiled program.
 fn printed(export: &Export, compiler: &str, extra: &[&str]) -> Vec<Vec<f64>> {
     let scratch = Scratch::new();
     scratch.write(&c_files(export));
@@ -56,7 +56,7 @@ fn printed(export: &Export, compiler: &str, extra: &[&str]) -> Vec<Vec<f64>> {
     numbers(&run(&scratch.0, "./program", &[]))
 }
 
-/// The same by the Rust twin, in its own numbers.
+/// The output by the evaluator in Rust, in its own number type.
 pub(crate) fn evaluated<R: dwell_numerics::Real>(export: &Export) -> Vec<Vec<f64>> {
     let twin = Evaluator::<R>::new(&export.machine, &export.parts, export.request.precision);
     let mut lines = Vec::new();
@@ -206,7 +206,7 @@ fn the_self_test_finds_a_wrong_constant() {
     }
 }
 
-/// What no coordinate can be: a status and zeros, and the state stays as it was.
+/// Invalid coordinates give a status and zeros, and the state is not changed.
 #[test]
 fn bad_numbers_give_a_status() {
     let program = r#"

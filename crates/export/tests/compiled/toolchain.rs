@@ -46,7 +46,7 @@ impl Drop for Scratch {
     }
 }
 
-/// The C compilers that there are. None is said, not hidden.
+/// The available C compilers; without one the test prints that there is none.
 pub(crate) fn c_compilers() -> Vec<&'static str> {
     let there = |name: &&str| Command::new(name).arg("--version").output().is_ok();
     let found: Vec<_> = ["gcc", "clang"].into_iter().filter(there).collect();

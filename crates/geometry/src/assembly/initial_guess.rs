@@ -1,4 +1,4 @@
-//! The initial guess: where Newton's method starts, and which of several assembly modes is meant.
+//! The initial guess: the start values of Newton's method, which also select one of several assembly modes.
 
 use crate::assembly::modes::{AssemblyMode, SAME_MODE};
 use crate::mechanism::{BranchHint, JointId, Mechanism};
@@ -10,7 +10,7 @@ use crate::structure::lower::{Lowered, LoweredCoordinate};
 /// The approximate angles and travels at assembly, on the lowered mechanism.
 #[derive(Debug)]
 pub(crate) struct InitialGuess {
-    /// By body, the added ones among them, rad.
+    /// By body, including added massless bodies, rad.
     pub(crate) angles: Vec<Option<f64>>,
     /// By pair, m.
     pub(crate) travels: Vec<Option<f64>>,

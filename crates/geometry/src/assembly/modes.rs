@@ -10,7 +10,7 @@ use dwell_numerics::qr;
 use std::f64::consts::TAU;
 
 /// One assembly mode of a group: the value of each unknown — (cos, sin) with the counted angle (rad), or zero with the
-/// travel (m) — and what identifies the mode.
+/// travel (m) — and the data that identify the mode.
 pub(crate) struct AssemblyMode {
     pub(crate) values: Vec<(Vec2, f64)>,
     /// By pair: the travel of each slide, m.
@@ -35,7 +35,7 @@ pub(crate) const SAME_MODE: f64 = 1e-6;
 const MAX_SETTLING_STEPS: usize = 12;
 const SETTLED: f64 = 1e-3;
 
-/// The angles of one start, one after the other.
+/// The trial angles of one start, in their order.
 struct Trial {
     remainder: u64,
     scattered: bool,
@@ -251,8 +251,8 @@ impl Plan {
         }
     }
 
-    /// Newton's method may have added whole revolutions: where the group also closes with the revolutions that the hints
-    /// mean, these are taken.
+    /// Newton's method may have added whole revolutions. If the group also closes with the revolutions of the hints,
+    /// this function takes these.
     fn count_revolutions_near(&self, g: usize, hints: &[Option<f64>], pose: &mut Pose<f64>) {
         let found = self.unknown_values(g, pose);
         let unknowns = &self.groups[g].group.unknowns;

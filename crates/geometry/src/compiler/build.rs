@@ -285,7 +285,7 @@ impl Plan {
         }
     }
 
-    /// Whether no unknown of a group can open a loop: that of a pin that is written twice.
+    /// Whether no unknown of a group can open a loop, as in the loop of a pin that is written twice.
     fn closes_in_any_pose(&self, l: usize, group: &Group) -> bool {
         let closure = &self.loop_closures[l];
         let is_constant = |&(vector, frame): &(usize, usize)| {
@@ -346,7 +346,7 @@ impl Plan {
     }
 }
 
-/// By pair: what it does in the plan.
+/// The role of each pair in the plan.
 fn pair_roles(lowered: &Lowered, tree: &Tree) -> Vec<PairRole> {
     let mut roles = vec![PairRole::LoopJoint(0); lowered.pairs.len()];
     for (c, &loop_joint) in tree.loop_joints.iter().enumerate() {

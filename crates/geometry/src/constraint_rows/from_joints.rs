@@ -85,7 +85,7 @@ impl RowWriter<'_> {
         Ok(ConstraintRow::Coupling([dependent, independent], law))
     }
 
-    /// The term of a coordinate, which what it belongs to names.
+    /// The term of a coordinate; an error names its owner.
     pub(super) fn term(
         &self,
         named_by: (&'static str, usize),
@@ -116,7 +116,8 @@ impl RowWriter<'_> {
         }
     }
 
-    /// Refuses bodies that do not exist; what names them is a joint, an actuator or a coupling, of this number.
+    /// Rejects bodies that do not exist. `what` and the number identify the joint, actuator or coupling that refers to
+    /// them.
     pub(super) fn check_bodies(
         &self,
         (what, index): (&'static str, usize),

@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gear {
     points: [BodyPoint; 2],
-    /// What θ1 and θ2 are multiplied by: ±r1 and r2.
+    /// The factors of θ1 and θ2: ±r1 and r2.
     factors: [f64; 2],
     /// The body that holds both centres.
     carrier: Option<Column>,
@@ -24,8 +24,8 @@ pub(super) struct Gear {
     mesh_constant: f64,
 }
 
-/// Two points of one body are one centre when they are this close, in pitch radii: only the turn
-/// that ψ is counted to hangs on it.
+/// Two points of one body are one centre when they are this close, in pitch radii: it decides only the number of
+/// revolutions of ψ.
 const SAME_CENTRE: f64 = 1e-6;
 
 impl Gear {
@@ -64,7 +64,7 @@ impl Gear {
         ]
     }
 
-    /// Makes the row vanish at `x`.
+    /// Sets the constant so that the row is zero at `x`.
     pub(super) fn mesh(&mut self, at: &BodyCoordinates<'_>, x: &[f64]) {
         let psi = ConstraintTerm::LineDirection(self.points).value(at);
         self.phase_offset = psi - self.carrier.map_or(0.0, |c| angle_of(c, x));

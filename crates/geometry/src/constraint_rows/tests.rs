@@ -154,7 +154,7 @@ fn broken_references_are_named() {
 }
 
 /// One joint of every kind and one actuator of every drive, with offsets everywhere, the ground as
-/// the first body, the second and neither. It is no mechanism that could close; rows do not mind.
+/// the first body, the second and neither. The mechanism cannot close, but its rows can be evaluated.
 fn everything() -> Mechanism {
     let (p, q) = (vec2(0.3, -0.2), vec2(-0.5, 0.7));
     let axis = Vec2::from_angle(0.8);

@@ -1,4 +1,5 @@
-//! How far each group is from where its branch ends: the size of its determinant, with its derivative by the coordinate.
+//! The margin of each group from the end of its branch: the size of its determinant, with its derivative by the
+//! coordinate.
 
 use super::step_buffers::StepBuffers;
 use crate::motion::Motion;
@@ -7,7 +8,7 @@ use crate::positions::InitialIterate;
 use dwell_numerics::Dual;
 
 impl Plan {
-    /// By group, its margin at a pose. None where its branch has ended.
+    /// By group, its margin at a pose. `None` if its branch has ended.
     pub(super) fn margins_of_pose(
         &self,
         at: &Pose<f64>,
@@ -20,9 +21,9 @@ impl Plan {
         }
     }
 
-    /// The margins at a coordinate if every group is a closed form, with the pose there, whose revolutions are counted
-    /// from another one; none where one of them is not clear. The slopes follow from the motion at unit velocity, in a third of
-    /// the operations of dual numbers.
+    /// The margins at a coordinate if every group is a closed form, with the pose there, whose revolutions are counted from
+    /// another one; `None` if one of them is not clear of zero. The slopes follow from the motion at unit velocity, in a third
+    /// of the operations of dual numbers.
     pub(super) fn closed_form_margins(
         &self,
         (from, q): (&Pose<f64>, f64),

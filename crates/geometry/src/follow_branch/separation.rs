@@ -1,6 +1,6 @@
-//! How far two branches are apart where they come close: whether they meet at a change point, or pass each other.
+//! The separation of two branches that come close: they meet at a change point, or pass each other.
 //!
-//! Near such a place the square of a group's determinant is a smooth function of the coordinate,
+//! Near such a coordinate the square of a group's determinant is a smooth function of the coordinate,
 //!
 //! ```text
 //! D² = A ((q − q₀)² + s),    A > 0                                                          (1)
@@ -10,7 +10,7 @@
 //! distinguishes them happens within |q − q₀| < w. With s = −w² < 0 both fold back, at q₀ ± w. A length that differs
 //! by δ from that of a change point gives s of about δ over the lengths: w is its square root.
 //!
-//! D² follows from poses in double-double numbers, so that s is that of the lengths as they are given, to the last digit.
+//! D² is computed from poses in double-double numbers, so that s has all digits of the given lengths.
 
 use crate::plan::range::NearBranch;
 use crate::plan::{GroupKind, Plan, Pose};
@@ -20,15 +20,16 @@ use dwell_numerics::{DoubleDouble, Dual, Scalar};
 /// rounded to their last digit leave 6e-8 (of parallelograms turned by 100 angles), a length that is 1e-15 m off in
 /// 0.4 m leaves 1.2e-7.
 const MEETING_HALF_WIDTH: f64 = 8e-8;
-/// Branches within this of each other are near each other: steps of an integrator may pass over what is narrower.
+/// Branches within this half-width of each other are near: steps of an integrator may pass over a narrower separation.
 const NEAR_HALF_WIDTH: f64 = 0.03;
-/// Distance of the points at which D² is computed, and their number: what is left is this to the power of that number.
+/// Distance of the points at which D² is computed. The error is of the order of this distance to the power of their
+/// number.
 const POINT_DISTANCE: f64 = 1e-3;
 const POINTS: usize = 6;
 /// Binomial coefficients by which a polynomial through the points is extrapolated to the next one before them.
 const EXTRAPOLATION: [f64; POINTS] = [6.0, -15.0, 20.0, -15.0, 6.0, -1.0];
 
-/// Where two branches of a group come close.
+/// The separation of two branches of a group where they come close.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Separation {
     /// q₀ of (1), rad or m.
@@ -38,8 +39,8 @@ pub(super) struct Separation {
 }
 
 impl Plan {
-    /// How far two branches of a group are apart near a coordinate `q` where its determinant is nearly zero, from poses
-    /// on the side of `anchor`, a pose at some distance from there. None where they cannot be computed.
+    /// The separation of two branches of a group near a coordinate `q` where its determinant is nearly zero, from poses
+    /// on the side of `anchor`, a pose at some distance from `q`. `None` if they cannot be computed.
     pub(super) fn separation(
         &self,
         group: usize,
@@ -125,7 +126,7 @@ impl Plan {
         })
     }
 
-    /// The near branch behind a fold, where both fold back at a small distance.
+    /// The near branch beyond a fold, if both branches fold back at a small distance.
     pub(super) fn branch_beyond(&self, group: usize, found: Separation) -> Option<NearBranch> {
         let half_width = found.square.abs().sqrt();
         let is_near = half_width > 0.0 && half_width < NEAR_HALF_WIDTH * self.coordinate_unit();

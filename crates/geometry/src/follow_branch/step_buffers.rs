@@ -1,12 +1,12 @@
-//! What is kept of the steps along a branch: of one whose poses follow from the coordinate alone, by closed forms, the
-//! coordinates.
+//! The stored steps along a branch. If closed forms give the poses from the coordinate alone, only the coordinates are
+//! stored.
 
 use crate::motion::Motion;
 use crate::plan::{Plan, Pose};
 use crate::positions::InitialIterate;
 use dwell_numerics::Dual;
 
-/// What a step reaches, and working memory.
+/// The results of a step, and working memory.
 pub(super) struct StepBuffers {
     pub(super) reached: Pose<f64>,
     /// At unit velocity.

@@ -8,11 +8,11 @@ use crate::plane::Vec2;
 type Frame = (Vec2, Vec2);
 
 impl Mechanism {
-    /// The distance, m, of the two points between which an actuator of a length acts, where the bodies stand at their
-    /// approximate angles: from the ground on, each is placed by a joint to one that is placed already. None where the
+    /// The distance, m, of the two points between which an actuator of a length acts, with the bodies at their
+    /// approximate angles: from the ground on, each is placed by a joint to one that is placed already. `None` if the
     /// angles do not place both bodies, where the points coincide, and for any other actuator.
     ///
-    /// Of the other actuators the coordinates in `assembly` count, which are exact; that of the actuator itself does not.
+    /// The coordinates of the other actuators in `assembly` are exact and are used; that of the actuator itself is not.
     ///
     /// ```
     /// use dwell_geometry::{Actuator, ActuatorId, ActuatorKind, AssemblyConfiguration, Body, Joint, Mechanism, Vec2, vec2};
@@ -47,8 +47,8 @@ impl Mechanism {
         (length > 0.0 && length.is_finite()).then_some(length)
     }
 
-    /// Meshes racks and rolling discs as the assembly gives them: where a travel given there says how far the disc has rolled, the point P₁ of the
-    /// pitch line or track moves along it, so that the disc is there at its angle. Without such a travel P₁ stays, where angle 0 meets it.
+    /// Meshes racks and rolling discs in the assembly. If the assembly states the travel of the disc, the point P₁ moves along the pitch
+    /// line or track, so that the disc is there at its angle. Without a travel P₁ is not moved, and angle 0 meets it.
     pub fn mesh_as_given(&mut self, assembly: &AssemblyConfiguration) {
         // A travel that the phase does not depend on says nothing about it.
         let mut other = assembly.clone();
@@ -155,8 +155,8 @@ impl Mechanism {
         angles
     }
 
-    /// From a joint's first point to its second, in the plane, where the first body has this orientation; none where the
-    /// assembly does not say.
+    /// The vector from a joint's first point to its second, m, if the first body has this orientation; `None` if the
+    /// assembly does not determine it.
     fn guessed_gap(
         &self,
         joint: JointId,

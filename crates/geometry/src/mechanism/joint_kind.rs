@@ -1,4 +1,4 @@
-//! What each kind of joint is: its name, the components of its reaction, and the conditions that it holds between its two bodies. Constraint rows,
+//! The kinds of joints: their names, the components of their reactions, and their conditions between the two bodies. Constraint rows,
 //! wrenches, meshing, travels and sizes follow from the conditions.
 
 use super::Coupling;
@@ -219,13 +219,14 @@ impl JointKind {
         }
     }
 
-    /// The axis t, in the first body's frame, along which [`Coordinate::Travel`](super::Coordinate::Travel) of such a joint is measured; none where
-    /// the joint has no travel.
+    /// The axis t, in the first body's frame, along which [`Coordinate::Travel`](super::Coordinate::Travel) of such a joint is measured;
+    /// `None` if the joint has no travel.
     pub fn travel_axis(self) -> Option<Vec2> {
         self.line().filter(|_| self.rolled().is_none())
     }
 
-    /// The axis, in the first body's frame, of the line along which the second point goes; none where it goes along none.
+    /// The axis, in the first body's frame, of the line along which the second point moves; `None` if there is no such
+    /// line.
     pub fn line(self) -> Option<Vec2> {
         self.conditions().find_map(|condition| match condition {
             Condition::OnLine { axis, .. } | Condition::Rolled { axis, .. } => Some(axis),

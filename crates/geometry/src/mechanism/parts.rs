@@ -124,7 +124,7 @@ impl Actuator {
         Self::new(name, bodies, ActuatorKind::Angle)
     }
 
-    /// An actuator of a coordinate of a mechanism; none where it is the travel of a joint that the mechanism does not have.
+    /// An actuator of a coordinate of a mechanism; `None` if it is the travel of a joint that the mechanism does not have.
     ///
     /// ```
     /// use dwell_geometry::{Actuator, Coordinate, JointId, Mechanism};

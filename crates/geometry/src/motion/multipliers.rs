@@ -8,15 +8,15 @@ use dwell_numerics::{Constant, Scalar, map_array};
 /// Moments and forces that the loops must balance, and the multipliers that do, for `N` load cases side by side.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceBalance<T, const N: usize> {
-    /// By frame: the moment on everything that turns with it, N·m. Before [`Plan::multipliers`]: of the inertia
-    /// forces and loads; after it: what an actuator must supply.
+    /// By frame: the moment on everything that turns with it, N·m. Before [`Plan::multipliers`]: the moment of the
+    /// inertia forces and loads. After it: the moment that an actuator must supply.
     pub moment: Vec<[T; N]>,
     /// By slide: the force along it, N.
     pub slide_force: Vec<[T; N]>,
     /// By closure: the force of the first body on the second, N, as (x, y) for a revolute
     /// loop joint and as (normal, 0) for a prismatic one.
     pub loop_multiplier: Vec<[Vec2<T>; N]>,
-    /// By coupling: its multiplier, N, or N·m where it is between angles.
+    /// By coupling: its multiplier, N, or N·m for a coupling of angles.
     pub coupling_multiplier: Vec<[T; N]>,
     workspace: Vec<T>,
 }

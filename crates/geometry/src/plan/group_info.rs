@@ -1,4 +1,4 @@
-//! What the groups of a plan are, for messages and reports.
+//! Descriptions of the groups of a plan, for messages and reports.
 
 use super::{AssurGroup, GroupKind, PlacementMethod, Plan};
 

@@ -4,7 +4,7 @@ use crate::plan::{FactoredGroup, GroupKind, Plan};
 use crate::plane::Vec2;
 use dwell_numerics::{Constant, Lift, Scalar};
 
-/// What the computation of positions gives: the orientation of every frame and every rotated vector.
+/// The result of the computation of positions: the orientation of every frame and every rotated vector.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pose<T> {
     /// The actuators' coordinates, rad or m.

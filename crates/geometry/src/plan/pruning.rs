@@ -64,7 +64,7 @@ impl Plan {
     }
 
     /// Leaves out the groups that are not needed: the positions of their bodies are not computed, and no load may act
-    /// on them. The range stays that of the whole mechanism.
+    /// on them. The range is still that of the whole mechanism.
     #[must_use]
     pub fn retain_groups(mut self, needed: &[bool]) -> Self {
         let mut known = vec![true; self.frames.orientation_classes];

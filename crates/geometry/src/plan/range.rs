@@ -9,13 +9,14 @@ use std::f64::consts::TAU;
 pub enum Range {
     /// Every angle can be reached, with period 2π.
     Full,
-    /// Every angle can be reached; the pose repeats after so many revolutions.
+    /// Every angle can be reached; the pose repeats after this number of revolutions.
     Revolutions(u32),
     /// An angle between two limit positions or change points, rad.
     Limited(f64, f64),
     /// A driven length between two limit positions or change points, m.
     Stroke(f64, f64),
-    /// No end was found, and the pose does not repeat: a length, or gears; or there are several actuators.
+    /// No end was found, and the pose does not repeat, as with a driven length or gears, or there are several
+    /// actuators.
     Unbounded,
     /// No end was found between these coordinates, and no position is known beyond: rad or m.
     Unresolved(f64, f64),
@@ -33,14 +34,14 @@ pub struct RangeLimit {
     /// a limit position, where the coordinate turns back.
     pub change_point: bool,
     /// At a change point: the half-width (rad or m) within which the two branches come close without meeting, so close
-    /// that rounding does not show which of them a motion follows. None where they meet.
+    /// that rounding does not show which of them a motion follows. `None` if they meet.
     pub separation: Option<f64>,
     /// The coupling whose table ends there, where that ends the range.
     pub table: Option<JointId>,
 }
 
-/// Where another branch comes near this one without meeting it: within the half-width of the coordinate, the velocity
-/// ratios change from those of one branch of a change point to those of the other.
+/// A place where another branch comes near this one without meeting it. Within the half-width of the coordinate, the
+/// velocity ratios change from those of one branch of a change point to those of the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearBranch {
     /// The coordinate where they are nearest, rad or m. At a limit position it is that much beyond the range.
@@ -52,7 +53,7 @@ pub struct NearBranch {
 }
 
 impl Range {
-    /// The ends, where there are any.
+    /// The ends, rad or m, if there are any.
     pub fn limits(self) -> Option<(f64, f64)> {
         match self {
             Self::Limited(from, to) | Self::Stroke(from, to) | Self::Unresolved(from, to) => {
@@ -71,7 +72,7 @@ impl Range {
         }
     }
 
-    /// The coordinate within the range that differs from `q` by whole revolutions: the same pose.
+    /// The coordinate within the range that differs from `q` by whole revolutions; the pose is the same.
     ///
     /// # Errors
     /// [`PositionError::OutOfRange`] where there is none.

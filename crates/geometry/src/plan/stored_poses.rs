@@ -1,5 +1,5 @@
-//! Poses stored along the range, from which Newton's method starts and whole revolutions are counted: so a
-//! pose depends on the coordinate alone, not on what was evaluated before it.
+//! Poses stored along the range, from which Newton's method starts and whole revolutions are counted: so that a pose
+//! depends on the coordinate alone, not on earlier evaluations.
 
 use crate::error::PositionError;
 use crate::plan::range::Range;
@@ -24,7 +24,7 @@ pub(crate) struct StoredPose {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct StoredPoses {
     pub(crate) poses: Vec<StoredPose>,
-    /// By unknown: what a period adds to a counted angle, rad.
+    /// By unknown: the change of a counted angle in a period, rad.
     pub(crate) gain_per_period: Vec<f64>,
 }
 

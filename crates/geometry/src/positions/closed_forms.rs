@@ -10,12 +10,13 @@ use dwell_numerics::{Constant, Lift, Scalar, map_array};
 /// Below this determinant, relative to the lengths that make it, no digit of the result is significant.
 const SINGULAR: f64 = 1e-14;
 
-/// The same for a number type. More precise ones refuse where `f64` does, since they measure its rounding.
+/// The tolerance for a number type. More precise types reject the same positions as `f64`, because they measure its
+/// rounding.
 pub(crate) const fn singular_tolerance<T: Scalar>() -> f64 {
     SINGULAR.max(32.0 * T::EPSILON)
 }
 
-/// Whether a number type resolves the rounding of constants derived from lengths: these are derived anew in it.
+/// Whether a number type resolves the rounding of constants derived from lengths: these are then derived again in it.
 pub(crate) const fn is_finer_than_f64<T: Scalar>() -> bool {
     T::EPSILON < f64::EPSILON
 }
@@ -191,7 +192,7 @@ pub(super) fn guided_point_positions<C: Constant, T: Lift<C>>(
     Ok(())
 }
 
-/// Square root of the rest of a squared length, or the error that says which length is missing, m. The rest is compared
+/// Square root of the rest of a squared length, or an error with the missing length, m. The rest is compared
 /// with `size` of one lane, or with `sizes` of all at once.
 #[inline(always)]
 pub(crate) fn checked_sqrt<T: Scalar>(

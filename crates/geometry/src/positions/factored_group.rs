@@ -39,12 +39,12 @@ fn small_sin_cos<T: Scalar>(step: T) -> (T, T) {
 }
 
 impl FactoredGroup {
-    /// Where its factors are in [`Pose::lu`].
+    /// The range of its factors in [`Pose::lu`].
     pub(crate) fn lu_range(&self) -> Range<usize> {
         self.lu_offset..self.lu_offset + self.factor_len()
     }
 
-    /// Where its row exchanges are in [`Pose::pivots`].
+    /// The range of its row exchanges in [`Pose::pivots`].
     fn pivots_range(&self) -> Range<usize> {
         self.pivots_offset..self.pivots_offset + self.columns
     }
@@ -110,7 +110,7 @@ impl FactoredGroup {
 }
 
 impl<C: Constant> Plan<C> {
-    /// Not inlined: the closed forms need few of the registers that this uses.
+    /// Not inlined, because the closed forms would then have fewer registers.
     #[inline(never)]
     pub(crate) fn factored_positions<T: Lift<C>>(
         &self,
@@ -259,7 +259,7 @@ impl<C: Constant> Plan<C> {
         Err(PositionError::NotConverged { group, q, residual })
     }
 
-    /// Checks that redundant equations agree with the others: where they do not, the group is not closed.
+    /// Checks that redundant equations agree with the others; otherwise the group is not closed.
     pub(crate) fn check_redundant<T: Lift<C>>(
         &self,
         group: usize,

@@ -93,7 +93,7 @@ impl Plan {
     /// The pose of the assembly.
     ///
     /// # Errors
-    /// [`AssemblyError::NoAssembly`] and [`AssemblyError::Inconsistent`] with what stays open.
+    /// [`AssemblyError::NoAssembly`] and [`AssemblyError::Inconsistent`] with the constraints that stay open.
     pub(super) fn assemble(
         &self,
         mechanism: &Mechanism,

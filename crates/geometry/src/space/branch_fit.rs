@@ -97,7 +97,7 @@ impl Plan {
         periods - self.periods(q)
     }
 
-    /// What a freedom gains in a period of the only coordinate.
+    /// The change of a freedom in a period of the only coordinate.
     fn gain(&self, freedom: usize) -> f64 {
         self.freedom_gains.get(freedom).copied().unwrap_or(0.0)
     }
@@ -174,7 +174,7 @@ impl Plan {
         })
     }
 
-    /// A vector in the axes of a ball on its first body, in those of the ground.
+    /// Transforms a vector from the axes of a spherical joint on its first body to those of the ground.
     fn to_ground<T: Scalar>(
         &self,
         pose: &Pose<T>,

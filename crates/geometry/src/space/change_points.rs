@@ -1,13 +1,14 @@
-//! Change points in the range of the only coordinate: another branch meets this one there, and this one goes on. The Jacobian J of a
-//! group is singular there: one singular value σ changes its sign, or several do where several loops of the group are flat at once. Between two
-//! stored poses, by the inverses P of J (of least squares where equations are redundant),
+//! Change points in the range of the only coordinate: another branch meets this one there, and this one continues. The Jacobian J of a
+//! group is singular there: one singular value σ changes its sign, or several do if several loops of the group are flat at once. Between
+//! two stored poses, by the inverses P of J (of least squares where equations are redundant),
 //!
 //! ```text
 //! det(P₁ P₂ᵀ) < 0   or   P₁·P₂ = Σ P₁ᵢⱼ P₂ᵢⱼ < 0,    and at the change point 1/‖P‖ = 0                      (1)
 //! ```
 //!
-//! The first finds an odd number of signs wherever they change. Close to a change point P is Σ u vᵀ/σ of those singular values, so that P₁·P₂ is
-//! the sum of 1/σ₁σ₂, which is negative for any number of them; it also says on which side of the change point a pose between two is.
+//! The first finds an odd number of signs wherever they change. Close to a change point P is Σ u vᵀ/σ of those singular values, so that
+//! P₁·P₂ is the sum of 1/σ₁σ₂, which is negative for any number of them; it also shows on which side of the change point an intermediate
+//! pose is.
 
 use super::branch_fit::{BranchFit, BranchFitWorkspace};
 use super::groups::Group;
@@ -16,7 +17,7 @@ use dwell_numerics::{lu, root};
 
 /// The poses from which the branch across is fitted: rad, or parts of the size.
 const FITTED: [f64; 2] = [0.02, 0.2];
-/// There the inverse is so many times as large as at the stored poses, at least.
+/// Least ratio of the inverse at a change point to the inverse at the stored poses.
 const GROWTH: f64 = 100.0;
 
 /// A change point.
@@ -52,7 +53,7 @@ impl Plan {
         self.change_points = found;
     }
 
-    /// The change point of a group between two stored poses; none where its Jacobian is not singular there.
+    /// The change point of a group between two stored poses; `None` if its Jacobian is not singular there.
     fn change_point_between(
         &self,
         (group, (from, first)): (&Group, (f64, &[f64])),
@@ -96,7 +97,7 @@ impl Plan {
     }
 }
 
-/// The inverse of a group among those of a stored pose.
+/// The inverse of a group in the inverses of a stored pose.
 fn of_group<'i>(group: &Group, inverses: &'i [f64]) -> &'i [f64] {
     &inverses[group.factors..][..group.rows.len() * group.unknowns.len()]
 }
@@ -147,8 +148,7 @@ mod tests {
         (0..9).map(|k| entry(k / 3, k % 3)).collect()
     }
 
-    /// Where one singular value changes its sign the determinant does, where two do it does not: both are found, and nothing is where
-    /// none does.
+    /// The determinant changes its sign with one singular value, but not with two. Both kinds are found, and nothing else.
     #[test]
     fn several_loops_that_are_flat_at_once_are_found() {
         let group = Group {

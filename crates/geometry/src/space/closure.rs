@@ -5,8 +5,8 @@
 //! Point        e_k·d = 0        Parallel   n_a·w_b = 0        Along, InPlane   u_a·d = 0        Length   |d| = L
 //! ```
 //!
-//! The gradient of a row is a wrench on the second body, a force f at its point and a couple m; the first body feels the
-//! opposite.
+//! The gradient of a row is a wrench on the second body, a force f at its point and a couple m; the opposite acts on the
+//! first body.
 
 use super::frames::{BodyMotion, Frame};
 use super::joint_kinds::{Condition, JointKind};
@@ -19,7 +19,7 @@ use crate::mechanism::JointId;
 use dwell_numerics::{Scalar, map_array};
 use std::ops::Range;
 
-/// What a row requires. Directions are in the internal frames of the bodies.
+/// The condition of a row. Directions are in the internal frames of the bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum RowKind {
     /// The points coincide along this axis of the ground.
@@ -61,10 +61,10 @@ pub(super) struct Closure {
     /// The bodies in whose frames the points are: the same, or the carrier of a gear pair.
     pub(super) on: [usize; 2],
     pub(super) points: [Vec3; 2],
-    /// Of a gear pair: the travel of the teeth for a unit of each freedom of its path, m.
+    /// For a gear pair: the travel of the teeth for a unit of each freedom of its path, m.
     pub(super) ratios: Vec<f64>,
     pub(super) kinds: Vec<RowKind>,
-    /// Its rows among all.
+    /// The range of its rows among all rows.
     pub(super) rows: Range<usize>,
     /// The links on the path from the first body to the second, with their signs: those towards the second are positive.
     pub(super) links: Vec<(usize, f64)>,
@@ -73,7 +73,7 @@ pub(super) struct Closure {
     /// By row and freedom of the path: whether the freedom never changes the row, since the closure keeps to a [plane](super::planes). Empty
     /// where that is not known.
     pub(super) unmoved: Vec<bool>,
-    /// Where its entries of the Jacobian begin: row by row, one for each freedom of the path.
+    /// Start of its entries in the Jacobian: row by row, one for each freedom of the path.
     pub(super) entries: usize,
 }
 
@@ -275,7 +275,7 @@ impl Closure {
         [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
     }
 
-    /// The second derivative of a row by time, with those of the difference of the points.
+    /// The second derivative of a row with respect to time, from the derivatives of the difference of the points.
     #[inline(always)]
     pub(super) fn row_acceleration<T: Scalar>(
         &self,

@@ -1,4 +1,4 @@
-//! Coordinates of a mechanism in space beside those of its actuators: angles and travels of joints, and distances.
+//! Coordinates of a mechanism in space other than those of its actuators: angles and travels of joints, and distances.
 //!
 //! With u the axis of a joint on its first body, n_a and n_b its normals, d = p_b − p_a and ω that of the second body from the first,
 //!
@@ -8,8 +8,8 @@
 //! distance  |d|                                  e·ḋ              e·d̈ + (ḋ·ḋ − (e·ḋ)²) / |d|,   e = d/|d|
 //! ```
 //!
-//! An angle counts whole revolutions: of a joint of the tree by its coordinate, of one that closes a loop by its angles along the
-//! range.
+//! An angle counts whole revolutions. For a joint of the tree they follow from its coordinate, for a joint that closes a loop from
+//! its angles along the range.
 
 use super::closure::RowKind;
 use super::frames::BodyMotion;
@@ -93,7 +93,7 @@ pub enum Counting {
     Freedom(usize, f64),
     /// The joint closes a loop: its place among the angles that are stored along the range.
     Stored(usize),
-    /// They are not counted: its value is between −π and π. What acts along it needs no more than its axis.
+    /// Revolutions are not counted: the value is between −π and π. A force along the coordinate needs only its axis.
     None,
 }
 
@@ -157,7 +157,7 @@ impl Plan {
         }
     }
 
-    /// A coordinate along which something acts, or whose rate alone is needed: the revolutions of an angle are counted where they can be.
+    /// A coordinate along which something acts, or whose rate alone is needed: the revolutions of an angle are counted if possible.
     ///
     /// # Errors
     /// Why there is no such coordinate.
@@ -182,7 +182,7 @@ impl Plan {
         )
     }
 
-    /// Stores what counts revolutions along the range of one coordinate.
+    /// Stores the angles that count revolutions along the range of one coordinate.
     pub(super) fn count_revolutions(&mut self, mechanism: &Mechanism) {
         let (1, Some([first, last])) = (self.actuators(), self.predictions.range()) else {
             return;

@@ -33,7 +33,7 @@ impl Plan {
         }
     }
 
-    /// The same by the factors of the group's Jacobian.
+    /// Solves with the factors of the group's Jacobian.
     #[inline(always)]
     pub(super) fn solve_factored<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) {
         let (m, n) = (group.rows.len(), group.unknowns.len());
@@ -59,8 +59,8 @@ impl Plan {
         }
     }
 
-    /// The multipliers of a group's equations, by row, from what its unknowns require in the same memory; where equations are redundant
-    /// the smallest.
+    /// The multipliers of a group's equations, by row. On entry the same memory holds the forces that the unknowns require. If
+    /// equations are redundant, the multipliers of least norm.
     #[inline(always)]
     pub(super) fn solve_transposed<T: Scalar>(
         &self,
@@ -88,7 +88,8 @@ impl Plan {
         }
     }
 
-    /// The inverse of a group's factored Jacobian, unknowns by rows; where equations are redundant that of least squares.
+    /// The inverse of a group's factored Jacobian, unknowns by rows; the least-squares inverse if equations are
+    /// redundant.
     pub(super) fn inverse(&self, group: &Group, pose: &mut Pose) -> Vec<f64> {
         let (m, n) = (group.rows.len(), group.unknowns.len());
         let mut inverse = vec![0.0; n * m];

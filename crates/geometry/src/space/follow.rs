@@ -1,5 +1,5 @@
-//! The branch over the range of the coordinate, and the poses stored along it: a pose depends on q alone, never on what was
-//! evaluated before.
+//! The branch over the range of the coordinate, and the poses stored along it: a pose depends on q alone, never on earlier
+//! evaluations.
 
 use super::frames::Frame;
 use super::groups::Group;
@@ -26,12 +26,12 @@ pub(super) struct Node {
     pub(super) balls: Vec<Rotation>,
     /// By ball: its turn's derivatives, in the axes of the joint's frame on the parent.
     pub(super) turns: Vec<[Vec3; 2]>,
-    /// The inverses of the groups' Jacobians, one after the other.
+    /// The inverses of the groups' Jacobians, concatenated.
     pub(super) inverses: Vec<f64>,
 }
 
-/// Steps of one revolution, or of the size of the mechanism: what a prediction of degree five misses between two of them is
-/// rounding.
+/// Steps of one revolution, or of the size of the mechanism: between two of them the error of a prediction of degree five
+/// is below rounding.
 const STEPS: f64 = 1024.0;
 /// A step is halved where the prediction misses by more, rad or parts of the size.
 const MISS: f64 = 2e-3;
@@ -41,9 +41,10 @@ const SMALLEST: f64 = 1e-9;
 const MAX_REVOLUTIONS: u32 = 8;
 /// Two poses are the same: rad, or parts of the size.
 pub(super) const SAME: f64 = 1e-7;
-/// Where a range ends with redundant rows open by this part of what is allowed, they end it: at limit positions they are closed to rounding.
+/// If redundant rows are open by this fraction of the tolerance at the end of a range, they are its cause: at limit positions they are
+/// closed to rounding.
 const DRIFTED: f64 = 0.5;
-/// Axes that differ by less are meant to be parallel, rad.
+/// Axes that differ by less are probably meant to be parallel, rad.
 const MEANT_PARALLEL: f64 = 1e-3;
 
 impl Plan {
@@ -165,8 +166,8 @@ impl Plan {
         self.follow_back(forward, &first, unit, is_angle, &mut pose)
     }
 
-    /// Whether everything repeats after so many stored poses, but coordinates that gain the same each time, as those of a screw do: then
-    /// nothing ends the range.
+    /// Whether the pose repeats after this number of stored poses, except for coordinates that change by a constant amount each time, as
+    /// those of a screw do. Then nothing ends the range.
     fn repeats(&self, nodes: &[Node], stride: usize) -> bool {
         let unit = if self.is_angle(0) { 1.0 } else { self.size };
         let (first, end) = (&nodes[0], &nodes[stride]);
@@ -192,7 +193,8 @@ impl Plan {
         })
     }
 
-    /// After how much of the only coordinate the pose repeats, or all of it but what gains the same each time.
+    /// The change of the only coordinate after which the pose repeats, except for freedoms that change by a constant
+    /// amount each time.
     pub(super) fn period(&self) -> Option<f64> {
         self.range.period().or(self.repetition)
     }

@@ -48,7 +48,7 @@ pub(super) struct Screw<T> {
     pub(super) point: Vec3<T>,
 }
 
-/// The velocities of a body that a unit of a freedom makes: of one of its points, and angular.
+/// The velocities of a body for a unit rate of a freedom: of one of its points, and angular.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Twist<T> {
     pub(super) linear: Vec3<T>,
@@ -70,7 +70,7 @@ impl<T: Scalar> Twist<T> {
 }
 
 impl<T: Scalar> Screw<T> {
-    /// The velocity that so many units make at a point.
+    /// The velocity of a point for a rate of `units`.
     #[inline(always)]
     pub(super) fn velocity(&self, kind: FreedomKind, at: Vec3<T>, units: f64) -> Vec3<T> {
         self.twist(kind, at, units).linear
@@ -90,7 +90,7 @@ impl<T: Scalar> Screw<T> {
         }
     }
 
-    /// The twist of so many units at a point.
+    /// The twist at a point for a rate of `units`.
     #[inline(always)]
     pub(super) fn twist(&self, kind: FreedomKind, at: Vec3<T>, units: f64) -> Twist<T> {
         let axis = self.axis.scaled(T::from_f64(units));
@@ -163,7 +163,7 @@ impl<T: Scalar> BodyMotion<T> {
 }
 
 impl Link {
-    /// The frame of its joint on the parent; the ground's axes are those of everything.
+    /// The frame of its joint on the parent. The ground has the reference axes.
     #[inline(always)]
     pub(super) fn base<T: Scalar>(&self, parent: &Frame<T>, is_ground: bool) -> Frame<T> {
         if is_ground {
@@ -217,8 +217,8 @@ impl Link {
         frame
     }
 
-    /// The body's velocities, and its accelerations without those of the freedoms, from those of the parent and what it has with the
-    /// parent alone.
+    /// The body's velocities, and its accelerations without those of the freedoms, from those of the parent and those that the body
+    /// has if it moves with the parent.
     ///
     /// ```text
     /// ω̇ = ω̇_p + Σ ω×u ċ,     v̇ = v̇_p + ω̇_p×r + ω_p×(ω_p×r) + Σ 2 ω_p×u ċ                            (1)
@@ -260,7 +260,8 @@ impl Link {
         state
     }
 
-    /// What the accelerations of the freedoms add to the body's, from what they add to the parent's: of the origin and of the rotation.
+    /// The contributions of the accelerations of the freedoms to those of the body's origin and rotation, from the contributions to the
+    /// parent's.
     ///
     /// ```text
     /// Δω̇ = Δω̇_p + Σ u c̈,     Δv̇ = Δv̇_p + Δω̇_p×r + Σ u c̈                                            (2)

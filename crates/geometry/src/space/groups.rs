@@ -13,7 +13,7 @@ use std::ops::Range;
 /// An entry of a group's matrix.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Inner {
-    /// Where it stands in the matrix.
+    /// Its index in the matrix.
     pub(super) at: usize,
     /// Which entry of the Jacobian it is.
     pub(super) entry: usize,
@@ -43,14 +43,14 @@ pub(super) struct Group {
     /// Links with a ball among the unknowns, and the position of its first freedom among them.
     pub(super) balls: Vec<(usize, usize)>,
     pub(super) inner: Vec<Inner>,
-    /// Where the matrix has no entry.
+    /// The indices without an entry of the matrix.
     pub(super) zeros: Vec<usize>,
     pub(super) outer: Vec<Outer>,
-    /// Where its closed positions are solved as those of a rod.
+    /// The data of the closed form, if the group is a rod.
     pub(super) rod: Option<Rod>,
     pub(super) row_scales: Vec<f64>,
     pub(super) column_scales: Vec<f64>,
-    /// Where its factors begin, and what belongs to each of their columns.
+    /// Start of its factors, and of the data of their columns.
     pub(super) factors: usize,
     pub(super) columns: usize,
 }
@@ -72,7 +72,7 @@ impl Plan {
         }
     }
 
-    /// What a row is multiplied by to have no unit.
+    /// The factor that makes a row dimensionless.
     pub(super) fn row_scale(&self, (c, k): (usize, usize)) -> f64 {
         if self.closures[c].kinds[k].is_length() {
             1.0 / self.size
@@ -195,7 +195,7 @@ impl Plan {
         freedoms
     }
 
-    /// Replaces the one group of everything by the groups that the structure has, in order, after idle freedoms are held.
+    /// Replaces the single group of all unknowns by the groups of the structure, in order, after idle freedoms are held.
     ///
     /// # Errors
     /// [`AssemblyError`] where the freedoms are not those of the actuators, or the position is singular.

@@ -1,5 +1,5 @@
-//! What each kind of joint is: its name, and the conditions that it holds between its two sides. Everything else about a kind follows
-//! from its conditions: rows of closures, freedoms, coordinates, which components of a reaction exist, how it is drawn.
+//! The kinds of joints: their names, and their conditions between the two sides. Everything else about a kind follows
+//! from its conditions: rows of closures, freedoms, coordinates, which components of a reaction exist, symbols.
 
 use crate::mechanism::BodyId;
 
@@ -32,7 +32,7 @@ pub enum JointKind {
     PointInPlane,
     /// A massless rod with balls at its ends.
     Distance {
-        /// Its length, m; without meaning where an actuator drives it.
+        /// Its length, m; ignored if an actuator drives it.
         length: f64,
     },
     /// The teeth of two wheels, or of a rack and a wheel, that touch at a pitch point of a third body, the carrier: there

@@ -1,9 +1,9 @@
-//! Which joints are in the tree, and a mechanism in which those whose coordinates are needed can be.
+//! Selects the joints of the tree, and adds bodies so that joints whose coordinates are needed can be in the tree.
 //!
 //! The joints with the fewest freedoms are in the tree, so that those with many are cut and no orientation is an unknown where it
 //! need not be; before them those whose coordinates are needed: bearings of gear pairs, driven joints, screws (whose angle counts all
-//! revolutions). A driven joint or a screw that closes a loop of such joints all the same moves a massless body instead,
-//! which is welded to its second body.
+//! revolutions). If a driven joint or a screw still closes a loop of such joints, it moves a massless body that is welded to its
+//! second body.
 
 use super::joint_kinds::{Condition, JointKind};
 use super::mechanism::{Assembly, Joint, Mechanism, Placement};
@@ -94,7 +94,7 @@ fn tree_joints(mechanism: &Mechanism, bearings: &[bool]) -> Vec<bool> {
 }
 
 impl Lowered {
-    /// The mechanism with what it needs.
+    /// Adds the bodies that the tree needs.
     ///
     /// # Errors
     /// [`StructureError::Gear`] where the bearings of gear pairs cannot be in a tree.

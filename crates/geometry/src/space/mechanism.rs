@@ -25,19 +25,19 @@ pub struct Joint {
     pub name: String,
     /// The first and the second body; a reaction is the force and moment of the first on the second.
     pub bodies: [BodyId; 2],
-    /// What it allows.
+    /// Its kind, which determines the allowed relative motion.
     pub kind: JointKind,
     /// The joint on each body.
     pub sides: [Side; 2],
 }
 
-/// A joint on one of its bodies: its point (m) and two directions at right angles, unit vectors, in the frame of the body; of a gear
-/// pair in that of the carrier.
+/// A joint on one of its bodies: its point (m) and two directions at right angles, unit vectors, in the frame of the body; for a
+/// gear pair, in the frame of the carrier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Side {
     /// The joint's point.
     pub point: Vec3,
-    /// Its axis: of a planar joint the normal of the plane, of a spherical joint and a distance without meaning.
+    /// Its axis; for a planar joint, the normal of the plane. Spherical joints and distances ignore it.
     pub axis: Vec3,
     /// The direction from which its angle is counted.
     pub normal: Vec3,
@@ -63,7 +63,8 @@ impl Joint {
     }
 
     /// A joint between two bodies, by their numbers. Directions become unit vectors, and the normal the part of it at right
-    /// angles to the axis; where that is nothing, any. A direction of no length stays, and compiling refuses it.
+    /// angles to the axis; if that is zero, any direction at right angles. A direction of length zero is kept, and
+    /// compiling rejects it.
     pub fn new(
         name: impl Into<String>,
         bodies: [impl Into<BodyId>; 2],
@@ -100,11 +101,11 @@ impl Joint {
 pub struct Actuator {
     /// The name of the coordinate.
     pub name: String,
-    /// What it drives.
+    /// The coordinate that it drives.
     pub kind: ActuatorKind,
 }
 
-/// What an actuator drives.
+/// The kind of coordinate that an actuator drives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ActuatorKind {
     /// The angle of a revolute, cylindrical or helical joint, from the first body's normal to the second's about the axis, rad.
@@ -167,7 +168,7 @@ pub type Placement = Frame<f64>;
 pub struct Assembly {
     /// By actuator: its coordinate, rad or m.
     pub q: Vec<f64>,
-    /// By body: approximately where it is; bodies beyond the end coincide with the ground's frame.
+    /// The approximate placement of each body. Bodies beyond the end of the list coincide with the ground's frame.
     pub placements: Vec<Placement>,
 }
 
@@ -217,7 +218,7 @@ impl Mechanism {
         self.actuators.iter().any(|a| a.kind.joint() == joint)
     }
 
-    /// What is inconsistent in the description of a joint.
+    /// The inconsistency in the description of a joint, if there is any.
     fn joint_fault(&self, j: usize, joint: &Joint) -> Option<&'static str> {
         if joint.bodies.iter().any(|b| b.0 >= self.bodies.len()) {
             return Some("a joint refers to a body that does not exist");
@@ -257,7 +258,7 @@ impl Mechanism {
         None
     }
 
-    /// What is inconsistent in the description, if anything.
+    /// The inconsistency in the description, if there is any.
     pub(super) fn fault(&self) -> Option<&'static str> {
         if self.ground >= self.bodies.len() {
             return Some("there is no ground");

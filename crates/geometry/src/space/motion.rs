@@ -1,4 +1,4 @@
-//! Velocities and accelerations: the factors of each group once more, with other right-hand sides.
+//! Velocities and accelerations, from the factors of each group with other right-hand sides.
 
 use super::frames::BodyMotion;
 use super::groups::Group;
@@ -7,8 +7,8 @@ use super::vector::Vec3;
 use dwell_numerics::Scalar;
 
 impl Plan {
-    /// The velocities of all freedoms and bodies at those of the actuators, rad/s or m/s. The accelerations of the bodies become
-    /// those at zero accelerations of the freedoms.
+    /// Computes the velocities of all freedoms and bodies from those of the actuators, rad/s or m/s. Sets the accelerations of
+    /// the bodies to those at zero accelerations of the freedoms.
     pub fn velocities<T: Scalar>(&self, q_dot: &[T], pose: &mut Pose<T>) {
         for (driver, &rate) in self.drivers.iter().zip(q_dot) {
             pose.motion.rates[driver.freedom] = rate * T::from_f64(driver.factor);
@@ -27,7 +27,8 @@ impl Plan {
         self.fill_states(pose);
     }
 
-    /// The accelerations of all freedoms and bodies at those of the actuators, rad/s² or m/s², after the velocities.
+    /// Computes the accelerations of all freedoms and bodies from those of the actuators, rad/s² or m/s². Call it after
+    /// `velocities`.
     pub fn accelerations<T: Scalar>(&self, q_ddot: &[T], pose: &mut Pose<T>) {
         if !std::mem::take(&mut pose.motion.has_no_acceleration) {
             self.fill_states(pose);
@@ -64,7 +65,7 @@ impl Plan {
         self.add_accelerations(pose);
     }
 
-    /// Solves a group for what is known of the freedoms outside it and of its rows themselves.
+    /// Solves a group with the known rates of the freedoms outside it and of its own rows.
     #[inline(always)]
     fn carry_known<T: Scalar>(
         &self,

@@ -8,15 +8,17 @@ use dwell_numerics::{Scalar, map_array};
 /// The forces of `N` passes at one pose, for one thread.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forces<T = f64, const N: usize = 1> {
-    /// By body: what moves it less the loads on it, about its [evaluation frame](Plan::frame)'s origin. The caller sets it.
+    /// By body: the required wrench, that is, inertia minus loads, about the origin of its [evaluation frame](Plan::frame).
+    /// The caller sets it.
     pub required: Vec<[Wrench<T>; N]>,
-    /// By body: what the joint of the tree transmits to it and all that it carries, without the forces of closures.
+    /// By body: the wrench that its joint of the tree transmits to it and to all bodies that it carries, without the
+    /// forces of closures.
     transmitted: Vec<[Wrench<T>; N]>,
     balance: Vec<[T; N]>,
     multipliers: Vec<[T; N]>,
     /// By closure: its force and couple on the second body, at the point of that body.
     closure_actions: Vec<[Wrench<T>; N]>,
-    /// What a group requires, and then its multipliers.
+    /// The required forces of a group, and then its multipliers.
     scratch: [Vec<T>; N],
 }
 
@@ -36,8 +38,8 @@ impl Plan {
         }
     }
 
-    /// The forces in all joints from the wrenches that the bodies require: Jᵀ [λ; τ] = M ẍ + h − f. Where redundant constraints
-    /// leave multipliers open, the forces are those of some of them.
+    /// The forces in all joints from the wrenches that the bodies require: Jᵀ [λ; τ] = M ẍ + h − f. If redundant constraints
+    /// leave multipliers undetermined, the forces are one of the solutions.
     #[inline(always)]
     pub fn balance<T: Scalar, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
         self.carry_down(pose, forces);
@@ -57,7 +59,8 @@ impl Plan {
         self.close_forces(pose, forces);
     }
 
-    /// The forces in the joints of multipliers alone, with nothing required: of a [self-stress](Plan::self_stresses).
+    /// The forces in the joints from multipliers alone, without required wrenches, as of a
+    /// [self-stress](Plan::self_stresses).
     pub fn stress<T: Scalar>(&self, multipliers: &[T], pose: &Pose<T>, forces: &mut Forces<T>) {
         forces.required.fill([Wrench::default()]);
         forces.transmitted.fill([Wrench::default()]);
@@ -70,7 +73,7 @@ impl Plan {
         }
     }
 
-    /// Sums what is required from the outermost bodies to the ground.
+    /// Sums the required wrenches from the outermost bodies to the ground.
     #[inline(always)]
     fn carry_down<T: Scalar, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
         let wrenches = &mut forces.transmitted;
@@ -141,7 +144,8 @@ impl Plan {
         map_array(forces.balance[driver.freedom], |action| action * factor)
     }
 
-    /// What a link transmits to its body, about the origin of that body's frame, with the actions of its actuators.
+    /// The wrench that a link transmits to its body, about the origin of that body's frame, including the actions of
+    /// its actuators.
     #[inline(always)]
     fn transmitted<T: Scalar, const N: usize>(
         &self,

@@ -70,11 +70,12 @@ pub struct Plan {
     pub(super) mobility: Mobility,
     /// The angles along the range of joints that close loops.
     pub(super) closure_angles: Vec<StoredAngles>,
-    /// By freedom: what it gains in a period of the only coordinate.
+    /// By freedom: its change in a period of the only coordinate.
     pub(super) freedom_gains: Vec<f64>,
     /// By each of several coordinates.
     pub(super) revolutions: Revolutions,
-    /// The freedoms that keep count of all periods: those that teeth turn, and those that gain where the pose does not repeat.
+    /// The freedoms that count all periods: those that teeth turn, and those that change in every period if the pose does not
+    /// repeat.
     pub(super) geared: Vec<usize>,
     /// In the range of the only coordinate.
     pub(super) change_points: Vec<ChangePoint>,
@@ -98,7 +99,7 @@ pub struct Pose<T = f64> {
     pub(super) reflections: Vec<T>,
     pub(super) scratch: Vec<T>,
     pub(super) motion: PoseMotion<T>,
-    /// By body: what the accelerations of the freedoms add to those of its origin and of its rotation.
+    /// By body: the contributions of the accelerations of the freedoms to those of its origin and of its rotation.
     pub(super) added: Vec<[Vec3<T>; 2]>,
     pub(super) stations: Stations,
 }
@@ -141,7 +142,7 @@ impl Plan {
         Self::compile_with(mechanism, assembly, true)
     }
 
-    /// The same with every loop solved as one in space, whether it keeps to a plane or not: what tests compare with.
+    /// As [`Plan::compile`], but solves planar loops as loops in space, too. Tests compare with it.
     ///
     /// # Errors
     /// As [`Plan::compile`].
@@ -284,12 +285,14 @@ impl Plan {
         pose
     }
 
-    /// The frame in which a body is evaluated, by its own: that of the joint that carries it.
+    /// The frame in which a body is evaluated, relative to the body's own frame: the frame of the joint that carries
+    /// the body.
     pub fn evaluation_frame(&self, body: usize) -> Placement {
         self.tree.internal[body]
     }
 
-    /// That frame at a pose: its origin from that of the ground's, so that nothing depends on where the mechanism stands.
+    /// The evaluation frame of a body at a pose. Its origin is relative to that of the ground's evaluation frame, so that
+    /// nothing depends on the position of the mechanism.
     #[inline(always)]
     pub fn frame<'a, T: Scalar>(&self, pose: &'a Pose<T>, body: usize) -> &'a Frame<T> {
         &pose.frames[body]
@@ -304,7 +307,7 @@ impl Plan {
         turning.map(|((_, &angle), &rate)| [angle, rate]).collect()
     }
 
-    /// The same in the motion that the pose has.
+    /// The turns in the motion of the pose.
     pub fn unit_turns(&self, pose: &Pose<f64>) -> Vec<[f64; 2]> {
         self.turns(pose, &pose.motion)
     }
@@ -314,7 +317,7 @@ impl Plan {
         self.tree.internal[self.ground].position
     }
 
-    /// Where a body is.
+    /// The placement of a body: its own frame in that of the ground.
     pub fn placement(&self, pose: &Pose<f64>, body: usize) -> Placement {
         let mut placed = pose.frames[body].then(&self.tree.internal[body].inverse());
         placed.position += self.origin();

@@ -16,7 +16,7 @@ use crate::plane::{Vec2, vec2};
 pub struct PlanarEquivalent {
     /// The mechanism.
     pub mechanism: planar::Mechanism,
-    /// Where it is assembled.
+    /// Its assembly.
     pub assembly: AssemblyConfiguration,
     /// By body: the frame whose x and y axes are those of the body in the plane, in the [evaluation frame](Plan::evaluation_frame).
     pub frames: Vec<Placement>,
@@ -24,8 +24,8 @@ pub struct PlanarEquivalent {
     pub heights: Vec<f64>,
     /// By joint: the heights of its points on both bodies, m.
     pub joint_heights: Vec<[f64; 2]>,
-    /// By joint: the bodies that it carries in the [tree](super::tree); none of one that closes a loop, whose rows across the plane nothing
-    /// moves and whose moments across it are zero therefore.
+    /// By joint: the bodies that it carries in the [tree](super::tree); `None` for a joint that closes a loop: nothing moves its rows
+    /// across the plane, so its moments across the plane are zero.
     pub carried: Vec<Option<Vec<usize>>>,
 }
 
@@ -41,8 +41,8 @@ struct View<'a> {
 }
 
 impl Plan {
-    /// The planar mechanism with the same motion in its plane; none where there is none, where the mechanism has not one actuator of a
-    /// joint, or where planes are not looked for.
+    /// The planar mechanism with the same motion in its plane; `None` if there is none, if the mechanism does not have exactly one
+    /// actuator of a joint, or if planes are not searched for.
     pub fn planar_equivalent(&self, mechanism: &Mechanism) -> Option<PlanarEquivalent> {
         let ([actuator], true) = (&mechanism.actuators[..], self.has_planes) else {
             return None;
@@ -100,7 +100,8 @@ impl Plan {
         carried
     }
 
-    /// The mechanism along the normal of its plane, with the axes of the bodies such that the coordinate is that of the actuator.
+    /// The view of the mechanism along the normal of its plane. The axes of the bodies are chosen so that the coordinate is that
+    /// of the actuator.
     fn view<'a>(&'a self, mechanism: &'a Mechanism, kind: ActuatorKind) -> Option<View<'a>> {
         let mut pose = self.pose();
         self.start_from(&self.start, 0.0, &mut pose);
@@ -188,7 +189,7 @@ impl View<'_> {
         internal.inner_point(joint.sides[side].point)
     }
 
-    /// Where it is.
+    /// The position of a point of a joint, m.
     fn point(&self, joint: &Joint, side: usize) -> Vec3 {
         let frame = &self.pose.frames[joint.bodies[side].0];
         frame.point(self.inner_point(joint, side))
@@ -199,7 +200,7 @@ impl View<'_> {
         [0, 1].map(|side| self.normal.dot(self.point(joint, side)))
     }
 
-    /// A joint with the approximate value by which its branch is chosen; none of one that has no equivalent.
+    /// A joint with the approximate value by which its branch is chosen; `None` if it has no equivalent.
     fn joint(&self, joint: &Joint) -> Option<(planar::Joint, Option<f64>)> {
         let [a, b] = joint.bodies.map(|body| body.0);
         let axis = self.placements[a].rotation.apply(joint.sides[0].axis);

@@ -1,5 +1,5 @@
-//! Loops that keep to a plane. Where all turns between the two bodies of a closure are about one direction n, and all slides between
-//! them along n or across it, n is fixed in both bodies whatever the coordinates are, and the closure's rows part:
+//! Planar loops. If all turns between the two bodies of a closure are about one direction n, and all slides between them are along n or
+//! across it, then n is fixed in both bodies at all coordinates, and the closure's rows separate:
 //!
 //! ```text
 //! turns about n, slides across n    move    points along directions across n, and angles about n
@@ -7,10 +7,10 @@
 //! nothing                           moves   directions along n: they stay parallel
 //! ```
 //!
-//! The rows of the closure are therefore given along n and across it, in the first body, and those that a freedom never changes are
-//! known to be so, not merely found to be zero. A planar loop is then a group with two rows, or three, where its joints have five or six, and
-//! what its plane leaves to its other freedoms, as the slide of a cylindrical joint, is a group of its own. Rows that nothing moves are in no
-//! group. Their multipliers, forces along n and moments across it, are open; zero is the smallest.
+//! The rows of the closure are therefore given along n and across it, in the first body, and those that a freedom never changes are known
+//! to be so, not merely found to be zero. A planar loop is then a group with two rows, or three, where its joints have five or six, and
+//! what its plane leaves to its other freedoms, as the slide of a cylindrical joint, is a group of its own. Rows that nothing moves are in
+//! no group. Their multipliers, forces along n and moments across it, are undetermined and set to zero.
 
 use super::closure::{Closure, RowKind, rows_of};
 use super::joint_kinds::JointKind;
@@ -20,8 +20,8 @@ use super::positions::OPEN;
 use super::tree::FreedomKind;
 use super::vector::Vec3;
 
-/// Directions are parallel, or at right angles, to this: rounding of what a scene states. An axis that is tilted by more is solved as tilted,
-/// however little it is, and its results have all digits.
+/// Directions are parallel, or at right angles, to this tolerance, the rounding of the numbers of a scene. An axis with a larger tilt is
+/// solved as tilted, and its results have all digits.
 const ALIGNED: f64 = 1e-13;
 
 /// Whether two unit vectors have the same direction, or opposite ones.
@@ -48,7 +48,7 @@ impl Plan {
         }
     }
 
-    /// The direction about which all turns on the path of a closure are; none where there is none, or a slide is oblique to it.
+    /// The direction about which all turns on the path of a closure are; `None` if there is none, or a slide is oblique to it.
     // The axes are parallel at every pose if they are at one: nothing else turns the bodies between them.
     fn normal_of(&self, closure: &Closure, pose: &Pose) -> Option<Vec3> {
         let axis = |freedom: usize| pose.screws[freedom].axis;
@@ -66,7 +66,7 @@ impl Plan {
             .then_some(normal)
     }
 
-    /// The rows of a closure along and across the plane with this normal; none where they would not be closed at the pose.
+    /// The rows of a closure along and across the plane with this normal; `None` if they would not be closed at the pose.
     fn rows_in_plane(
         &self,
         mechanism: &Mechanism,

@@ -1,5 +1,6 @@
-//! Positions: each group from a prediction between stored poses, closed with the predicted inverse of its Jacobian, or by Newton's method. A group with redundant rows is solved by least squares, and what
-//! stays open is looked at: least squares converge where a loop does not close, too.
+//! Positions: each group from a prediction between stored poses, closed with the predicted inverse of its Jacobian, or by Newton's method.
+//! A group with redundant rows is solved by least squares, and the residual is checked, because least squares also converge if a loop does
+//! not close.
 
 use super::closure::RowKind;
 use super::groups::Group;
@@ -13,7 +14,7 @@ use dwell_numerics::Scalar;
 
 /// Steps with a predicted inverse at most.
 const MAX_PREDICTED_STEPS: usize = 3;
-/// A residual this small, relative to the size, is rounding: that of the points along a loop, which no step makes smaller.
+/// A residual below this fraction of the size is the rounding of the points along a loop, which no step reduces.
 const fn rounding<T: Scalar>() -> f64 {
     2e-15_f64.max(9.0 * T::EPSILON)
 }
@@ -29,13 +30,13 @@ const fn no_step<T: Scalar>() -> f64 {
 }
 /// A residual this large, relative to the size, is no closure.
 pub(super) const OPEN: f64 = 1e-9;
-/// The same in a number type: in a coarser one than `f64`, some roundings of the coordinates.
+/// The tolerance in a number type; in one coarser than `f64`, some roundings of the coordinates.
 const fn open<T: Scalar>() -> f64 {
     OPEN.max(64.0 * T::EPSILON)
 }
 /// Pivots this far apart make a group singular.
 const SINGULAR: f64 = 1e-9;
-/// The same in a number type: in a coarser one than `f64`, where pivots are rounding.
+/// The tolerance in a number type; in one coarser than `f64`, the level at which pivots are rounding.
 pub(super) const fn singular<T: Scalar>() -> f64 {
     SINGULAR.max(8.0 * T::EPSILON)
 }
@@ -70,7 +71,8 @@ impl Plan {
         self.close(q, at, pose)
     }
 
-    /// Adds to the freedoms that teeth turn what they gain in whole periods: the row of a gear pair counts all revolutions.
+    /// Adds the changes in whole periods to the freedoms that teeth turn, because the row of a gear pair counts all
+    /// revolutions.
     #[inline(always)]
     fn count_teeth<T: Scalar>(&self, q: f64, pose: &mut Pose<T>) {
         if self.geared.is_empty() {
@@ -115,8 +117,8 @@ impl Plan {
         Ok(())
     }
 
-    /// Closes a predicted group by steps with the predicted inverse of its Jacobian: each leaves of the last the part by which that
-    /// is wrong. False where it does not close so.
+    /// Closes a predicted group by steps with the predicted inverse of its Jacobian: each step reduces the residual by the relative
+    /// error of this inverse. Returns false if the group does not close in this way.
     #[inline(always)]
     fn close_predicted<T: Scalar>(
         &self,
@@ -157,7 +159,7 @@ impl Plan {
         false
     }
 
-    /// Factors the Jacobian of a closed group; false where it is singular.
+    /// Factors the Jacobian of a closed group; returns false if it is singular.
     #[inline(always)]
     pub(super) fn factor_closed<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) -> bool {
         if let Some(rod) = &group.rod {
@@ -342,7 +344,7 @@ impl Plan {
         }
     }
 
-    /// The largest residual of a group, over the size where it is a length.
+    /// The largest residual of a group; lengths are divided by the size.
     pub(super) fn largest_residual<T: Scalar>(&self, group: &Group, pose: &Pose<T>) -> f64 {
         let rows = group.residuals.iter().zip(&group.row_scales);
         let sizes = rows.map(|(row, scale)| pose.residuals[*row].value().abs() * scale);

@@ -1,5 +1,5 @@
-//! Predictions between stored poses: polynomials of degree five, which have the values and the first two derivatives of both. What they
-//! leave open is closed with the inverses of the Jacobians, interpolated between both.
+//! Predictions between stored poses: polynomials of degree five with the values and the first two derivatives at both. The remaining
+//! residual is closed with the inverses of the Jacobians, interpolated between both.
 //!
 //! ```text
 //! f(s) = Σ cₖ sᵏ,     f, f′, f″ given at s = 0 and s = h                                              (1)
@@ -25,7 +25,7 @@ pub(super) struct Predictions {
     parts_per_unit: f64,
     /// By piece: six coefficients of each scalar; of each ball its first rotation and six coefficients of its turn.
     numbers: Vec<f64>,
-    /// How many those of a piece are.
+    /// Number of coefficients of a piece.
     stride: usize,
     /// By stored pose: the inverses of the groups' Jacobians.
     inverses: Vec<f64>,
@@ -41,7 +41,7 @@ const BALL: usize = 9 + 18;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PiecePoint {
     index: usize,
-    /// From the first pose, rad or m.
+    /// Distance from the first pose, rad or m.
     ahead: f64,
 }
 
@@ -84,7 +84,7 @@ impl Predictions {
         self.ends.iter().copied().zip(inverses)
     }
 
-    /// Where a coordinate within the range is; none where there is one stored pose only.
+    /// The piece that contains a coordinate of the range; `None` if there is only one stored pose.
     #[inline(always)]
     pub(super) fn at(&self, q: f64) -> Option<PiecePoint> {
         let last = self.parts.len().checked_sub(1)?;
@@ -175,7 +175,7 @@ fn polynomial([f, d, dd]: [f64; 3], [g, e, ee]: [f64; 3], h: f64) -> [f64; 6] {
     ]
 }
 
-/// The same of each component.
+/// The polynomials of each component.
 fn turns(first: [Vec3; 3], second: [Vec3; 3], h: f64) -> [Vec3; 6] {
     let of = |component: fn(&Vec3) -> f64| {
         polynomial(

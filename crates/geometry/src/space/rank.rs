@@ -37,7 +37,7 @@ pub struct IdleBody {
     pub axis: Vec3,
 }
 
-/// What the rank of the whole shows.
+/// The results of the rank of all rows.
 pub(super) struct Analysed {
     pub(super) mobility: Mobility,
     pub(super) pose: Pose,

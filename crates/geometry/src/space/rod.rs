@@ -18,7 +18,7 @@ use super::tree::{Link, Step};
 use super::vector::{Vec3, vec3};
 use dwell_numerics::Scalar;
 
-/// Where the parts of (1) are.
+/// The positions of the parts of (1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rod {
     /// The closures of the points and of the spin.
@@ -28,7 +28,8 @@ pub(super) struct Rod {
     end: usize,
     /// σ.
     sense: f64,
-    /// Where the ball's freedoms begin on both paths, and the other unknown on the first; on the second it may be none.
+    /// Start of the freedoms of the spherical joint on both paths; the other unknown on the first path, and on the
+    /// second, if there is one.
     balls: [usize; 2],
     other: usize,
     other_in_spin: Option<usize>,
@@ -37,7 +38,7 @@ pub(super) struct Rod {
     unknowns: [usize; 2],
 }
 
-/// What (2) and (3) need, as it is stored in the place of the factors.
+/// The data of (2) and (3), stored in the memory of the factors.
 struct Factors<T> {
     u: Vec3<T>,
     r: Vec3<T>,
@@ -48,7 +49,7 @@ struct Factors<T> {
     inverse_square: T,
 }
 
-/// The axis of a row's kind is that of the rod to this part.
+/// Tolerance with which the axis of a row is that of the rod.
 const PARALLEL: f64 = 1e-14;
 
 impl<T: Scalar> Factors<T> {
@@ -152,7 +153,7 @@ impl Plan {
         is_on_rod.then_some(([points, spin], end))
     }
 
-    /// The entries of a rod's closed rows and what (2) and (3) need; false where it is singular.
+    /// Computes the entries of a rod's closed rows and the data of (2) and (3); returns false if it is singular.
     #[inline(always)]
     pub(super) fn factor_rod<T: Scalar>(
         &self,
@@ -225,7 +226,7 @@ impl Plan {
         values[other] = x;
     }
 
-    /// (3) for what the unknowns require; it leaves the multipliers in the same memory.
+    /// Solves (3) for the required forces of the unknowns; the multipliers replace them in the same memory.
     #[inline(always)]
     pub(super) fn solve_rod_transposed<T: Scalar>(
         group: &Group,

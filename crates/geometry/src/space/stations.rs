@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 
 /// Largest step of each of several coordinates on the way from the assembly, rad or m.
 const STEP: f64 = 0.05;
-/// Steps of that way; they are longer where there were more.
+/// Largest number of steps on this line; the steps become longer if more would be needed.
 const MAX_STEPS: f64 = 1e4;
 /// Farther from the assembly the way is remembered.
 const FAR: f64 = 20.0 * STEP;
@@ -55,7 +55,7 @@ impl Plan {
         self.close(q, None, pose)
     }
 
-    /// The same by way of the station before it, which a motion along it reaches with one step more.
+    /// The pose, continued from the preceding station, from which a motion along the lattice needs only one more step.
     fn continue_by_stations<T: Scalar>(
         &self,
         q: &[T],
@@ -93,7 +93,7 @@ impl Plan {
         self.close(q, None, pose)
     }
 
-    /// A revolution of one of several coordinates from the assembly, if all bodies then stand where they stood.
+    /// A revolution of one of several coordinates from the assembly, if all bodies return to their positions.
     fn revolution(&self, actuator: usize) -> Option<&Revolution> {
         let found = self.revolutions.0.get(actuator)?;
         found
@@ -157,11 +157,11 @@ impl Plan {
     }
 }
 
-/// By freedom: what it gains in a revolution of a coordinate.
+/// By freedom: its change in a revolution of a coordinate.
 type Revolution = Vec<f64>;
 
-/// By coordinate: its revolution if there is one, once a pose half a revolution away is asked for. They follow from the rest of a plan,
-/// so that they do not tell two plans apart.
+/// By coordinate: its revolution if there is one, computed when a pose half a revolution away is first requested. They follow from the
+/// rest of a plan, so comparisons of plans ignore them.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Revolutions(pub(super) Vec<OnceLock<Option<Revolution>>>);
 
@@ -172,10 +172,10 @@ impl PartialEq for Revolutions {
 }
 
 /// The poses of several coordinates by their places in a lattice about the assembly. Each depends on its place alone, so that a pose
-/// does not depend on what was evaluated before.
+/// does not depend on earlier evaluations.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Stations {
-    /// Between two of them, rad or m.
+    /// Distance of neighbouring stations, rad or m.
     unit: f64,
     known: BTreeMap<Vec<i32>, (Vec<f64>, Vec<Rotation>)>,
     pose: Option<Box<Pose>>,
@@ -243,7 +243,7 @@ mod tests {
         pose.coordinates.clone()
     }
 
-    /// A pose does not depend on what was evaluated before, bit for bit, and a hundred revolutions remember no more than one does.
+    /// A pose does not depend on earlier evaluations, bit for bit, and a hundred revolutions store no more stations than one.
     #[test]
     fn poses_depend_on_their_coordinates_alone() {
         let plan = two_coordinates();

@@ -47,12 +47,12 @@ pub(super) enum Step {
     Ball(usize, usize),
 }
 
-/// How a body is placed from its parent. The body's own frame here is that of the joint on it.
+/// The placement of a body relative to its parent. Here the frame of the body is that of the joint on it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Link {
     pub(super) body: usize,
     pub(super) parent: usize,
-    /// None where only distances hold the body.
+    /// `None` if only distances hold the body.
     pub(super) joint: Option<JointId>,
     /// −1 where the body is the joint's first: its coordinates then count backwards.
     pub(super) sign: f64,
@@ -65,7 +65,7 @@ pub(super) struct Link {
 /// The tree.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Tree {
-    /// From the ground outwards.
+    /// The links, from the ground outwards.
     pub(super) links: Vec<Link>,
     /// By body: the link that places it; none for the ground.
     pub(super) link_of: Vec<Option<usize>>,
@@ -114,7 +114,7 @@ impl Placement {
 }
 
 impl Side {
-    /// The same side in a frame of its body.
+    /// This side in another frame of its body.
     pub(super) fn in_frame(&self, frame: &Placement) -> Self {
         Self {
             point: frame.inner_point(self.point),

@@ -58,7 +58,7 @@ impl Vec3<f64> {
         normal.scaled(1.0 / normal.norm())
     }
 
-    /// The same constants as another number type.
+    /// This value in another number type, as constants.
     #[inline(always)]
     #[track_caller]
     pub fn cast<T: Scalar>(self) -> Vec3<T> {
@@ -167,7 +167,7 @@ pub struct Rotation<T = f64> {
 }
 
 impl Rotation<f64> {
-    /// No rotation.
+    /// The identity.
     pub const IDENTITY: Self = Self {
         columns: Vec3::AXES,
     };
@@ -179,7 +179,7 @@ impl Rotation<f64> {
         }
     }
 
-    /// From the rows of its matrix, made orthogonal; none where they are far from it.
+    /// A rotation from the rows of its matrix, which are made orthonormal; `None` if they are far from orthonormal.
     pub fn of_rows(rows: [[f64; 3]; 3]) -> Option<Self> {
         let column = |k: usize| vec3(rows[0][k], rows[1][k], rows[2][k]);
         let z = column(2).unit()?;
@@ -231,7 +231,7 @@ impl Rotation<f64> {
         axis.scaled(std::f64::consts::PI)
     }
 
-    /// The same constants as another number type.
+    /// This value in another number type, as constants.
     #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Rotation<T> {
         Rotation {

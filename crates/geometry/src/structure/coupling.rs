@@ -16,18 +16,18 @@ pub struct LinearForm {
     pub angles: Vec<(usize, f64)>,
     /// Slides, with the factor of each travel.
     pub slides: Vec<(usize, f64)>,
-    /// What is added, rad or m.
+    /// The constant of the coupling, rad or m.
     pub constant: f64,
 }
 
 /// A coupling in terms of frames and slides.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CouplingEquation {
-    /// What it comes from.
+    /// Its owner: a joint, or an actuator that drives a length.
     pub owner: Owner,
     /// The sum on its left, less its constant.
     pub dependent: LinearForm,
-    /// The law and its argument, where there is one.
+    /// The law and its argument, if there is a law.
     pub law: Option<(Law, LinearForm)>,
     /// Whether it is in rad rather than in m.
     pub angular: bool,
@@ -167,7 +167,7 @@ impl CouplingEquation {
         value
     }
 
-    /// The variable of its law, and the end of the law's table that it is beyond, where it is.
+    /// The variable of its law, and the end of the law's table that the variable exceeds, if it does.
     pub(crate) fn off_table<T: Scalar>(&self, angle: &[T], slide: &[T]) -> Option<[f64; 2]> {
         let (law, independent) = self.law.as_ref()?;
         let x = independent.value(angle, slide).value();
@@ -179,7 +179,7 @@ impl CouplingEquation {
         matches!(self.law, Some((Law::Spline(_), _)))
     }
 
-    /// The slope of the law, and its own derivative: 0 where there is no law.
+    /// The slope of the law, and its own derivative: 0 without a law.
     fn slopes<T: Scalar>(&self, angle: &[T], slide: &[T]) -> (T, T) {
         let Some((law, independent)) = &self.law else {
             return (T::from_f64(0.0), T::from_f64(0.0));
@@ -192,7 +192,7 @@ impl CouplingEquation {
         )
     }
 
-    /// The slope of the law: 0 where there is none.
+    /// The slope of the law: 0 without a law.
     pub(crate) fn slope<T: Scalar>(&self, angle: &[T], slide: &[T]) -> T {
         self.slopes(angle, slide).0
     }

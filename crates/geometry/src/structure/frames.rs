@@ -8,7 +8,7 @@ use crate::plane::Vec2;
 use crate::structure::lower::{ActuatedCoordinate, KinematicPair, Lowered, Owner, PairKind};
 use std::collections::HashSet;
 
-/// What determines the rotation of a frame.
+/// The source of the rotation of a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RotationSource {
     /// The ground's frame: it does not rotate.
@@ -29,7 +29,7 @@ pub enum RotationSource {
 /// A frame: an orientation that one or more bodies share, up to constant offsets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
-    /// What determines its rotation.
+    /// The source of its rotation.
     pub rotation_source: RotationSource,
     /// Its class; class 0 is the ground's, where every angle is known.
     pub orientation_class: usize,
@@ -56,7 +56,7 @@ impl Orientation {
     }
 }
 
-/// What fixes the angle between two bodies of one class.
+/// The constraint that fixes the angle between two bodies of one class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum AngularConstraintSource {
     /// A slide or a weld, by its moment: index of the pair.
@@ -72,7 +72,7 @@ pub struct AngularConstraint {
     pub body: usize,
     /// The other body, which comes earlier.
     pub reference_body: usize,
-    /// What fixes or prescribes the angle.
+    /// The constraint that fixes or prescribes the angle.
     pub source: AngularConstraintSource,
     /// Whether `body` is the first-named of the two.
     pub body_is_first: bool,

@@ -1,7 +1,6 @@
 //! Lowering: every joint as kinematic pairs (pins, slides and welds) and couplings between angles and travels, so that
-//! the structure knows no other kinds. What a joint needs for that is added as massless bodies: a slot is
-//! a block that slides on one body and is pinned to the other; a length is a line pinned to one
-//! point on which a block slides that is pinned to the other.
+//! the structure has no other kinds. Massless bodies are added as needed: a slot is a block that slides on one body and
+//! is pinned to the other; a length is a line pinned to one point on which a block slides that is pinned to the other.
 
 use crate::error::StructureError;
 use crate::mechanism::{ActuatorId, BodyId, Coordinate, Coupling, JointId, JointKind, Mechanism};
@@ -21,7 +20,7 @@ pub enum Owner {
 /// A pin, a slide or a weld between two bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KinematicPair<C = f64> {
-    /// What it comes from.
+    /// Its owner: a joint or an actuator of the mechanism.
     pub owner: Owner,
     /// The two bodies; an index beyond the mechanism's bodies is an added, massless one.
     pub bodies: [usize; 2],
@@ -89,7 +88,7 @@ impl LoweredCoupling {
     }
 }
 
-/// What an actuator drives.
+/// The coordinate that an actuator drives, after lowering.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum ActuatedCoordinate {
     /// The angle of the second body from the first.
@@ -344,7 +343,7 @@ impl Lowered {
             .push(LoweredCoupling::linear(owner, dependent));
     }
 
-    /// Makes the travel of a pair a coordinate.
+    /// Declares the travel of a pair a coordinate.
     fn make_travel_coordinate(&mut self, pair: usize) {
         if let PairKind::Prismatic {
             travel_is_coordinate,

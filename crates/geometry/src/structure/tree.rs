@@ -1,10 +1,9 @@
 //! The spanning tree of joints from the ground, and the loops that the remaining joints close.
 //!
-//! A spanning tree of joints carries each body from a body that comes earlier. A body's *root*
-//! is its point in the joint that carries it; every other attachment is measured from there, so
-//! nothing depends on where the mechanism or a body's frame stands. A joint outside the tree is a
-//! *loop joint*: its loop closes where the point on the second body, reached through the tree, meets the
-//! point on the first.
+//! A spanning tree of joints carries each body from a body that comes earlier. A body's *root* is its point in the
+//! joint that carries it; every other attachment is measured from there, so nothing depends on the position of the
+//! mechanism or of a body's frame. A joint outside the tree is a *loop joint*: its loop closes where the point on the
+//! second body, reached through the tree, meets the point on the first.
 
 use crate::error::StructureError;
 use crate::plane::Vec2;
@@ -19,7 +18,7 @@ use std::collections::BinaryHeap;
 pub struct FrameVector<C = f64> {
     /// The frame it turns with.
     pub frame: usize,
-    /// Its components in that frame, m (or a unit direction).
+    /// Its components in this frame, m, or those of a unit vector.
     pub local: Vec2<C>,
 }
 
@@ -252,9 +251,9 @@ fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
     if a <= b { [a, b] } else { [b, a] }
 }
 
-/// The vector from one point of a body to another, in its frame. What is left of two points that
-/// coincide to the rounding of their coordinates is nothing: a mechanism drawn far from the origin
-/// has the structure of the same one drawn near it.
+/// The vector from one point of a body to another, in its frame. The vector is zero if the points coincide to the
+/// rounding of their coordinates, so that a mechanism far from the origin has the structure of the same mechanism near
+/// it.
 fn vector_between<C: Constant + Lift<f64>>(
     frames: &Frames,
     body: usize,
@@ -268,7 +267,7 @@ fn vector_between<C: Constant + Lift<f64>>(
     }
 }
 
-/// A sum; nothing where it is no more than the rounding of its parts.
+/// A sum; zero if it is below the rounding of its parts.
 fn rounded_sum<C: Scalar>(a: Vec2<C>, b: Vec2<C>) -> Vec2<C> {
     let sum = a + b;
     let length = |vector: Vec2<C>| vector.values().norm();

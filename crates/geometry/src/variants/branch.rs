@@ -1,4 +1,4 @@
-//! Whether a variant is assembled on the branch of the plan, and whether its actuator turns fully on it: seen from its
+//! Whether a variant is assembled on the branch of the plan, and whether its actuator turns fully on it, judged by its
 //! own poses.
 
 use crate::assembly::initial_guess::InitialGuess;
@@ -33,7 +33,7 @@ impl Plan {
             && !self.lowered.pairs.iter().any(|pair| pair.kind.is_length())
     }
 
-    /// The directions that select the assembly mode of each group; none where travels do.
+    /// The directions that select the assembly mode of each group; `None` if travels do.
     pub fn mode_guess(
         &self,
         mechanism: &Mechanism,

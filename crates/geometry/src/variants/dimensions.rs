@@ -12,7 +12,7 @@ use dwell_numerics::{Constant, Scalar};
 /// rounding of sums.
 const SAME_VECTOR: f64 = 16.0 * f64::EPSILON;
 
-/// The constant vectors of a variant, as they are found one after another.
+/// The constant vectors of a variant, in the order in which they are found.
 struct FoundVectors {
     of_frame: Vec<Option<Vec2>>,
 }
@@ -24,7 +24,7 @@ impl FoundVectors {
         (*known - local).norm() <= SAME_VECTOR * local.norm()
     }
 
-    /// Notes the vectors of a loop. Returns the part on the ground; none where the structure has no place for a vector.
+    /// Notes the vectors of a loop. Returns the part on the ground; `None` if the structure has no place for a vector.
     fn set_loop(&mut self, closure: &LoopClosure, found: &LoopJoint) -> Option<Vec2> {
         let mut fixed = Vec2::ZERO;
         for found in &found.vectors {
@@ -53,7 +53,7 @@ impl FoundVectors {
 }
 
 impl Tree {
-    /// The same tree with the points of other pairs.
+    /// The tree with the points of other pairs.
     fn with_points(&self, lowered: &Lowered, frames: &Frames) -> Self {
         let mut tree = self.clone();
         let mut of_ground = lowered.pairs.iter();
@@ -73,7 +73,7 @@ impl Tree {
 
 impl Plan {
     /// The dimensions of a mechanism of this structure, m, as [`Plan::set_dimensions`] takes them: constant vectors, parts
-    /// of loops on the ground, joint vectors, joint origins and the points of the pairs. None where the mechanism has
+    /// of loops on the ground, joint vectors, joint origins and the points of the pairs. `None` if the mechanism has
     /// another structure: other joints, axes, radii or lengths, or a vector that this structure has no place for.
     pub fn dimensions(&self, mechanism: &Mechanism) -> Option<Vec<f64>> {
         let lowered = Lowered::new(mechanism);
@@ -117,9 +117,9 @@ impl Plan {
 }
 
 impl<C: Constant + Scalar> Plan<C> {
-    /// Takes the dimensions of another mechanism of this structure, as [`Plan::dimensions`] gives them. What the compiler
-    /// found on the poses of the mechanism it compiled (range, limits, near branches, the assembly and stored poses)
-    /// stays as it was.
+    /// Sets the dimensions of another mechanism of this structure, in the order of [`Plan::dimensions`]. The results of
+    /// the compiler on poses of its own mechanism (range, limits, near branches, the assembly and stored poses) are not
+    /// changed.
     pub fn set_dimensions(&mut self, dimensions: &[C]) {
         let mut next = dimensions.chunks_exact(2).map(|v| vec2(v[0], v[1]));
         let mut fill = |to: &mut Vec2<C>| *to = next.next().unwrap_or(*to);

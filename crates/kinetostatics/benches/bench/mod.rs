@@ -1,4 +1,4 @@
-//! What the benchmarks share: subjects that take turns, and the cases of validation/.
+//! Common parts of the benchmarks: subjects that take turns, and the cases of validation/.
 #![allow(dead_code, reason = "no benchmark needs all of it")]
 
 use dwell_geometry::Reaction;
@@ -21,7 +21,7 @@ pub(crate) const GOLDEN_ANGLE: f64 = TAU * 0.618_033_988_749_894_9;
 pub(crate) struct Subject<'a> {
     pub(crate) name: String,
     evaluate: Box<dyn FnMut() + 'a>,
-    /// What each turn took, ns per evaluation.
+    /// Time of each turn, ns per evaluation.
     pub(crate) times: Vec<f64>,
 }
 

@@ -14,7 +14,7 @@ use dwell_numerics::Scalar;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct CompiledLoads {
     pub(crate) loads: Vec<Load>,
-    /// By load: what its magnitude depends on.
+    /// By load: the signals of its magnitude.
     pub(crate) compiled_signals: Vec<Vec<CompiledSignal>>,
     /// By load: where a couple between two bodies acts on each.
     pub(super) couple_points: Vec<[Vec2; 2]>,
@@ -22,7 +22,7 @@ pub(crate) struct CompiledLoads {
     pub(crate) weighted_bodies: Vec<(BodyId, Mass)>,
 }
 
-/// The loads at one state of motion: working memory, and what it holds afterwards.
+/// The loads at one state of motion: working memory, and the results.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadState<T = f64> {
     /// By load: its magnitude F, in the unit of its kind.
@@ -159,7 +159,7 @@ impl CompiledLoads {
         Ok(())
     }
 
-    /// The potential energy of a load, J, where it has one.
+    /// The potential energy of a load, J, if it has one.
     pub(crate) fn potential_energy<T: Scalar>(
         &self,
         load: usize,

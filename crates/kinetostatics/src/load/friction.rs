@@ -32,7 +32,7 @@ pub enum FrictionContact {
     /// The guide of a prismatic joint or slot: the force −µ N sign(v), or −µ N tanh(v/v₀), along it, N the sum of the forces that press
     /// on its ends.
     Guide {
-        /// Distance of its ends, m; zero where it presses at one point.
+        /// Distance of its ends, m; zero for contact at one point.
         length: f64,
     },
     /// In space, the pin of a revolute or cylindrical joint in two bearings: N the sum of the forces in them, a couple µ r N about the axis
@@ -40,7 +40,7 @@ pub enum FrictionContact {
     Bearing {
         /// Radius r of the pin, m.
         radius: f64,
-        /// Distance of the bearings, m; zero where the moment that tilts the pin shall press nothing.
+        /// Distance of the bearings, m; with zero, the tilting moment on the pin causes no friction.
         distance: f64,
     },
 }
@@ -64,7 +64,7 @@ impl Friction {
         fits.then_some(()).ok_or(misfit)
     }
 
-    /// What is wrong with its numbers.
+    /// Checks its numbers; the error describes the fault.
     pub(crate) fn validate_numbers(&self) -> Result<(), &'static str> {
         let sizes = match self.contact {
             FrictionContact::Pin { radius: size } | FrictionContact::Guide { length: size } => {

@@ -34,8 +34,8 @@ impl MagnitudeFunction {
         }
     }
 
-    /// The same with values of a signal, by its index, at which it jumps or has a kink: a motion stops at each, and is integrated on one
-    /// side at a time. What is not finite is left out.
+    /// This function with breakpoints, that is, values of a signal (given by its index) at which it jumps or has a kink. The integration
+    /// of a motion stops at each and treats each side separately. Values that are not finite are ignored.
     #[must_use]
     pub fn with_breakpoints(mut self, signal: usize, values: &[f64]) -> Self {
         let known = self.breakpoints.iter().position(|(i, _)| *i == signal);
@@ -65,7 +65,8 @@ impl MagnitudeFunction {
         eval_by(|at| self.value(at), numbers, values)
     }
 
-    /// The same on pieces that are held, each by a signal's index and its bounds: beyond a bound it keeps the value that it has there.
+    /// Evaluates the function on held pieces, each given by a signal's index and its bounds. Beyond a bound the function keeps its
+    /// value at the bound.
     pub(super) fn eval_held<T: Scalar>(
         &self,
         numbers: &[T],
@@ -105,7 +106,7 @@ fn eval_by<T: Scalar>(value: impl Fn(&[f64]) -> f64, numbers: &[T], values: &[f6
     first_order(value(values), slope, numbers, values)
 }
 
-/// A function in any kind of number: its value, plus its slopes times what each variable holds beside its plain
+/// A function in any number type: its value, plus its slopes times the difference of each variable from its plain
 /// value. That is exact to first order, as a dual number is.
 pub(super) fn first_order<T: Scalar>(
     value: f64,

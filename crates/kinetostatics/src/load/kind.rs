@@ -1,4 +1,4 @@
-//! The kind of a load: where it acts, and by which [`Strength`] its force follows from its magnitude. One type for the plane and for
+//! The kind of a load: its place, and the [`Strength`] law that gives its force from its magnitude. One type serves the plane and
 //! [space](crate::space), which differ in vectors and coordinates.
 
 use super::strength::{LoadSymbol, Strength};
@@ -10,14 +10,14 @@ use std::fmt::Debug;
 /// A direction in the axes of the ground or of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Direction<V = Vec2> {
-    /// In those of the ground.
+    /// In the axes of the ground.
     Ground(V),
-    /// In those of the body that the load acts on, and turning with it.
+    /// In the axes of the body on which the load acts, and turning with it.
     Body(V),
 }
 
 impl<V> Direction<V> {
-    /// Its components, in whichever axes.
+    /// Its components in its own axes.
     pub fn vector(self) -> V {
         match self {
             Self::Ground(vector) | Self::Body(vector) => vector,
@@ -25,7 +25,8 @@ impl<V> Direction<V> {
     }
 }
 
-/// Where a load acts, and what its magnitude F means: with vectors `V`, coordinates `C` and what is special to the plane or to space, `S`.
+/// The place of a load, and the meaning of its magnitude F, with vectors `V`, coordinates `C`, and the kinds `S` that exist only in the
+/// plane or only in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum AnyLoadKind<V, C, S> {
     /// Weight of every body: F is the acceleration of gravity, m/s², along this unit vector of the ground.
@@ -51,7 +52,7 @@ pub enum AnyLoadKind<V, C, S> {
         /// The point in its frame, m.
         point: V,
     },
-    /// What there is in the plane or in space alone.
+    /// A kind that exists only in the plane or only in space.
     Special(S),
 }
 
@@ -62,9 +63,9 @@ pub type LoadKind = AnyLoadKind<Vec2, CoordinateFunction, Mesh>;
 pub trait LoadCoordinate: Copy {
     /// A point of a body.
     type Point: Copy;
-    /// What has a relative angle: two bodies in the plane, a joint in space.
+    /// The parts with a relative angle: two bodies in the plane, a joint in space.
     type Turn;
-    /// What has a travel.
+    /// The part with a travel.
     type Slide;
 
     /// The distance of two points.
@@ -77,23 +78,23 @@ pub trait LoadCoordinate: Copy {
     fn is_angle(self) -> bool;
     /// The points whose distance it is, if it is one.
     fn ends(self) -> Option<([BodyId; 2], [Self::Point; 2])>;
-    /// What a positive force or moment of this law along it does.
+    /// The effect of a positive force or moment of this law along it.
     fn meaning(self, law: Strength) -> &'static str;
-    /// What a load of this law along it is, by the names of bodies and joints.
+    /// A description of a load of this law along it, with the names of bodies and joints.
     fn label(self, law: Strength, names: &LoadNames<'_>) -> String;
 }
 
 /// The names of bodies and joints, in their order.
 #[derive(Debug, Clone)]
 pub struct LoadNames<'a> {
-    /// Of the bodies.
+    /// Names of the bodies.
     pub bodies: Vec<&'a str>,
-    /// Of the joints.
+    /// Names of the joints.
     pub joints: Vec<&'a str>,
 }
 
 impl LoadNames<'_> {
-    /// What acts between two bodies.
+    /// The text for an action between two bodies.
     pub(crate) fn between(&self, what: &str, [a, b]: [BodyId; 2]) -> String {
         format!(
             "{what} between {} and {}",
@@ -101,13 +102,13 @@ impl LoadNames<'_> {
         )
     }
 
-    /// What the first of two bodies exerts on the second.
+    /// The text for an action of the first of two bodies on the second.
     pub(crate) fn on_second(&self, what: &str, [a, b]: [BodyId; 2]) -> String {
         format!("{what} of {} on {}", self.bodies[a.0], self.bodies[b.0])
     }
 }
 
-/// What the force of a load along the line of two points is.
+/// The description of a force along the line through two points.
 pub(crate) const BETWEEN_POINTS: &str = "force between the points; positive pushes them apart";
 
 impl LoadCoordinate for CoordinateFunction {
@@ -159,14 +160,14 @@ impl LoadCoordinate for CoordinateFunction {
 
 /// A kind of load that there is in the plane or in space alone.
 pub trait SpecialKind {
-    /// What a positive force or moment of it does; none where it has no column of its own.
+    /// The effect of a positive force or moment of it; `None` if it has no column of its own.
     const MEANING: Option<&'static str>;
     /// Whether it is a couple.
     const IS_COUPLE: bool;
     /// Whether it can do work.
     const DOES_WORK: bool;
 
-    /// What it is, by the names of bodies and joints.
+    /// A description with the names of bodies and joints.
     fn label(&self, names: &LoadNames<'_>) -> String;
 }
 
@@ -188,8 +189,8 @@ impl<V, C: LoadCoordinate<Point = V>, S> AnyLoadKind<V, C, S> {
         Self::Along(C::angle(of), Strength::Direct)
     }
 
-    /// A torsional spring: F is its stiffness, N·m/rad; couple −F (angle − free) of the first body on the second. In the plane the whole
-    /// turns of the angle are those of [`Model::with_loads`](crate::Model::with_loads).
+    /// A torsional spring: F is its stiffness, N·m/rad; couple −F (angle − free) of the first body on the second. In the plane,
+    /// [`Model::with_loads`](crate::Model::with_loads) describes how whole revolutions of the angle are counted.
     pub fn torsion_spring(of: C::Turn, free_angle: f64) -> Self {
         Self::Along(C::angle(of), Strength::Elastic { free: free_angle })
     }
@@ -231,7 +232,7 @@ impl<V, C: LoadCoordinate<Point = V>, S> AnyLoadKind<V, C, S> {
     }
 }
 
-/// What a kind of load is, in the plane or in space.
+/// The properties of a kind of load, in the plane or in space.
 pub trait LoadShape: Debug + Copy + PartialEq + Send + Sync + 'static {
     /// Its law.
     fn strength(&self) -> Strength;
@@ -244,10 +245,10 @@ pub trait LoadShape: Debug + Copy + PartialEq + Send + Sync + 'static {
     /// Whether it has a potential where its magnitude is constant: gravity, springs and forces of constant direction.
     fn has_potential(&self) -> bool;
 
-    /// What a positive force or moment of it does; none of weight and where it has no column.
+    /// The effect of a positive force or moment of it; `None` for weight, and if it has no column.
     fn meaning(&self) -> Option<&'static str>;
 
-    /// What it is, by the names of bodies and joints.
+    /// A description with the names of bodies and joints.
     fn label(&self, names: &LoadNames<'_>) -> String;
 
     /// The unit of its force or moment.
@@ -271,7 +272,7 @@ pub trait LoadShape: Debug + Copy + PartialEq + Send + Sync + 'static {
         }
     }
 
-    /// The work of a unit of it over the size (m) of a mechanism of this mass (kg), or a turn of one radian; zero where it resists. m, kg m, m²
+    /// The work of a unit of it over the size (m) of a mechanism of this mass (kg), or over one radian; zero for resistances. m, kg m, m²
     /// or 1.
     fn work_lever(&self, size: f64, mass: f64) -> f64 {
         match (self.is_gravity(), self.is_couple()) {
@@ -359,7 +360,7 @@ impl<V, C, S> AnyLoadKind<V, C, S> {
 }
 
 impl<V, C: LoadCoordinate<Point = V>, S> AnyLoadKind<V, C, S> {
-    /// What is drawn between two points of bodies, and these.
+    /// The symbol that is drawn between two points of bodies, with these bodies and points.
     pub fn symbol(&self) -> Option<(LoadSymbol, [BodyId; 2], [V; 2])> {
         let Self::Along(coordinate, strength) = self else {
             return None;

@@ -18,7 +18,7 @@ pub struct Mesh {
     pub bodies: [BodyId; 2],
     /// The centres of the gears, or a point of the rack's pitch line and the pinion's centre, m.
     pub points: [Vec2; 2],
-    /// Where the pitch point lies.
+    /// The pitch lines, which determine the pitch point.
     pub pitch: PitchLines,
 }
 
@@ -103,7 +103,7 @@ impl Mesh {
     }
 
     /// From the second body's centre to the pitch point, m, and the unit vector along which the teeth of the first
-    /// body push the second away; none where the centres of two gears coincide.
+    /// body push the second away; `None` if the centres of two gears coincide.
     pub(crate) fn pitch_point<T: Scalar>(&self, states: &BodyStates<T>) -> Option<[Vec2<T>; 2]> {
         let Self { bodies, points, .. } = *self;
         match self.pitch {

@@ -76,7 +76,7 @@ impl<C> Magnitude<C> {
         self.eval_free(numbers, values)
     }
 
-    /// The magnitude where nothing is held.
+    /// The magnitude without held pieces.
     #[inline]
     fn eval_free<T: Scalar>(&self, numbers: &[T], values: &[f64]) -> T {
         match (self, numbers) {
@@ -98,8 +98,8 @@ impl<C> Magnitude<C> {
         }
     }
 
-    /// The magnitude on the pieces that are held, of what can be held. Apart, so that the usual evaluation stays small
-    /// enough to be inlined.
+    /// The magnitude on held pieces. This is a function of its own, so that the usual evaluation stays small enough to
+    /// be inlined.
     #[cold]
     #[inline(never)]
     fn eval_held<T: Scalar>(&self, numbers: &[T], values: &[f64], held: &HeldPieces) -> T {
@@ -151,7 +151,7 @@ impl<C> Magnitude<C> {
         }
     }
 
-    /// Where it switches as coordinates and speeds move.
+    /// Its switches in coordinates and speeds.
     pub fn switches(&self) -> Switches {
         match self {
             Self::Law(Signal::Value(_) | Signal::Velocity(_), law) => Switches::of_law(law),

@@ -1,6 +1,6 @@
-//! Strength laws: what the magnitude F of a load means, in the plane and in space.
+//! Strength laws: the meaning of the magnitude F of a load, in the plane and in space.
 //!
-//! A load along a coordinate s, or against the velocity of a point, is a shape (where it acts) times a strength law:
+//! A load along a coordinate s, or against the velocity of a point, is a shape (its place) times a strength law:
 //!
 //! | law | force along s | F is |
 //! |---|---|---|
@@ -16,7 +16,7 @@ use dwell_geometry::space::Vec3;
 use dwell_numerics::Scalar;
 use std::ops::{Add, Neg};
 
-/// What the magnitude F of a load means.
+/// The meaning of the magnitude F of a load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Strength {
     /// F is the force, N, or the couple, N·m.
@@ -35,17 +35,17 @@ pub enum Strength {
 /// How a law is named and written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StrengthWords {
-    /// What its magnitude is called.
+    /// Name of its magnitude.
     pub magnitude: &'static str,
     /// The units of the magnitude, of a force and of a couple.
     pub units: [&'static str; 2],
-    /// What a load of this law is called that is a force, and one that is a couple.
+    /// Names of a load of this law: as a force, and as a couple.
     pub load: [&'static str; 2],
-    /// Why its magnitude must not be negative; none where it may.
+    /// Why its magnitude must not be negative; `None` if it may.
     pub not_negative: Option<&'static str>,
 }
 
-/// What is drawn between the two ends of a load.
+/// The symbol between the two ends of a load.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LoadSymbol {
     /// A spring.
@@ -111,8 +111,9 @@ impl Strength {
         }
     }
 
-    /// The law and the magnitude of a unit of the load, whose response tables hold: of a damper, a unit of its resistance, which does not
-    /// depend on the velocity; of a drag, that of coefficient 1 at the velocities of the state, since c |v| v has no direction at rest.
+    /// The law and the magnitude of a unit of the load, whose response tables contain. For a damper it is a unit of its resistance, which
+    /// does not depend on the velocity. For a drag it is coefficient 1 at the velocities of the state, because c |v| v has no direction
+    /// at rest.
     pub fn unit(self) -> (Self, f64) {
         match self {
             Self::Direct | Self::Elastic { .. } | Self::Quadratic => (self, 1.0),
@@ -120,7 +121,7 @@ impl Strength {
         }
     }
 
-    /// What multiplies w, the generalised force of a [unit](Self::unit), at the speed q̇ of a mechanism of one coordinate.
+    /// The factor of w, the generalised force of a [unit](Self::unit), at the speed q̇ of a mechanism of one coordinate.
     #[inline]
     pub fn on_response<T: Scalar>(self, f: T, w: T, q_dot: T) -> T {
         match self {
@@ -131,7 +132,7 @@ impl Strength {
         }
     }
 
-    /// Its length or angle without force, if it has one.
+    /// Its length (m) or angle (rad) without force, if it has one.
     pub fn free(self) -> Option<f64> {
         match self {
             Self::Elastic { free } => Some(free),
@@ -145,7 +146,8 @@ impl Strength {
             .is_none_or(|free| free.is_finite() && (free >= 0.0 || !is_distance))
     }
 
-    /// The power of the size of a mechanism with which the work of a unit of a force grows; none where it resists.
+    /// The work of a unit of the magnitude over a length: the length for a force, its square for a stiffness, zero for
+    /// resistances.
     pub(crate) fn work_lever(self, length: f64) -> f64 {
         match self {
             Self::Direct => length,
@@ -154,7 +156,7 @@ impl Strength {
         }
     }
 
-    /// What is drawn between its ends.
+    /// The symbol between its ends.
     pub fn symbol(self) -> Option<LoadSymbol> {
         match self {
             Self::Direct => None,
@@ -177,7 +179,7 @@ impl Strength {
         }
     }
 
-    /// The force on the second of two points, along the line from the first; none where they coincide and it needs a direction.
+    /// The force on the second of two points, along the line from the first; `None` if they coincide and it needs a direction.
     #[inline]
     pub(crate) fn force_along_line<T: Scalar, V: LoadVector<T>>(
         self,
@@ -227,9 +229,9 @@ fn absolute<T: Scalar>(square: T) -> T {
 
 /// The line between two points.
 pub(crate) struct Line<V> {
-    /// From the first to the second, m.
+    /// The vector from the first point to the second, m.
     pub(crate) gap: V,
-    /// Its unit vector; none where they coincide.
+    /// Its unit vector; `None` if the points coincide.
     pub(crate) direction: Option<V>,
     /// The rate of the gap, m/s.
     pub(crate) velocity: V,

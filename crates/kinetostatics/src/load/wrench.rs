@@ -1,4 +1,4 @@
-//! Forces and couples on bodies, and those of a load at its two ends.
+//! Forces and couples on bodies, and the forces and couples of a load at its two ends.
 
 use super::{CompiledLoads, Direction, Guide, Line, LoadKind, LoadState, Mesh, Strength, drag};
 use crate::mass::Mass;
@@ -28,7 +28,7 @@ pub struct AppliedWrench<T = f64> {
     pub force: Vec2<T>,
     /// From the body's origin to the point where the force acts, m.
     pub moment_arm: Vec2<T>,
-    /// The couple beside it, N·m.
+    /// The couple, in addition to the force, N·m.
     pub couple: T,
 }
 
@@ -68,7 +68,7 @@ pub(crate) fn on_two_bodies<T: Scalar>(
 }
 
 impl CompiledLoads {
-    /// Adds the wrenches of the `i`th load, taken as of this kind and magnitude `f`; none where it has no direction.
+    /// Adds the wrenches of the `i`th load, taken as of this kind and magnitude `f`; `None` if it has no direction.
     #[inline]
     pub(super) fn add_wrenches<T: Scalar>(
         &self,
@@ -127,7 +127,7 @@ impl CompiledLoads {
         Some(())
     }
 
-    /// The wrenches of the `i`th load along a coordinate; none where it has no direction.
+    /// The wrenches of the `i`th load along a coordinate; `None` if it has no direction.
     #[inline]
     fn along<T: Scalar>(
         &self,

@@ -49,7 +49,7 @@ impl Model {
 }
 
 impl<'a, T: Scalar, M: MachineModel> EvaluatedState<'a, T, M> {
-    /// The positions and velocities alone, for what else is to be evaluated there.
+    /// The positions and velocities alone, for further evaluations there.
     pub fn into_kinematic_state(self) -> KinematicState<'a, T, M> {
         self.state
     }

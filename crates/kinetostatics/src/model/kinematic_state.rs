@@ -42,8 +42,8 @@ impl Model {
         KinematicState::new(self, [q, q_dot], workspace)
     }
 
-    /// Positions and velocities that `set` stores as pose and motion, where they come from elsewhere than
-    /// the coordinates: of a change-point fit.
+    /// A state whose positions and velocities do not follow from the coordinates, as on a change-point fit: `set`
+    /// stores pose and motion.
     #[inline]
     pub fn given_kinematic_state<'a, T: Scalar>(
         &'a self,
@@ -82,13 +82,13 @@ impl<'a, T: Scalar, M: MachineModel> KinematicState<'a, T, M> {
         [value, velocity]
     }
 
-    /// The same with its acceleration, where those of the bodies are known.
+    /// Value, velocity and acceleration of a coordinate. The accelerations of the bodies must be known.
     #[inline]
     pub fn coordinate_motion(&self, coordinate: M::CoordinateFunction) -> [T; 3] {
         self.model.coordinate_motion(coordinate, self.workspace)
     }
 
-    /// Of an angle: whether its whole revolutions are counted.
+    /// Whether the whole revolutions of an angle are counted.
     pub fn counts_revolutions_of(&self, coordinate: M::CoordinateFunction) -> Option<bool> {
         self.model.counts_revolutions(coordinate, self.workspace)
     }
@@ -98,13 +98,13 @@ impl<'a, T: Scalar, M: MachineModel> KinematicState<'a, T, M> {
         self.model.frictions()
     }
 
-    /// Of one of these loads: the force g (N·m or N) that its factor multiplies, at reactions of the model. Of a friction
-    /// that factor is the coefficient of friction.
+    /// The force g (N·m or N) that the factor of one of these loads multiplies, from the reactions of the model. The
+    /// factor of a friction is the coefficient of friction.
     pub fn contact_force(&self, index: usize, reactions: &[T]) -> T {
         self.model.contact_force(index, reactions)
     }
 
-    /// The accelerations of the bodies become those that follow from accelerations of the coordinates, rad/s² or m/s².
+    /// Sets the accelerations of the bodies from those of the coordinates, rad/s² or m/s².
     #[inline]
     pub fn accelerate(&mut self, q_ddot: &[T]) {
         self.model.update_accelerations(q_ddot, self.workspace);
@@ -120,7 +120,7 @@ impl<'a, T: Scalar, M: MachineModel> KinematicState<'a, T, M> {
         Ok(StateWithLoads(self))
     }
 
-    /// Column i of the mass matrix, and a_k,i: q̈ᵢ = 1 (per s²) and nothing else.
+    /// Column i of the mass matrix, and a_k,i: q̈ᵢ = 1 (per s²), all other accelerations and all velocities zero.
     #[inline]
     pub fn mass_matrix_column(&mut self, i: usize, result: &mut InverseDynamics<T>) {
         self.model.mass_matrix_column(i, self.workspace, result);
@@ -147,8 +147,8 @@ impl<M: MachineModel> KinematicState<'_, f64, M> {
         self.model.kinetic_energy(self.workspace)
     }
 
-    /// The potential energy of a load, J; none if it is not [conservative](crate::Load::is_conservative). That of gravity
-    /// and of forces is zero at the ground's origin.
+    /// The potential energy of a load, J; `None` if it is not [conservative](crate::Load::is_conservative). The potential
+    /// energy of gravity and of forces is zero at the ground's origin.
     pub fn potential_energy(&self, load: usize) -> Option<f64> {
         self.model.potential_energy(load, self.workspace)
     }

@@ -8,13 +8,13 @@ use crate::pass::InverseDynamics;
 use dwell_numerics::Scalar;
 
 impl Model {
-    /// The same model under these loads, in place of any it had. They act in [`Model::kinetostatics`] and
-    /// [`Model::statics`] alone: the reduced inertia does not depend on them. The reactions on which their friction
-    /// depends are added to [`Model::reactions`].
+    /// This model under these loads, which replace its own. They act in [`Model::kinetostatics`] and [`Model::statics`]
+    /// alone: the reduced inertia does not depend on them. The reactions on which their friction depends are added to
+    /// [`Model::reactions`].
     ///
-    /// Where they depend on an angle (a torsional spring, a signal of a magnitude), its whole revolutions are counted
-    /// from the initial guess of the assembly, or else from within half a revolution of the other body. Groups
-    /// that [`Model::pruned_for`] left out may come back for that.
+    /// If they depend on an angle (a torsional spring, a signal of a magnitude), its whole revolutions are counted from
+    /// the initial guess of the assembly. Without a guess the angle starts within half a revolution of the other body.
+    /// Groups that [`Model::pruned_for`] left out may be restored for this.
     ///
     /// # Errors
     /// [`LoadError`] when a load does not fit the mechanism, or depends on an angle whose revolutions cannot be

@@ -126,7 +126,7 @@ impl<T: Scalar, M: MachineModel> ForceState<'_, T, M> {
         M::magnitudes(self.0.workspace)
     }
 
-    /// Sets magnitudes of loads of [`Magnitude::External`], and the wrenches anew.
+    /// Sets magnitudes of loads of [`Magnitude::External`], and updates the wrenches.
     ///
     /// # Errors
     /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where the two points of a load coincide.
@@ -146,14 +146,14 @@ impl<T: Scalar, M: MachineModel> ForceState<'_, T, M> {
         self.0.model.load_power(load, self.0.workspace)
     }
 
-    /// The accelerations of the bodies become those of the inverse dynamics.
+    /// Sets the accelerations of the bodies to those of the inverse dynamics.
     #[inline]
     pub fn update_bodies(&mut self) {
         self.0.model.update_bodies(self.0.workspace);
     }
 
-    /// What is known of the loads that depend on reactions, in the order of [`MachineModel::frictions`],
-    /// until the next state of motion.
+    /// Sets the states of the loads that depend on reactions, in the order of [`MachineModel::frictions`], until the
+    /// next state of motion.
     pub fn set_friction_states(&mut self, states: impl Iterator<Item = FrictionState<T>>) {
         for (known, state) in M::friction_states(self.0.workspace).iter_mut().zip(states) {
             *known = state;
@@ -161,9 +161,9 @@ impl<T: Scalar, M: MachineModel> ForceState<'_, T, M> {
     }
 
     /// Solves for the [loads that depend on reactions](MachineModel::frictions): `frictionless` are the reactions
-    /// without them, and `responses[j]` what a unit of load j adds to each (its
-    /// [response](KinematicState::unit_load_response), with that of the free coordinates' accelerations). They
-    /// become the magnitudes of their loads, and the loads' wrenches are updated.
+    /// without them, and `responses[j]` the contribution of a unit of load j to each (its
+    /// [response](KinematicState::unit_load_response), including the accelerations of the free coordinates). The
+    /// solution sets the magnitudes of these loads and updates their wrenches.
     ///
     /// # Errors
     /// [`KinetostaticsError::SelfLocking`](crate::KinetostaticsError::SelfLocking) where there is no unique solution.

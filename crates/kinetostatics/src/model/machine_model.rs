@@ -1,5 +1,5 @@
-//! What a machine needs of the model of a mechanism, in the plane or in space: the [stages](super::stages) and the
-//! equations of motion above them know a model by this alone.
+//! The trait of a mechanism's model, in the plane or in space. The [stages](super::stages) and the equations of motion
+//! use a model only through this trait.
 
 use crate::drive::Drive;
 use crate::error::{LoadError, PositionResult, Result};
@@ -16,7 +16,7 @@ use std::fmt::Debug;
 pub trait MachineModel: ReducibleModel + Debug + Clone + PartialEq + Send + 'static {
     /// How a coordinate of the mechanism is described.
     type Coordinate: Debug + Copy + PartialEq + Send + Sync + 'static;
-    /// The same of a compiled mechanism.
+    /// A coordinate of a compiled mechanism.
     type CoordinateFunction: Debug + Copy + PartialEq + Send + Sync + 'static;
     /// The kind of a load.
     type LoadKind: LoadShape;
@@ -30,7 +30,7 @@ pub trait MachineModel: ReducibleModel + Debug + Clone + PartialEq + Send + 'sta
     /// The mass of all bodies, kg.
     fn total_mass(&self) -> f64;
 
-    /// The same without reactions that nothing depends on.
+    /// This model without the reactions on which nothing depends.
     #[must_use]
     fn without_reactions(&self) -> Self;
 
@@ -43,7 +43,7 @@ pub trait MachineModel: ReducibleModel + Debug + Clone + PartialEq + Send + 'sta
         coordinate: Self::Coordinate,
     ) -> Result<Self::CoordinateFunction, &'static str>;
 
-    /// The same under these loads, instead of any before.
+    /// This model under these loads, which replace its own.
     ///
     /// # Errors
     /// [`LoadError`] when a load does not fit the mechanism.
@@ -95,27 +95,27 @@ pub trait MachineModel: ReducibleModel + Debug + Clone + PartialEq + Send + 'sta
         workspace: &Self::Workspace<T>,
     ) -> [T; 3];
 
-    /// Of an angle: whether its whole revolutions are counted.
+    /// Whether the whole revolutions of an angle are counted.
     fn counts_revolutions<T: Scalar>(
         &self,
         of: Self::CoordinateFunction,
         workspace: &Self::Workspace<T>,
     ) -> Option<bool>;
 
-    /// The accelerations of the motion by those of the coordinates.
+    /// Sets the accelerations of the motion from those of the coordinates.
     fn set_accelerations<T: Scalar>(&self, q_ddot: &[T], workspace: &mut Self::Workspace<T>);
 
-    /// The accelerations of the bodies by those of the motion, which are those of the last inverse dynamics.
+    /// Sets the accelerations of the bodies from those of the motion, that is, of the last inverse dynamics.
     fn update_bodies<T: Scalar>(&self, workspace: &mut Self::Workspace<T>);
 
-    /// The accelerations of the bodies by those of the coordinates.
+    /// Sets the accelerations of the bodies from those of the coordinates.
     #[inline]
     fn update_accelerations<T: Scalar>(&self, q_ddot: &[T], workspace: &mut Self::Workspace<T>) {
         self.set_accelerations(q_ddot, workspace);
         self.update_bodies(workspace);
     }
 
-    /// The magnitudes of the loads at time `t` (s), those of frictions and external ones zero.
+    /// Computes the magnitudes of the loads at time `t` (s); frictions and external magnitudes are set to zero.
     ///
     /// # Errors
     /// [`MagnitudeNotFinite`](crate::KinetostaticsError::MagnitudeNotFinite).
@@ -128,7 +128,7 @@ pub trait MachineModel: ReducibleModel + Debug + Clone + PartialEq + Send + 'sta
     /// The magnitudes of the loads.
     fn magnitudes<T: Scalar>(workspace: &Self::Workspace<T>) -> &[T];
 
-    /// The same, to be set.
+    /// The magnitudes, mutable.
     fn magnitudes_mut<T: Scalar>(workspace: &mut Self::Workspace<T>) -> &mut [T];
 
     /// A magnitude of the signals of a load at time `t` (s).
@@ -189,10 +189,10 @@ pub trait MachineModel: ReducibleModel + Debug + Clone + PartialEq + Send + 'sta
     /// The potential energy of a load, J; none if it is not conservative.
     fn potential_energy(&self, load: usize, workspace: &Self::Workspace<f64>) -> Option<f64>;
 
-    /// Of a load that depends on reactions: the force that its factor multiplies, N·m or N.
+    /// The force that the factor of a load that depends on reactions multiplies, N·m or N.
     fn contact_force<T: Scalar>(&self, index: usize, reactions: &[T]) -> T;
 
-    /// What is known of the loads that depend on reactions.
+    /// The states of the loads that depend on reactions.
     fn friction_states<T: Scalar>(workspace: &mut Self::Workspace<T>) -> &mut [FrictionState<T>];
 
     /// Memory for the responses to a unit of each of them.
@@ -200,7 +200,8 @@ pub trait MachineModel: ReducibleModel + Debug + Clone + PartialEq + Send + 'sta
         workspace: &mut Self::Workspace<T>,
     ) -> &mut Vec<InverseDynamics<T>>;
 
-    /// Solves for the loads that depend on reactions, as [`ForceState::solve_friction`](super::ForceState::solve_friction) says.
+    /// Solves for the loads that depend on reactions, as described at
+    /// [`ForceState::solve_friction`](super::ForceState::solve_friction).
     ///
     /// # Errors
     /// [`SelfLocking`](crate::KinetostaticsError::SelfLocking).

@@ -7,7 +7,7 @@ use dwell_geometry::{AssemblyConfiguration, BodyId, Plan};
 use std::f64::consts::TAU;
 
 impl Model {
-    /// Compiles the plan anew if it does not count the revolutions of the bodies on whose angles the loads depend. The
+    /// Compiles the plan again if it does not count the revolutions of the bodies on whose angles the loads depend. The
     /// plan's structure depends on the mechanism alone, so the rest of the model stays valid.
     pub(crate) fn count_load_angles(&mut self) -> Result<(), LoadError> {
         let angle_pairs: Vec<Vec<[BodyId; 2]>> =
@@ -31,7 +31,7 @@ impl Model {
     }
 
     /// The assembly with an initial angle for each body of these pairs: nearest to its own initial guess, or else
-    /// within half a revolution of the other's; none where there is no pose.
+    /// within half a revolution of the other's; `None` if there is no pose.
     fn assembly_with_angles(&self, pairs: &[[BodyId; 2]]) -> Option<AssemblyConfiguration> {
         let mut assembly = self.assembly.clone();
         let plan = self.plan();

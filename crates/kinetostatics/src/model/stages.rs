@@ -1,4 +1,4 @@
-//! The stages of an evaluation. Each borrows the model and the workspace, says what is known, and leads to the next:
+//! The stages of an evaluation. Each borrows the model and the workspace, represents the known quantities, and leads to the next:
 //!
 //! ```text
 //! Model::kinematic_state(q, q̇)     → KinematicState   positions and velocities

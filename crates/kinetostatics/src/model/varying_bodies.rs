@@ -6,8 +6,8 @@ use crate::varying_inertia::{FrameInertia, VaryingInertia};
 use dwell_geometry::{ActuatorKind, BodyId};
 
 impl Model {
-    /// The same model with bodies of varying inertia. One that is not known over a whole revolution limits the range of the
-    /// actuator that turns its body from the ground.
+    /// This model with bodies of varying inertia. An inertia that is not given over a whole revolution limits the range of
+    /// the actuator that turns its body from the ground.
     ///
     /// # Errors
     /// [`ModelError::VaryingInertia`]: no such moving body, an inertia of zero or less, or one over part of a revolution of

@@ -8,7 +8,7 @@ use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{Motion, Plan, Pose};
 use dwell_numerics::Scalar;
 
-/// Working memory for evaluations of a model in one thread. What it holds is read through the [stages](super::stages)
+/// Working memory for evaluations of a model in one thread. Its contents are read through the [stages](super::stages)
 /// of an evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Workspace<T> {

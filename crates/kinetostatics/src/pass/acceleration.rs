@@ -28,7 +28,7 @@ pub(crate) struct UnitMotions<'a, T>(pub(crate) &'a Motion<T>);
 #[derive(Clone, Copy)]
 pub(crate) struct UnitAcceleration<'a, T>(pub(crate) &'a Motion<T>);
 
-/// One pass in which nothing moves.
+/// A pass at rest.
 #[derive(Clone, Copy)]
 pub(crate) struct AtRest;
 

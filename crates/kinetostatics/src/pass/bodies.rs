@@ -21,18 +21,18 @@ pub(crate) struct InertialBody<C = f64> {
     pub(crate) fixed_origin: bool,
 }
 
-/// A body whose origin moves, with what its inertia force depends on.
+/// A body whose origin moves, with the data of its inertia force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct AcceleratedBody<C = f64> {
     pub(crate) moving_body: usize,
     pub(crate) frame: usize,
-    /// The accelerated body that carries it; none where the origin of its carrier is fixed.
+    /// The accelerated body that carries it; `None` if the origin of its carrier is fixed.
     pub(crate) parent: Option<usize>,
     /// The vector from its carrier's origin to its joint, with the frame that turns it.
     pub(crate) joint_vector: Option<(usize, usize)>,
     /// The slide that carries it, and the index of its direction.
     pub(crate) slide: Option<(usize, usize)>,
-    /// Of the body alone, kg.
+    /// Mass of the body alone, kg.
     pub(crate) mass: C,
     /// First moment of the body about its origin, in its frame, kg m; none if zero.
     pub(crate) first_moment: Option<Vec2<C>>,

@@ -199,9 +199,9 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         }
     }
 
-    /// Subtracts the loads from what the mechanism must balance, from the outermost body inwards: moments from
-    /// those on the frames, forces from those on the slides, and (where needed) the load on each body from what
-    /// its joint must exert on it. This includes bodies without mass and bodies at rest.
+    /// Subtracts the loads from the forces that the mechanism must balance, from the outermost body inwards: moments
+    /// from those on the frames, forces from those on the slides, and, if needed, the load on each body from the force
+    /// of its joint. This includes bodies without mass and bodies at rest.
     #[inline(never)]
     fn propagate_loads<C: Constant>(
         &mut self,
@@ -239,7 +239,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
 
     // The rest is for reactions in the tree's joints, and only for the bodies that the requested ones depend on.
 
-    /// Stores each body's own inertia force: the first part of what its joint must exert on it.
+    /// Stores each body's own inertia force: the first part of the force that its joint must exert on it.
     #[inline(always)]
     fn store_inertia_forces<C: Constant>(
         &mut self,
@@ -307,7 +307,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         }
     }
 
-    /// The couples that prismatic joints and actuators exert, where they are needed: each body's moment balance
+    /// The couples that prismatic joints and actuators exert, if they are needed: each body's moment balance
     /// about its origin, before they are transferred.
     // Long because it is inlined whole, and each part needs the same sources.
     #[inline(always)]
@@ -419,7 +419,7 @@ pub struct InverseDynamics<T> {
 }
 
 impl<T: Scalar> InverseDynamics<T> {
-    /// Room for so many actuators and reactions.
+    /// A buffer for the given numbers of actuators and reactions.
     pub(crate) fn buffer(actuators: usize, reactions: usize) -> Self {
         Self {
             tau: vec![T::from_f64(0.0); actuators],

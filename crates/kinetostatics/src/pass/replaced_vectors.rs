@@ -1,9 +1,10 @@
-//! Vectors of the pass that are replaced by those of a variant.
+//! Replacement of vectors of the pass by those of a variant.
 
 use dwell_geometry::{Plan, Vec2};
 use dwell_numerics::{Constant, Scalar};
 
-/// Replaces a vector that the structure may leave out, because it is zero in all variants; false where it is not.
+/// Replaces a vector that the structure may leave out, because it is zero in all variants; returns false if it is not
+/// zero.
 pub(super) fn replace_vector<C: Constant + Scalar>(
     place: &mut Option<Vec2<C>>,
     value: Vec2<C>,

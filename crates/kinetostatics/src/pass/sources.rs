@@ -13,10 +13,10 @@ use dwell_numerics::{Constant, Lift, Scalar, map_array};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LoopJointEnd<C = f64> {
     pub(crate) body: usize,
-    /// Its index among the moving bodies; none for the ground.
+    /// Its index among the moving bodies; `None` for the ground.
     pub(crate) moving_body: Option<usize>,
     pub(crate) frame: usize,
-    /// From the body's origin to the pair's point, in its frame, m; none where they coincide.
+    /// From the body's origin to the pair's point, in its frame, m; `None` if they coincide.
     pub(crate) moment_arm: Option<Vec2<C>>,
 }
 
@@ -52,7 +52,7 @@ enum ReactionSource {
     AngularConstraint { body: usize, sign: f64 },
     /// The multiplier of a coupling.
     Coupling(usize),
-    /// Constrained by other pairs already: this one exerts nothing.
+    /// The pair is redundant: others already constrain its bodies, so it exerts nothing.
     Redundant,
 }
 

@@ -7,11 +7,11 @@ use dwell_geometry::PositionError;
 use dwell_numerics::{Lanes, Scalar};
 use std::ops::Range;
 
-/// Poses side by side where there are no wider registers: two of any x86-64.
+/// Poses side by side without wide registers: two registers of any x86-64.
 pub(crate) const LANES: usize = 4;
 /// Most poses side by side.
 pub(crate) const MAX_LANES: usize = 16;
-/// From so many poses on the rest of a block is evaluated side by side too.
+/// Least number of remaining poses of a block that are evaluated side by side.
 const MIN_POSES: usize = 3;
 /// Smallest block of one thread: its working memory is small in comparison.
 const MIN_BLOCK: usize = 1024;
@@ -29,7 +29,7 @@ pub struct Batch {
     pub a: Vec<f64>,
     /// b in the same order, kg m or kg m².
     pub b: Vec<f64>,
-    /// Where there is no pose: the index of the coordinate, and the reason. The values there are NaN.
+    /// Coordinates without a pose: the index of the coordinate, and the reason. Their values are NaN.
     pub errors: Vec<(usize, PositionError)>,
 }
 
@@ -37,7 +37,7 @@ pub struct Batch {
 type BatchErrors = Vec<(usize, PositionError)>;
 
 impl Batch {
-    /// The coefficients at the `i`th coordinate; NaN where there is no pose.
+    /// The coefficients at the `i`th coordinate; NaN if there is no pose.
     pub fn coefficients(&self, i: usize) -> Coefficients {
         let reactions = self.a.len() / self.m.len().max(1);
         let one = |of: &[f64]| of.get(i).copied().unwrap_or(f64::NAN);
@@ -68,7 +68,7 @@ fn column_widths(reactions: usize) -> [usize; 4] {
 }
 
 impl<'a> BatchSlice<'a> {
-    /// Takes off what follows the first `at` coordinates.
+    /// Splits off the results after the first `at` coordinates.
     fn split_off(&mut self, at: usize, reactions: usize) -> Self {
         let widths = column_widths(reactions);
         let after = |k: usize| self.columns[k].split_off_mut(at * widths[k]..);
@@ -86,7 +86,7 @@ pub(crate) trait LaneScalar: Scalar {
     fn load(numbers: &[f64]) -> Self;
     /// Puts them into the first of some places, at least as many as there are lanes.
     fn store(self, to: &mut [f64]);
-    /// The larger in each lane; where one is no number, either.
+    /// The larger number in each lane; if one of them is NaN, either of the two.
     fn maximum(self, other: Self) -> Self;
     /// By bit, whether the number in the lane exceeds that of another.
     fn lanes_above(self, other: Self) -> u64;
@@ -126,7 +126,7 @@ type ReductionWorkspace<T> = (Workspace<T>, Coefficients<T>);
 
 impl ExactModel {
     /// All coefficients at many coordinates `q` (rad or m), on all threads; `out` is resized, and keeps
-    /// its storage from one batch to the next. Where there is no pose, [`Batch::errors`] says so.
+    /// its storage from one batch to the next. [`Batch::errors`] lists the coordinates without a pose.
     pub fn reduce_batch(&self, q: &[f64], out: &mut Batch) {
         self.model.reduce_batch(q, out);
     }
@@ -216,8 +216,8 @@ impl Model {
         errors
     }
 
-    /// At most as many poses as there are lanes, the last of which stands for those that are missing; false if their
-    /// computations diverge.
+    /// Evaluates at most as many poses as there are lanes; the last pose fills unused lanes. Returns false if the
+    /// computations of the lanes diverge.
     #[inline(always)]
     fn reduce_lanes<S: LaneScalar>(
         &self,

@@ -4,7 +4,7 @@ use super::batch::{LANES, LaneScalar};
 use crate::model::Model;
 use dwell_numerics::Lanes;
 
-/// Work that is written for any number type with lanes. What it inlines is compiled for each of them.
+/// Work that is written for any number type with lanes. Inlined functions are compiled for each of these types.
 pub(crate) trait LaneWork {
     type Output;
 

@@ -2,13 +2,12 @@
 //!
 //! Measured beside [`Lanes`](dwell_numerics::Lanes), which the compiler puts into registers of two (ns a pose of a batch, single-dwell,
 //! four-bar and slider-crank): 59, 41 and 44 with those, 31, 19 and 21 in one register of AVX2, 17, 13 and 14 in two of
-//! AVX-512 (the last two in one session, the first in an earlier one). Two registers also share what it takes to read the plan.
-//! Compiling `Lanes` for AVX2 gains half of its gain at best: sums over several steps it takes apart into pieces of 8, 16 and 8
-//! bytes.
+//! AVX-512 (the last two in one session, the first in an earlier one). Two registers also share the time to read the plan.
+//! Compiling `Lanes` for AVX2 gains half of its gain at best: it splits sums over several steps into pieces of 8, 16 and 8 bytes.
 //!
-//! Unsafe code is in this file and in the symbols of `dwell-live` only. It is sound as long as such numbers exist only on
-//! processors with these registers: the types are private, and [`run`] checks the processor first. No operation is fused
-//! with another, so each number has the bits of a scalar evaluation.
+//! Unsafe code is in this file and in the symbols of `dwell-live` only. It is sound because such numbers exist only on processors with
+//! these registers: the types are private, and [`run`] checks the processor first. No operation is fused with another, so each number
+//! has the bits of a scalar evaluation.
 #![allow(unsafe_code, reason = "the gain measured above")]
 
 use super::LaneWork;

@@ -8,9 +8,9 @@ use dwell_geometry::{BodyId, Vec2};
 /// The power balance at one state: actuators + loads = dE_c/dt, W.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PowerBalance {
-    /// Of the actuators, Σ τ q̇.
+    /// Power of the actuators, Σ τ q̇, W.
     pub actuators: f64,
-    /// Of all loads.
+    /// Power of all loads, W.
     pub loads: f64,
     /// dE_c/dt = Σ m v·a + I ω α.
     pub kinetic_energy_rate: f64,

@@ -27,7 +27,7 @@ type ActedCoordinate = (CoordinateFunction, [Vec2; 2]);
 struct JointEntry {
     joint: Joint,
     reaction_indices: [usize; 3],
-    /// Of a coupling: the dependent and the independent coordinate.
+    /// For a coupling: the dependent and the independent coordinate.
     coupling: Option<[ActedCoordinate; 2]>,
 }
 

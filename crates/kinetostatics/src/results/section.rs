@@ -60,10 +60,10 @@ struct Bar {
 }
 
 impl FreeBodyForces {
-    /// The internal forces of a body along the straight line from one of its points to another
-    /// (in its frame, m), from the result of [`FreeBodyForces::wrenches`]; none for the ground or where
-    /// the points coincide. A force beside the line acts at its foot on the line, one beyond the ends at the
-    /// end. A couple between two bodies acts at the joint between them.
+    /// The internal forces of a body along the straight line from one of its points to another (in its frame, m), from
+    /// the result of [`FreeBodyForces::wrenches`]; `None` for the ground, and if the points coincide. A force off the
+    /// line acts at its projection on the line; a force beyond the ends acts at the end. A couple between two bodies
+    /// acts at the joint between them.
     pub fn link_forces(
         &self,
         evaluated: &EvaluatedState<'_>,
@@ -134,20 +134,19 @@ impl LinkForces {
         self.point_forces.push((station, force, couple));
     }
 
-    /// The internal forces at a station (m from A), just behind the forces there; at the end, and
-    /// beyond it, just before them.
+    /// The internal forces at a station (m from A), just after the forces there; at the end, and beyond it, just before
+    /// them.
     pub fn section_after(&self, station: f64) -> Section {
         self.cut(station, true)
     }
 
-    /// The internal forces at a station (m from A), just before the forces there; at the start just
-    /// behind them.
+    /// The internal forces at a station (m from A), just before the forces there; at the start just after them.
     pub fn section_before(&self, station: f64) -> Section {
         self.cut(station, false)
     }
 
     /// Sections at the ends of `intervals` equal parts (at least one), and on both sides of every
-    /// action that stands between the ends, in the order of their stations.
+    /// action between the ends, in the order of their stations.
     pub fn sections(&self, intervals: usize) -> Vec<Section> {
         let n = intervals.max(1);
         let even = (0..=n).map(|i| self.length * (i as f64 / n as f64));

@@ -86,7 +86,7 @@ impl CompiledKind {
         })
     }
 
-    /// Loads at rest whose forces together span those that it can have in motion.
+    /// Loads at rest whose forces span all forces that the load can exert in motion.
     pub(super) fn directions(&self) -> Vec<(Self, f64)> {
         match *self {
             Self::Drag { body, point } => {
@@ -104,7 +104,8 @@ impl CompiledKind {
         }
     }
 
-    /// The potential energy of a unit of the load at a pose, J: zero at the origin of the ground's frame; none of one that has no potential.
+    /// The potential energy of a unit of the load at a pose, J: zero at the origin of the ground's frame; `None` for a load without a
+    /// potential.
     pub(super) fn potential(
         &self,
         plan: &Plan,
@@ -134,7 +135,7 @@ impl CompiledKind {
         }
     }
 
-    /// Gives the forces and couples on the bodies at magnitude `f` to `add`; none where it has no direction.
+    /// Gives the forces and couples on the bodies at magnitude `f` to `add`; `None` if it has no direction.
     #[inline]
     pub(super) fn act<T: Scalar>(
         &self,
@@ -182,7 +183,7 @@ impl CompiledKind {
     }
 }
 
-/// The forces and couples of a load along a coordinate; none where it has no direction.
+/// The forces and couples of a load along a coordinate; `None` if it has no direction.
 #[inline]
 fn act_along<T: Scalar>(
     coordinate: CoordinateFunction,

@@ -11,7 +11,7 @@ use dwell_geometry::space::{CoordinateFunction, Mechanism, Plan};
 pub(super) struct CompiledLoads {
     pub(super) loads: Vec<Load>,
     pub(super) kinds: Vec<CompiledKind>,
-    /// By load: what its magnitude depends on.
+    /// By load: the signals of its magnitude.
     pub(super) signals: Vec<Vec<Signal<CoordinateFunction>>>,
 }
 

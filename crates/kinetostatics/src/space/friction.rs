@@ -11,9 +11,9 @@
 //! ```
 //!
 //! So in a cylindrical joint the friction is against the velocity of the pin's surface, and its power is −µ tanh(s/v₀) N s. Without a
-//! regularisation speed v₀ it is one force along that velocity, which holds at rest: see `surface_friction`.
-//! Neither the force along the axis of a revolute joint nor the moment about that of a prismatic joint counts: what takes
-//! them has a size of its own.
+//! regularisation speed v₀ it is one force along that velocity, which holds at rest: see `surface_friction`. Neither the force along
+//! the axis of a revolute joint nor the moment about that of a prismatic joint counts: the surfaces that carry them have their own
+//! sizes, which are not described.
 
 use super::load::LoadKind;
 use super::model::{Axes, Component, Model, Reaction};
@@ -42,7 +42,7 @@ pub(super) type JointFriction = DependentLoad<FrictionLaw, 4>;
 pub(super) struct FrictionLaw {
     friction: Friction,
     sliding: Sliding,
-    /// What g is of N: the radius of a couple, m, or 1 of a force.
+    /// The ratio of g to N: the radius for a couple, m, or 1 for a force.
     lever: f64,
     /// Distance of the bearings or of the ends of the guide, m.
     distance: f64,
@@ -53,7 +53,8 @@ pub(super) struct FrictionLaw {
 enum Sliding {
     /// About or along one coordinate.
     Along(CoordinateFunction),
-    /// Of a cylindrical joint: the coordinate of the load and the other one, and what makes a speed of the surface of the rate of each.
+    /// For a cylindrical joint: the coordinate of the load and the other one, with the factors from their rates to speeds of the
+    /// surface.
     Both([CoordinateFunction; 2], [f64; 2]),
 }
 
@@ -204,7 +205,7 @@ fn tanh_quotient<T: Scalar>(square: T) -> T {
 }
 
 impl Model {
-    /// Compiles the frictions among the loads, with the reactions they depend on behind the requested ones.
+    /// Compiles the frictions among the loads, and appends the reactions on which they depend to the requested ones.
     ///
     /// # Errors
     /// [`LoadError`] for a friction that does not fit its joint, or depends on a reaction that redundant constraints leave open.

@@ -1,5 +1,5 @@
-//! Moments that nothing balances: a body between two balls is free to turn about their line, and a load that turns it there would
-//! move it, whatever the actuators do.
+//! Moments that nothing balances. A body between two spherical joints is free to turn about the line through them, and actuators
+//! cannot balance a load that turns it.
 
 use super::model::Model;
 use crate::error::LoadError;
@@ -14,7 +14,7 @@ const ROUNDING: f64 = 1e-9;
 const STEPS: [f64; 4] = [0.0, 0.031, -0.047, 0.089];
 
 impl Model {
-    /// Refuses a load that turns a body about a line about which nothing holds it.
+    /// Rejects loads that turn a body about such a line.
     ///
     /// # Errors
     /// [`LoadError`] for the first of them.

@@ -1,6 +1,6 @@
-//! The reduced coefficients of a mechanism whose bodies all move parallel to one plane, from the planar mechanism that moves as it does:
-//! what lies at the height z above the plane, and the products of inertia with z, do no work there, and what they ask of the joints
-//! follows from the [forces in the plane](super::lifted_reactions).
+//! The reduced coefficients of a mechanism whose bodies all move parallel to one plane, from its planar equivalent. Heights z above the
+//! plane and products of inertia with z do no work, and their effect on the joints follows from the [forces in the
+//! plane](super::lifted_reactions).
 
 use super::lifted_reactions::{LiftedReactions, LiftedWorkspace};
 use super::model::{Model, Workspace};
@@ -21,7 +21,7 @@ const SAME: f64 = 1e-9;
 pub(super) struct InPlane {
     model: PlanarModel,
     lifted: LiftedReactions,
-    /// Of the mechanism in space, which decides where the range ends.
+    /// The limits of the mechanism in space, which decides the range.
     limits: Option<(f64, f64)>,
 }
 
@@ -35,8 +35,8 @@ pub(super) struct InPlaneWorkspace<T> {
 }
 
 impl InPlane {
-    /// That of a model with its reactions; none where it has none, or where the planar branch is not that of the mechanism in space over its
-    /// whole range.
+    /// The planar equivalent of a model with its reactions; `None` if there is none, or if the planar branch is not that of the mechanism
+    /// in space over its whole range.
     pub(super) fn new(of: &Model) -> Option<Self> {
         let equivalent = of.plan().planar_equivalent(of.mechanism())?;
         let masses = of.inner_masses().iter().zip(&equivalent.frames);
@@ -67,8 +67,8 @@ impl InPlane {
         found.agrees(of).then_some(found)
     }
 
-    /// Whether the coefficients are those of the mechanism in space. Reactions that redundant constraints of the plane leave open are not,
-    /// and a model that asks for one is evaluated in space.
+    /// Whether the coefficients are those of the mechanism in space. Reactions that redundant constraints of the plane leave undetermined
+    /// are not; a model that requests one of them is evaluated in space.
     fn agrees(&self, of: &Model) -> bool {
         let (from, width) = self
             .limits
@@ -105,7 +105,7 @@ impl InPlane {
         }
     }
 
-    /// The coefficients at `q`; false where the mechanism in space has to say what is wrong there.
+    /// The coefficients at `q`; returns false if the mechanism in space must be evaluated to report the error.
     #[inline(always)]
     pub(super) fn reduce<T: Scalar>(
         &self,
@@ -138,13 +138,13 @@ impl Model {
         self.in_plane.is_some()
     }
 
-    /// The turns of the planar equivalent, where there is one.
+    /// The turns of the planar equivalent, if there is one.
     pub(super) fn in_plane_turns(&self, workspace: &Workspace<f64>) -> Option<Vec<[f64; 2]>> {
         let (in_plane, of) = self.in_plane.as_ref().zip(workspace.in_plane.as_ref())?;
         Some(in_plane.model.unit_turns(&of.planar))
     }
 
-    /// The reduced coefficients from the planar equivalent; false where there is none, or no pose.
+    /// The reduced coefficients from the planar equivalent; returns false if there is none, or no pose.
     #[inline(always)]
     pub(super) fn reduce_in_plane<T: Scalar>(
         &self,

@@ -1,12 +1,12 @@
 //! The reactions of a mechanism that moves in a plane with the normal n, from those of its planar equivalent. In the plane they are the
-//! same. Across it no inertia force acts, and no joint has to bear one where no rod is oblique to the plane; a body with the
+//! same. Across it no inertia force acts, and, if no rod is oblique to the plane, no joint transmits one; a body with the
 //! products of inertia I_xz, I_yz about its centre, the axes x, y in the plane and the angle θ requires the moment
 //!
 //! ```text
 //! N = θ̈ u + θ̇² n×u,     u = I_xz x + I_yz y                                                              (1)
 //! ```
 //!
-//! A joint j of the tree carries the bodies S. Those joints that close loops bear no moment across the plane
+//! A joint j of the tree carries the bodies S. Joints that close loops transmit no moment across the plane
 //! ([`PlanarEquivalent::carried`]), so that the balance of S about the joint's point on its second body, at the height z_j, is
 //!
 //! ```text
@@ -28,7 +28,7 @@ use dwell_geometry::{
 };
 use dwell_numerics::{Scalar, map_array};
 
-/// Heights that differ by less, relative to the size, are the same: rounding of what a scene states.
+/// Heights that differ by less, relative to the size, are equal: the rounding of numbers in a scene.
 const LEVEL: f64 = 1e-13;
 
 /// A direction in the plane that turns with a body.
@@ -57,10 +57,10 @@ enum Direction {
     Body(BodyDirection, f64),
 }
 
-/// Which part of a joint's reaction is asked for.
+/// The requested part of a joint's reaction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Part {
-    /// The force of this joint, by its place among those that are read.
+    /// The force of this joint, by its index among the forces that are read.
     Force(usize),
     /// The moment of this number.
     Moment(usize),
@@ -71,18 +71,18 @@ enum Part {
 struct LiftedMoment {
     /// The planar reaction that is its part along n, of a joint that bears one.
     along: Option<usize>,
-    /// Its part across the plane, of a joint of the tree.
+    /// Its part across the plane, for a joint of the tree.
     across: Option<AcrossPlane>,
 }
 
-/// What the sum (2) of a joint consists of.
+/// The terms of the sum (2) of a joint.
 #[derive(Debug, Clone, PartialEq)]
 struct AcrossPlane {
     /// ±.
     sign: f64,
     /// Joints by their place among the forces that are read, with h, m.
     forces: Vec<(usize, f64)>,
-    /// Bodies by their place among those with products of inertia.
+    /// Bodies, by their index among those with products of inertia.
     products: Vec<usize>,
     /// h of the actuator's force, m.
     driven: f64,
@@ -125,7 +125,7 @@ impl BodyDirection {
     }
 }
 
-/// What reactions are compiled from.
+/// The data from which reactions are compiled.
 struct Lifting<'a> {
     of: &'a Model,
     equivalent: &'a PlanarEquivalent,
@@ -134,14 +134,14 @@ struct Lifting<'a> {
     plan: &'a Plan,
     /// By joint: its place among the forces that are read.
     places: Vec<Option<usize>>,
-    /// By body: its place among those with products of inertia.
+    /// By body: its index among those with products of inertia.
     products: Vec<Option<usize>>,
     found: LiftedReactions,
 }
 
 impl LiftedReactions {
-    /// Those of a model whose masses are these, in the axes of the plane; none where a rod is oblique to the plane, whose force has a part
-    /// along n at an arm that varies.
+    /// The reactions of a model with these masses, in the axes of the plane; `None` if a rod is oblique to the plane, whose force has a
+    /// part along n at an arm that varies.
     pub(super) fn new(
         of: &Model,
         equivalent: &PlanarEquivalent,
@@ -317,7 +317,7 @@ impl Lifting<'_> {
         self.found.driven = driven.map(|(body, axis)| self.body_direction(body, axis));
     }
 
-    /// The place of a joint's force among those that are read.
+    /// The index of a joint's force among those that are read.
     fn force(&mut self, joint: usize) -> usize {
         if let Some(place) = self.places[joint] {
             return place;
@@ -361,7 +361,7 @@ impl Lifting<'_> {
         self.found.moments.len() - 1
     }
 
-    /// What (2) sums for a joint that carries these bodies.
+    /// The terms of (2) for a joint that carries these bodies.
     fn across(&mut self, joint: usize, carried: &[usize]) -> AcrossPlane {
         let height = |body: usize| self.equivalent.heights[body] + self.masses[body].center.z;
         let joints = &self.of.mechanism().joints;
@@ -387,7 +387,7 @@ impl Lifting<'_> {
         }
     }
 
-    /// The place of a body among those with products of inertia.
+    /// The index of a body among those with products of inertia.
     fn product(&mut self, body: usize) -> Option<usize> {
         let [.., xz, yz] = self.masses[body].inertia;
         if (xz, yz) == (0.0, 0.0) {
@@ -401,7 +401,7 @@ impl Lifting<'_> {
         self.products[body]
     }
 
-    /// The direction of a component, by a body and its axes there of one in the axes of its joint.
+    /// The direction of a component. For a component in the axes of its joint, the axes are given with their body.
     fn direction(&mut self, reaction: &Reaction, axes: Option<&(usize, Rotation)>) -> Direction {
         let (Component::Force(_, k) | Component::Moment(_, k)) = reaction.component;
         match axes {

@@ -10,7 +10,7 @@ use dwell_geometry::{BodyId, JointId};
 /// A load of a mechanism in space: a kind and a magnitude.
 pub type Load = AnyLoad<LoadKind, Coordinate>;
 
-/// The kind of a load in space. Gravity may have no direction where it is zero.
+/// The kind of a load in space. Gravity needs no direction if it is zero.
 pub type LoadKind = AnyLoadKind<Vec3, Coordinate, DirectedCouple>;
 
 /// A direction in the axes of the ground or of a body.
@@ -21,7 +21,7 @@ pub type Direction = load::Direction<Vec3>;
 pub struct DirectedCouple {
     /// The bodies.
     pub bodies: [BodyId; 2],
-    /// Its direction, of the ground or of the first body.
+    /// Its direction, in the axes of the ground or of the first body.
     pub direction: Direction,
 }
 

@@ -1,10 +1,10 @@
-//! A model in space as a machine takes it.
+//! The implementation of the trait `MachineModel` for models in space.
 //!
 //! ```text
 //! M(q) q̈ = Q − c(q, q̇)                                                                              (1)
 //! ```
 //!
-//! Column i of M is what the actuators do at unit acceleration of coordinate i from rest; c − Q is what they do without
+//! Column i of M has the actuator forces at unit acceleration of coordinate i from rest; c − Q has those without
 //! acceleration, under all loads. All passes share the pose and its factors.
 
 use super::action::{BodyAction, CompiledKind};

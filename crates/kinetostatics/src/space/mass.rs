@@ -29,8 +29,8 @@ impl Mass {
         vec3(x.dot(w), y.dot(w), z.dot(w))
     }
 
-    /// Whether it is a mass: not negative, with a tensor that is positive semidefinite but for rounding. That no moment exceeds the sum of the
-    /// two others is not asked, as equations of motion do not need it ([`Mass::excess_moment`]).
+    /// Whether it is a mass: not negative, with a tensor that is positive semidefinite within rounding. A principal moment may exceed the
+    /// sum of the two others, because equations of motion do not need this condition ([`Mass::excess_moment`]).
     pub fn is_valid(&self) -> bool {
         let [xx, yy, zz, xy, xz, yz] = self.inertia;
         let finite = self.mass.is_finite()
@@ -69,8 +69,8 @@ impl Mass {
         moments
     }
 
-    /// By how much the largest principal moment exceeds the sum of the others, kg m²: of no distribution of mass it does, as
-    /// I_1 + I_2 − I_3 = 2 ∫ x_3² dm. Not positive, but for rounding, of others.
+    /// The excess of the largest principal moment over the sum of the others, kg m². For a distribution of mass it is not
+    /// positive, except for rounding, because I_1 + I_2 − I_3 = 2 ∫ x_3² dm.
     pub fn excess_moment(&self) -> f64 {
         let [one, two, largest] = self.principal_moments();
         largest - one - two
@@ -95,7 +95,7 @@ impl Mass {
             || products.iter().any(|p| p.abs() > 1e-9 * scale)
     }
 
-    /// The same with a tensor that refers to these axes of the body.
+    /// This mass, whose tensor refers to these axes of the body, with the tensor in the axes of the body's frame.
     #[must_use]
     pub fn turned(&self, axes: &Rotation) -> Self {
         let image = |k: usize| {
@@ -107,7 +107,7 @@ impl Mass {
         Self { inertia, ..*self }
     }
 
-    /// The same in another frame of the body.
+    /// This mass in another frame of the body.
     pub(super) fn in_frame(&self, frame: &Placement) -> Self {
         let to = |v: Vec3| frame.rotation.apply_inverse(v);
         let image = |k: usize| to(self.angular_momentum(frame.rotation.columns[k]));
@@ -137,7 +137,8 @@ impl Mass {
         wrench
     }
 
-    /// The same in both unit passes: at unit acceleration from rest, where the accelerations are these velocities, and in this motion.
+    /// The required wrenches in both unit passes: at unit acceleration from rest, with accelerations equal to these velocities, and in
+    /// this motion.
     #[inline(always)]
     pub(super) fn required_in_unit_passes<T: Scalar>(
         &self,

@@ -21,18 +21,18 @@ use thiserror::Error;
 /// Axes in which a component is given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Axes {
-    /// Those of the ground.
+    /// The axes of the ground.
     Ground,
-    /// Those of the joint on its first body: normal, axis × normal, axis.
+    /// The axes of the joint on its first body: normal, axis × normal, axis.
     Joint,
 }
 
 /// A component of a reaction, by its number: 0, 1, 2 for x, y, z. The moment is about the joint's point on the second body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Component {
-    /// Of the force, N.
+    /// A component of the force, N.
     Force(Axes, usize),
-    /// Of the moment, N·m.
+    /// A component of the moment, N·m.
     Moment(Axes, usize),
 }
 
@@ -51,7 +51,7 @@ pub enum ModelError {
     /// The mechanism cannot be assembled.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
-    /// Not one mass for each body, or one that no body can have.
+    /// The number of masses differs from that of the bodies, or a mass is invalid.
     #[error("the masses do not fit the bodies")]
     Masses,
     /// A reaction of a joint or component that does not exist.
@@ -83,15 +83,15 @@ pub struct Model {
     requested: usize,
     pub(super) loads: CompiledLoads,
     pub(super) frictions: Vec<JointFriction>,
-    /// Those of cylindrical joints that hold at rest.
+    /// The frictions of cylindrical joints that hold at rest.
     pub(super) surface_frictions: Vec<SurfaceFriction>,
-    /// By actuator: where it was assembled.
+    /// By actuator: its coordinate at assembly, rad or m.
     pub(super) start: Vec<f64>,
-    /// The planar model of its reduced coefficients, where one was looked for and found.
+    /// The planar model for its reduced coefficients, if one was searched for and exists.
     pub(super) in_plane: Option<Arc<InPlane>>,
 }
 
-/// A reaction; of one in the axes of its joint the body and, in its evaluation frame, these axes.
+/// A reaction. If it is in the axes of its joint: the body, and these axes in its evaluation frame.
 pub(super) type CompiledReaction = (Reaction, Option<(usize, Rotation)>);
 
 /// The memory of one thread.
@@ -99,7 +99,7 @@ pub(super) type CompiledReaction = (Reaction, Option<(usize, Rotation)>);
 pub struct Workspace<T = f64> {
     pub(super) pose: Pose<T>,
     pub(super) forces: Forces<T>,
-    /// Those of both unit passes.
+    /// The forces of both unit passes.
     pub(super) unit_forces: Forces<T, 2>,
     /// Speeds or accelerations of the actuators.
     pub(super) rates: Vec<T>,
@@ -133,7 +133,7 @@ impl Model {
         Self::with_plan(mechanism, masses, assembly, reactions, Plan::compile)
     }
 
-    /// The same with every loop solved as one in space, whether it keeps to a plane or not: what tests compare with.
+    /// As [`Model::new`], but solves planar loops as loops in space, too. Tests compare with it.
     ///
     /// # Errors
     /// As [`Model::new`].
@@ -215,7 +215,7 @@ impl Model {
         self.reactions.iter().map(|(reaction, _)| *reaction)
     }
 
-    /// The same with the axes of those in the axes of their joints.
+    /// The compiled reactions, with the axes of those that are in the axes of their joints.
     pub(super) fn compiled_reactions(&self) -> &[CompiledReaction] {
         &self.reactions
     }
@@ -234,7 +234,7 @@ impl Model {
         self.in_plane = None;
     }
 
-    /// The same model with no requested reaction.
+    /// This model without requested reactions.
     #[must_use]
     pub fn without_reactions(&self) -> Self {
         let mut model = Self {
@@ -246,8 +246,8 @@ impl Model {
         model
     }
 
-    /// The same for the responses to a unit of each load alone: no friction is solved, and no reaction is computed for it besides
-    /// the requested ones.
+    /// This model prepared only for the responses to a unit of each load: friction is not solved, and no reactions are computed
+    /// besides the requested ones.
     #[must_use]
     pub fn for_unit_loads(mut self) -> Self {
         self.reactions.truncate(self.requested);
@@ -256,7 +256,7 @@ impl Model {
         self
     }
 
-    /// The same mechanism for its inertia alone: no reaction and no load.
+    /// The model of the inertia alone, without reactions and loads.
     pub(super) fn inertia_only(&self) -> Self {
         let model = Self {
             reactions: Vec::new(),
@@ -269,7 +269,7 @@ impl Model {
         model.reduced_in_plane()
     }
 
-    /// The same, reduced by its planar equivalent if it has one.
+    /// This model, reduced by its planar equivalent if it has one.
     pub(super) fn reduced_in_plane(mut self) -> Self {
         self.in_plane = None;
         self.in_plane = InPlane::new(&self).map(Arc::new);
@@ -295,8 +295,8 @@ impl Model {
         }
     }
 
-    /// By reaction: whether the loads determine it at `q` (rad or m). Redundant constraints leave others open; their values
-    /// here are those of the smallest multipliers and mean nothing.
+    /// By reaction: whether the loads determine it at `q` (rad or m). Redundant constraints leave others undetermined;
+    /// their values are those of the least multipliers and have no meaning.
     ///
     /// # Errors
     /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
@@ -314,8 +314,8 @@ impl Model {
         Ok(determined)
     }
 
-    /// By reaction: whether the loads determine it where the mechanism is assembled and, with one actuator, elsewhere in its range: a
-    /// symmetric start may hide what is open.
+    /// By reaction: whether the loads determine it at assembly and, with one actuator, elsewhere in its range. A symmetric assembly
+    /// may hide an undetermined reaction.
     ///
     /// # Errors
     /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at the start.
@@ -349,7 +349,8 @@ impl Model {
         InverseDynamics::buffer(self.plan.actuators(), self.reactions.len())
     }
 
-    /// What inertia alone requires at coordinates (rad or m), speeds and accelerations: actuators' actions and reactions.
+    /// The actuator forces and reactions that inertia alone requires at coordinates (rad or m), velocities and
+    /// accelerations.
     ///
     /// # Errors
     /// [`PositionError`](dwell_geometry::PositionError) when there is no pose.
@@ -369,7 +370,7 @@ impl Model {
         Ok(())
     }
 
-    /// The actions and reactions of what is required.
+    /// The actuator forces and reactions from the required wrenches.
     pub(super) fn balance<T: Scalar>(
         &self,
         workspace: &mut Workspace<T>,
@@ -384,7 +385,7 @@ impl Model {
         });
     }
 
-    /// The inertia of all bodies as what they require.
+    /// Sets the required wrenches of all bodies from their inertia.
     pub(super) fn require_inertia<T: Scalar>(&self, workspace: &mut Workspace<T>) {
         let Workspace { pose, forces, .. } = workspace;
         forces.required.fill([Wrench::default()]);
@@ -415,7 +416,7 @@ impl Model {
         }
     }
 
-    /// All requested reactions of the last passes: what is done with each, by its number and its value in each pass.
+    /// Calls a function with each requested reaction of the last passes: its number and its value in each pass.
     #[inline(always)]
     pub(super) fn read_all<T: Scalar, const N: usize>(
         &self,

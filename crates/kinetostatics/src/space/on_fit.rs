@@ -1,10 +1,11 @@
-//! A model in space on a fit of its branch across a change point: with velocities alone, where the loops determine no multipliers.
+//! A model in space on a fit of its branch across a change point: from velocities alone, because the loops determine no
+//! multipliers there.
 //!
 //! ```text
 //! m = Σ F₁·v,   ½m′ = Σ F₂·v,   Q = Σ F·v     at q̇ = 1, q̈ = 0                                          (1)
 //! ```
 //!
-//! with F₁ and F₂ what the bodies require in the two unit passes, and F the wrenches of the loads.
+//! with the required wrenches F₁ and F₂ of the bodies in the two unit passes, and the wrenches F of the loads.
 
 use super::model::{Model, Workspace};
 use crate::error::Result;

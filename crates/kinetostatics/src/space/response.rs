@@ -10,13 +10,13 @@ use dwell_geometry::space::Wrench;
 use dwell_numerics::Scalar;
 
 impl Model {
-    /// The potential energy of a unit of a load at the last pose, J; none of one that has no potential.
+    /// The potential energy of a unit of a load at the last pose, J; `None` for a load without a potential.
     pub fn potential_energy(&self, load: &LoadKind, workspace: &Workspace) -> Option<f64> {
         let kind = CompiledKind::new(load, self.mechanism(), self.plan()).ok()?;
         kind.potential(self.plan(), &workspace.pose, self.inner_masses())
     }
 
-    /// The response to a unit of a load, at rest; none where it has no direction.
+    /// The response to a unit of a load, at rest; `None` if it has no direction.
     pub(super) fn respond<T: Scalar>(
         &self,
         kind: &CompiledKind,
@@ -27,7 +27,7 @@ impl Model {
         self.respond_to(&[(&unit, T::from_f64(magnitude))], workspace, result)
     }
 
-    /// The response to some shapes with their magnitudes, at rest; none where one has no direction.
+    /// The response to some shapes with their magnitudes, at rest; `None` if one has no direction.
     pub(super) fn respond_to<T: Scalar>(
         &self,
         parts: &[(&CompiledKind, T)],

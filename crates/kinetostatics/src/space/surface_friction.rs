@@ -7,8 +7,8 @@
 //! slides   F = −µ N sign q̇         holds   |F| ≤ µₛ N
 //! ```
 //!
-//! The part of a friction across ĉ does no virtual work: what holds the mechanism leaves it open. It is zero while the surfaces slide, and is
-//! taken to be zero while they hold, which is the least force that holds.
+//! The part of a friction across ĉ does no virtual work, so equilibrium does not determine it. It is zero while the surfaces slide. While
+//! they stick it is set to zero, which gives the least friction force that holds.
 
 use super::action::CompiledKind;
 use super::load::LoadKind;
@@ -27,12 +27,12 @@ pub(super) struct SurfaceFriction {
     /// A force along the axis and a couple about it, and the coordinates of both.
     parts: [CompiledKind; 2],
     coordinates: [CoordinateFunction; 2],
-    /// Of the pin, m.
+    /// Radius of the pin, m.
     radius: f64,
 }
 
 impl SurfaceFriction {
-    /// Its parts with what each is of a unit of it, in this direction of (1).
+    /// Its parts, each with its fraction of a unit of the friction, in this direction of (1).
     pub(super) fn parts<T: Scalar>(&self, direction: [T; 2]) -> [(&CompiledKind, T); 2] {
         let [along, around] = direction;
         let [force, couple] = &self.parts;
@@ -90,7 +90,7 @@ impl Model {
         joint.is_some_and(|joint| joint.kind == JointKind::Cylindrical)
     }
 
-    /// That of a load, with its direction at the last pose.
+    /// The surface friction of a load, with its direction at the last pose.
     #[inline]
     pub(super) fn surface_friction<T: Scalar>(
         &self,

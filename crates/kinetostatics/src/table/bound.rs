@@ -11,7 +11,7 @@ use dwell_numerics::Dual;
 /// other points was 1.7 times that; where the rounding of the exact model decides most,
 /// next to change points, 3.2 times.
 const SAFETY_FACTOR: f64 = 4.0;
-/// Further points at which the errors are measured, steps of the golden section: so many for each cell, within
+/// Further points at which the errors are measured, at steps of the golden section: a number for each cell, within
 /// these bounds.
 const CHECK_POINTS_PER_CELL: usize = 32;
 const MIN_CHECK_POINTS: usize = 256;

@@ -15,21 +15,19 @@ use std::f64::consts::TAU;
 const END_MARGIN: f64 = 0.02;
 /// A coefficient that a period changes by more than this part of its scale is not periodic.
 const PERIODICITY_TOLERANCE: f64 = 1e-9;
-/// Where they are compared, in parts of a period.
+/// Points of comparison, as fractions of a period.
 const PERIODICITY_POINTS: [f64; 5] = [0.0, 0.131, 0.292, 0.583, 0.877];
 
 /// A function with exact derivatives, from which an [`IntegratedCurve`] is built.
 pub trait SlopeSampler {
     /// The function, half its slope and half its second derivative at a coordinate.
     ///
-    /// # Errors
-    /// [`TableError::Exact`] where it has no value.
+    /// # Errors [`TableError::Exact`] if it has no value.
     fn sample(&mut self, q: f64) -> Result<Inertia>;
 
     /// The function and half its slope at many coordinates.
     ///
-    /// # Errors
-    /// [`TableError::Exact`] where it has no value.
+    /// # Errors [`TableError::Exact`] if it has no value.
     fn sample_many(&mut self, q: &[f64]) -> Result<Vec<[f64; 2]>> {
         let both = |&q: &f64| self.sample(q).map(|at| [at.m, at.half_dm]);
         q.iter().map(both).collect()
@@ -99,8 +97,8 @@ impl TableBuilder {
         })
     }
 
-    /// Columns side by side; `relation` says what the second of two quantities counts as one of the first: 1 if they are of one kind, 0 if they have
-    /// nothing in common.
+    /// Columns side by side. `relation` is the weight of the second of two quantities in the scale of the first: 1 if they are of one kind,
+    /// 0 if they are unrelated.
     ///
     /// # Errors
     /// As [`TableBuilder::curve`].

@@ -49,7 +49,7 @@ pub enum FileError {
     /// An unknown version.
     #[error("a table file of version {found}: only version {VERSION} can be read")]
     Version {
-        /// What the file says.
+        /// The entry of the file.
         found: String,
     },
     /// The last line is missing: the file was cut short.
@@ -58,12 +58,12 @@ pub enum FileError {
     /// The sum in the last line is not that of the lines before.
     #[error("the table file was changed or damaged: its checksum is wrong")]
     ChecksumMismatch,
-    /// A line that is not what the format asks for.
+    /// A line violates the format.
     #[error("line {line} of the table: expected {expected}")]
     Line {
-        /// From one.
+        /// Number of the line, from 1.
         line: usize,
-        /// What should be there.
+        /// The expected contents.
         expected: &'static str,
     },
 }

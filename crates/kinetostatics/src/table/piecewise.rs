@@ -44,7 +44,7 @@ fn cell_and_offset(part: f64) -> (usize, f64) {
 /// Equal cells over a domain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grid {
-    /// Its lower end, rad or m; zero of a full revolution.
+    /// Its lower end, rad or m; zero for a full revolution.
     pub(super) from: f64,
     pub(super) length: f64,
     /// Revolutions after which everything repeats itself; zero if it never does.
@@ -82,7 +82,7 @@ impl Grid {
         }
     }
 
-    /// The same domain with another number of cells.
+    /// This domain with another number of cells.
     pub(super) fn with_cells(self, cells: usize) -> Self {
         Self::new(self.from, self.length, self.revolutions, cells)
     }
@@ -117,7 +117,7 @@ impl Grid {
         }
     }
 
-    /// The same of a coordinate in any kind of number.
+    /// The cell of a coordinate in any number type.
     #[inline]
     fn locate_scalar<T: Scalar>(&self, q: T) -> PositionResult<(usize, T)> {
         let (cell, x) = self.locate(q.value())?;
@@ -126,7 +126,7 @@ impl Grid {
         Ok((cell, x))
     }
 
-    /// The same for a coordinate outside the domain by whole periods or rounding; else an error.
+    /// The cell of a coordinate that is outside the domain by whole periods or rounding; otherwise an error.
     #[inline]
     fn locate_wrapped(&self, q: f64) -> PositionResult<(usize, f64)> {
         let periods = (q * self.per_period - 0.5 + ROUND_TO_NEAREST) - ROUND_TO_NEAREST;
@@ -286,7 +286,7 @@ impl IntegratedCurve {
         Ok(eval_cell(&self.cells[cell], x))
     }
 
-    /// The same with half the second derivative.
+    /// The function, half its slope and half its second derivative.
     ///
     /// # Errors
     /// [`PositionError`] outside the table.
@@ -401,7 +401,7 @@ impl PiecewiseColumns {
         Ok(())
     }
 
-    /// How many cells they have; none where there are no columns.
+    /// The number of cells; zero without columns.
     pub fn cells(&self) -> usize {
         if self.width > 0 { self.grid.cells } else { 0 }
     }

@@ -154,11 +154,12 @@ impl<'a, M: TableModel> ModelSampler<'a, M> {
     }
 }
 
-/// What a coefficient of another sort counts, so that one that vanishes with its whole kind is not measured by its rounding.
+/// The weight of a coefficient of another sort, so that a coefficient that vanishes with its whole kind is not measured by
+/// its rounding.
 const OTHER_SORT: f64 = 1e-3;
 
-/// What another coefficient counts beside one: 1 of the same sort, load and unit; less of those that are made of the same forces, with the size
-/// of the mechanism between a force and a moment; otherwise nothing.
+/// The weight of another coefficient in the scale of one: 1 for the same sort, load and unit; less if both arise from the same forces, with
+/// the size of the mechanism between force and moment; otherwise 0.
 pub(super) fn relation(model: &impl TableModel, one: TableQuantity, other: TableQuantity) -> f64 {
     // Sort, load and whether it is a moment.
     let describe = |quantity: TableQuantity| match quantity {

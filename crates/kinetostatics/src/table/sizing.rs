@@ -1,8 +1,8 @@
-//! How fine a table must be, from how fast the coefficients of its functions fall.
+//! The number of cells of a table, from the decay of the coefficients of its functions.
 //!
-//! Over a full turn the coefficients are Fourier's, over a limited extent Chebyshev's: with
-//! q = middle + half cos θ these are Fourier's again, of an even function of θ. Where they have fallen to
-//! the accuracy at the K-th, the nearest singularity is
+//! Over a full turn the coefficients are Fourier's, over a limited extent Chebyshev's: with q = middle + half cos θ
+//! these are Fourier's again, of an even function of θ. If they have fallen to the accuracy at the K-th, the nearest
+//! singularity is
 //!
 //! ```text
 //! full turn    σ = ln(1/accuracy) / K · period/2π   beside the real axis            (1)
@@ -22,14 +22,14 @@ const MIN_SAMPLES: usize = 64;
 const MAX_SAMPLES: usize = 16_384;
 /// Fewest cells.
 pub(super) const MIN_CELLS: usize = 4;
-/// Part of the largest of its kind below which a coefficient is measured by that part: what it is
-/// made of cancels, and its rounding is that of its kind.
+/// Least scale of a coefficient, relative to the largest of its kind: in a smaller coefficient terms cancel, and its
+/// rounding error is that of its kind.
 const MIN_RELATIVE_SCALE: f64 = 1e-3;
 
-/// What a function of several values gives at many coordinates, one row each.
+/// The values of a function at many coordinates, one row for each.
 pub(super) type RowSampler<'a> = dyn FnMut(&[f64]) -> Result<Vec<Vec<f64>>> + 'a;
 
-/// What the values of a table are measured by, and how many cells their coefficients ask for.
+/// The scales of the values of a table, and the number of cells that their coefficients require.
 pub(super) struct Sizing {
     /// By value: the largest met, or a thousandth of the largest of its kind.
     pub(super) scales: Vec<f64>,
@@ -68,7 +68,8 @@ pub(super) fn estimate_sizing(
     }
 }
 
-/// Scales from the largest of each value: no less than [`MIN_RELATIVE_SCALE`] of the largest of its kind, and of what others count beside it.
+/// Scales from the largest of each value: at least [`MIN_RELATIVE_SCALE`] of the largest of its kind, and of the weighted largest values of
+/// related quantities.
 pub(super) fn scales(largest: &[f64], relation: &dyn Fn(usize, usize) -> f64) -> Vec<f64> {
     let of_kind = |i: usize| {
         let all = largest.iter().enumerate();
@@ -127,7 +128,7 @@ fn harmonic_magnitudes(samples: &[Vec<f64>], scales: &[f64]) -> Vec<f64> {
     magnitudes
 }
 
-/// The cells that a series of so many terms asks for, by (1) and (2).
+/// The number of cells that a series with this number of harmonics requires, by (1) and (2).
 fn cell_count(grid: Grid, harmonics: usize, accuracy: f64) -> usize {
     let decay = -accuracy.ln() / harmonics as f64;
     let singularity_distance = match grid.revolutions {

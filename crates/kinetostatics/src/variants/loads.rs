@@ -8,7 +8,7 @@ use crate::mass::Mass;
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Coordinate, Mechanism, Vec2};
 
-/// What is done with each number.
+/// The function that is called with each number.
 type Visit<'a> = &'a mut dyn FnMut(&mut f64);
 
 fn visit_points(points: &mut [Vec2], visit: Visit<'_>) {
@@ -102,7 +102,7 @@ pub(super) fn is_supported(load: &Load) -> bool {
 }
 
 /// Whether a load with these numbers is one that a compilation takes: stiffness, damping and gravity above zero, free
-/// lengths not below. What else there is, a compilation decides.
+/// lengths not below. A compilation decides on everything else.
 fn is_sound(load: &Load) -> bool {
     let is_distance = matches!(load.kind, LoadKind::Along(along, _) if along.ends().is_some());
     let is_free_length_sound = load.kind.strength().is_sound(is_distance);
@@ -122,7 +122,7 @@ fn structure(load: &Load) -> Load {
 }
 
 impl CompiledLoads {
-    /// The numbers of other loads of the same structure, on a mechanism of the same structure. None where they have
+    /// The numbers of other loads of the same structure, on a mechanism of the same structure. `None` if they have
     /// another one: other bodies, directions, laws.
     pub(super) fn numbers_of(&self, mechanism: &Mechanism, loads: &[Load]) -> Option<Vec<f64>> {
         let same = |(one, other): (&Load, &Load)| structure(one) == structure(other);
@@ -136,8 +136,8 @@ impl CompiledLoads {
         Some(numbers(loads, signals))
     }
 
-    /// Takes the numbers of a variant with these masses, by body; false where a compilation has to decide on them. The
-    /// points at which couples are shown stay: a couple acts alike at each.
+    /// Sets the numbers of a variant with these masses, by body; returns false if a compilation must decide on them.
+    /// The points at which couples are drawn stay, because a couple has the same effect at each.
     pub(super) fn set_numbers(&mut self, numbers: &[f64], masses: &[Mass]) -> bool {
         let mut next = numbers.iter().copied();
         let mut fill = |to: &mut f64| *to = next.next().unwrap_or(f64::NAN);

@@ -11,15 +11,16 @@ use std::f64::consts::TAU;
 /// twelve digits.
 const FIRST_POSITIONS: usize = 64;
 const LAST_POSITIONS: usize = 1024;
-/// The trapezoidal rule by N points errs by the coefficient of order N, about the square of that of order N/2 beside the
-/// mean: it has all digits where the last coefficients of √m are below this part of it.
+/// The trapezoidal rule by N points errs by the coefficient of order N, about the square of that of order N/2 relative
+/// to the mean. It has all digits if the last coefficients of √m are below this fraction of the mean.
 const RESOLVED_MEAN: f64 = 1e-8;
 /// An extreme is evaluated at its place: its curve needs to be known only so well that no other is taken for it.
 const RESOLVED_CURVE: f64 = 1e-4;
-/// The tangents of all determinants stay clear of zero over so many steps, both ways: the follower's own test of a branch.
+/// The tangents of all determinants stay clear of zero over this number of steps in both directions: the follower's own
+/// test of a branch.
 const TANGENT_CLEARANCE: f64 = 4.0;
 
-/// The largest or smallest value of a curve, and where it is.
+/// The largest or smallest value of a curve, and its coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Extremum {
     /// The coordinate, rad, from 0 to 2π.
@@ -41,8 +42,8 @@ pub struct Turn {
     pub half_dm: [Extremum; 2],
     /// By reaction: its value of largest magnitude in the free rotation, over 2E, 1/m or 1.
     pub free_reactions: Vec<Extremum>,
-    /// The actuator force (N m), then each reaction (N or N m), of largest magnitude under the loads of the variants, where
-    /// they are wanted.
+    /// The actuator force (N m), then each reaction (N or N m), of largest magnitude under the loads of the variants, if
+    /// they are requested.
     pub loaded_forces: Vec<Extremum>,
     /// Positions of the rule that resolved it.
     pub positions: usize,
@@ -51,7 +52,7 @@ pub struct Turn {
 /// Positions with the values of all curves: m, ½m′, the reactions of the free rotation, then the forces under loads.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Samples {
-    /// The positions; the last one stands for those that are missing to a whole number of lanes.
+    /// The positions; the last one is repeated to fill the last lanes.
     q: Vec<f64>,
     count: usize,
     curves: Vec<Vec<f64>>,
@@ -77,7 +78,7 @@ impl Samples {
         &self.curves[curve][..self.count]
     }
 
-    /// Takes other positions: those in `q`.
+    /// Starts with the positions in `q`.
     fn take_positions(&mut self) {
         self.count = self.q.len();
         let last = self.q.last().copied().unwrap_or(0.0);
@@ -91,7 +92,7 @@ impl Samples {
     }
 }
 
-/// What the samples are for.
+/// The stage of the search to which the samples belong.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stage {
     /// The positions of the first rule, or those between the positions of the rule before.
@@ -100,7 +101,7 @@ enum Stage {
     Peaks,
 }
 
-/// What is the same in all variants of a rule.
+/// The data of a rule that all variants share.
 #[derive(Debug, Clone, Default)]
 struct RuleTable {
     /// The positions that the rule before has not.
@@ -245,7 +246,7 @@ impl TurnSearch {
         true
     }
 
-    /// Whether the last coefficients of √m and of all curves are small; none where m is not positive.
+    /// Whether the last coefficients of √m and of all curves are small; `None` if m is not positive.
     #[inline(always)]
     fn is_resolved<S: LaneScalar>(&mut self) -> Option<bool> {
         let table = &self.tables[self.level];
@@ -328,7 +329,7 @@ impl TurnSearch {
         self.samples.take_positions();
     }
 
-    /// Moves each peak by its values, and asks for values anew where one is not yet found.
+    /// Moves each peak by its values, and requests further values for peaks that have not converged.
     fn take_peaks(&mut self) -> bool {
         let samples = &self.samples;
         self.turn.m_at_start = samples.values(0)[0];
@@ -354,7 +355,7 @@ impl TurnSearch {
         false
     }
 
-    /// Of the peaks of each curve, the highest and the lowest.
+    /// Selects the highest and the lowest peak of each curve.
     fn finish(&mut self) {
         if self.peaks.iter().any(|peak| peak.has_failed) {
             return;

@@ -81,7 +81,7 @@ impl LoadedVariant {
         }
     }
 
-    /// How many forces there are over the turn: that of the actuator, and the reactions.
+    /// The number of forces over the turn: that of the actuator, and the reactions.
     fn force_count(&self) -> usize {
         let wanted = self.of.velocity.is_some();
         usize::from(wanted) * (1 + self.of.model.reactions().len())
@@ -96,7 +96,7 @@ impl LoadedVariant {
         true
     }
 
-    /// Evaluates the forces that the samples ask for; false where there is none.
+    /// Evaluates the forces at the requested samples; returns false if there is none.
     #[inline(never)]
     fn sample(&mut self, samples: &mut Samples) -> bool {
         let Some(velocity) = self.of.velocity else {
@@ -137,7 +137,7 @@ impl<S: LaneScalar> LaneSampler<S> {
         }
     }
 
-    /// Evaluates what the samples ask for; false where there is no pose.
+    /// Evaluates the requested samples; returns false if there is no pose.
     #[inline(always)]
     fn sample(&mut self, model: &Model, samples: &mut Samples) -> bool {
         let zero = S::from_f64(0.0);
@@ -168,8 +168,8 @@ impl<S: LaneScalar> LaneSampler<S> {
         true
     }
 
-    /// The square of a determinant's slope over that of the determinant, 1/rad²: one over it is how far the tangent of the
-    /// determinant is from zero.
+    /// The square of a determinant's slope over that of the determinant, 1/rad²: its inverse square root is the distance
+    /// at which the tangent of the determinant reaches zero.
     #[inline(always)]
     fn steepness(&self, model: &Model, group: usize) -> S {
         let Workspace { pose, motion, .. } = &self.workspace;

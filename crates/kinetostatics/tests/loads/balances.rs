@@ -4,7 +4,7 @@ use crate::scenes::{Case, all};
 use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::{AppliedWrench, EvaluatedState, ForceSource, FreeBodyForces, Wrench};
 
-/// Visits every case in all its states, with what acts on its bodies there.
+/// Visits every case in all its states, with the forces on its bodies there.
 fn each_state(check: impl Fn(&Case, &EvaluatedState<'_>, &FreeBodyForces, &[AppliedWrench])) {
     for case in all() {
         let free_body_forces = FreeBodyForces::new(&case.model).expect("every reaction");
@@ -27,8 +27,8 @@ fn power_is_balanced() {
     });
 }
 
-/// Newton's and Euler's equations of every moving body, from what joints, actuators and loads do to
-/// it: force and moment about its root.
+/// Newton's and Euler's equations of every moving body, from the wrenches of joints, actuators and loads on it: force
+/// and moment about its root.
 #[test]
 fn every_body_is_balanced() {
     each_state(|case, state, _, wrenches| {
@@ -68,7 +68,7 @@ fn every_body_is_balanced() {
     });
 }
 
-/// Joints do no work; what they do to their two bodies is opposite.
+/// Joints do no work; their actions on the two bodies are opposite.
 #[test]
 fn joints_are_ideal() {
     each_state(|case, state, _, wrenches| {
@@ -117,7 +117,7 @@ fn the_frame_feels_the_same_by_momentum_and_by_reactions() {
     });
 }
 
-/// A reaction that was not asked for is missed by name.
+/// The error names a reaction that was not requested.
 #[test]
 fn a_ledger_needs_every_reaction() {
     let case = all().remove(0);

@@ -5,7 +5,7 @@ use dwell_geometry::{BodyId, Vec2};
 use dwell_scene::PlaneScene;
 use std::f64::consts::TAU;
 
-/// Sun 30 mm, planets 20 mm, ring 70 mm; a second pin in the sun's centre if asked for.
+/// Sun 30 mm, planets 20 mm, ring 70 mm; with additional joints on request.
 fn planets(count: usize, extra_joints: &str) -> Case {
     let mut bodies = String::new();
     let (mut joints, mut centers, mut angles) = (String::new(), String::new(), String::new());

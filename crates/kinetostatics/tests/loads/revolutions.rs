@@ -33,7 +33,7 @@ fn torsion(mechanism: &Mechanism) -> Vec<Load> {
     vec![load("torsion", kind, STIFFNESS)]
 }
 
-/// What the same spring is as a couple that its angle commands.
+/// The same spring as a couple whose magnitude depends on the angle.
 fn commanded(mechanism: &Mechanism) -> Vec<Load> {
     let bodies = pair(mechanism);
     let signal = Signal::Value(Coordinate::Angle(bodies));
@@ -84,7 +84,7 @@ fn a_spring_winds_up_turn_by_turn() {
     }
 }
 
-/// The rough angle of the start says how far the spring is wound there.
+/// The initial guess of the angle determines how far the spring is wound.
 #[test]
 fn a_spring_is_wound_as_the_rough_angle_says() {
     let mut about = [0.0, TAU, -TAU].map(|more| {
@@ -131,7 +131,7 @@ fn a_spring_gives_back_what_it_took_across_the_half_turn() {
     assert!(crossed);
 }
 
-/// Without a row of poses: several actuators are followed from the start.
+/// Without stored poses: with several actuators, the pose is followed from the start.
 #[test]
 fn turns_are_counted_with_several_actuators() {
     // The follower's pivot stands on a slide.
@@ -153,8 +153,8 @@ fn turns_are_counted_with_several_actuators() {
     assert!(wound);
 }
 
-/// Between two bodies of which only one has a rough angle, the other stands within half a turn of
-/// it, wherever both point.
+/// Between two bodies of which only one has a rough angle, the other is within half a turn of it, in any direction of
+/// both.
 #[test]
 fn an_angle_that_is_not_told_is_within_half_a_turn() {
     let between = |mechanism: &Mechanism| {

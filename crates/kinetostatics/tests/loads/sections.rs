@@ -31,7 +31,7 @@ fn link(state: &EvaluatedState<'_>, body: BodyId, points: [Vec2; 2]) -> LinkForc
     found.expect("a link with a length")
 }
 
-/// What is beyond the cut of a turning bar hangs on it: ∫ μ (ω² σ + g·u) dσ of pull, and
+/// The cut of a turning bar carries the part beyond it: ∫ μ (ω² σ + g·u) dσ of pull, and
 /// −∫ μ (σ − s)(α σ − g·n) dσ of bending.
 #[test]
 fn a_bar_turned_at_its_end_is_a_cantilever() {
@@ -110,7 +110,8 @@ fn a_coupler_is_a_beam_on_two_pins() {
     }
 }
 
-/// At its second end a link hands over exactly what acts there, whatever acts along it and beside it.
+/// At its second end, the internal forces of a link are exactly the actions there, independent of actions along and off
+/// the link.
 #[test]
 fn sections_close_at_the_second_end() {
     for case in all() {

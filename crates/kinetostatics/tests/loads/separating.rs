@@ -15,7 +15,7 @@ fn tangent() -> f64 {
     ALPHA.tan()
 }
 
-/// Of a hundred newtons: a few units in the last place of each step.
+/// Tolerance in N for forces of a hundred newtons: a few units in the last place of each step.
 const ROUNDING: f64 = 1e-12;
 
 fn close(found: Vec2, expected: Vec2) {

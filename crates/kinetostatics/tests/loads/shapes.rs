@@ -1,4 +1,4 @@
-//! What each kind of load does to the bodies.
+//! The effect of each kind of load on the bodies.
 
 use crate::scenes::{Case, all, body, case, load};
 use crate::statics::SLIDER_CRANK;
@@ -161,7 +161,7 @@ fn a_torque_between_bodies_that_turn_together_is_felt_by_their_slide_alone() {
     }
 }
 
-/// A magnitude is what its law or formula says of the signals it names.
+/// A magnitude is the value of its law or expression at its signals.
 #[test]
 fn magnitudes_follow_their_signals() {
     for case in all() {

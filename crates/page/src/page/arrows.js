@@ -1,9 +1,9 @@
-// What lies over the mechanism: forces as arrows, and paths of points, each by choice.
+// The overlay of the mechanism: forces as arrows, and paths of points. Check boxes select them.
 
-// The longest arrow, px; shorter where it would leave the picture, but not below a part of it.
+// Length of the longest arrow, px. It is reduced if the arrow would leave the picture, at most by the factor LEAST_PART.
 const ARROW_LENGTH = 154;
 const LEAST_PART = 0.4;
-// In so many rows it is seen whether arrows leave the picture, and so near to its edge they may come, px.
+// Number of rows in which the lengths are fitted to the picture, and the least distance of an arrow from its edge, px.
 const ARROW_ROWS = 24;
 const ARROW_EDGE = 4;
 
@@ -14,12 +14,12 @@ function createOverlay(first, layers, state) {
   let view = null;
   let arrows = [];
   let largest = {};
-  // By group the longest arrow, px.
+  // By group: length of the longest arrow, px.
   let lengths = {};
   const w = [0, 0, 0];
   const u = [0, 0, 0];
 
-  // Another drawing of the same shape.
+  // Takes a drawing of the same shape, with its run.
   function show(...next) {
     [drawing, run, frames, view] = next;
     arrows = drawing.arrows.map((arrow, index) => ({ ...arrow, index, size: sizeOf(arrow) }));
@@ -29,7 +29,7 @@ function createOverlay(first, layers, state) {
     state.paths = chosen(state.paths, drawing.paths, p => p.requested);
   }
 
-  // The largest force of an arrow in the rows.
+  // The largest force of an arrow over all rows, N.
   function sizeOf(arrow) {
     const columns = arrow.direction === 'components' ? arrow.columns : arrow.parts.map(part => part.column);
     let most = 0;
@@ -54,7 +54,7 @@ function createOverlay(first, layers, state) {
     return line;
   });
 
-  // Where a force acts and its vector, in the axes of the ground.
+  // The point of application of a force (m) and its vector (N), in the axes of the ground.
   function forceOf(arrow, row) {
     const value = k => run.columns[k].values[row];
     if (arrow.direction === 'line') {
@@ -73,17 +73,17 @@ function createOverlay(first, layers, state) {
     return [at, force];
   }
 
-  // A force of a row in px beside the largest of its group, which has so many: where its arrow begins, and how far it goes.
+  // Tail and vector of an arrow in a row, px. `length` is the length of the arrow for the largest force of the group.
   function onScreen(arrow, row, length) {
     const [at, force] = forceOf(arrow, row);
     const scale = largest[arrow.group] > 0 ? length / (largest[arrow.group] * view.scale) : 0;
     return [...view.screen(at), ...view.direction(force.map(c => c * scale))];
   }
 
-  // So long that arrows stay in the picture. All of a group have one scale in all rows, whichever are chosen.
+  // Chooses the lengths so that arrows stay in the picture. A group has one scale in all rows, independent of the selection.
   function fitLengths(width, height) {
     lengths = {};
-    // In space the scale would change while the view is turned.
+    // In space no fit is made, because the scale would change while the view is turned.
     const stride = Math.max(1, Math.floor(run.rows / ARROW_ROWS));
     for (const arrow of arrows) {
       let part = lengths[arrow.group] === undefined ? 1 : lengths[arrow.group] / ARROW_LENGTH;
@@ -125,7 +125,7 @@ function createOverlay(first, layers, state) {
   return { show, fitLengths, layOut, move, arrows: () => arrows, paths: () => drawing.paths };
 }
 
-// The names of what is shown, as someone has chosen; of what was not there to be chosen before, what is shown at first.
+// The names of the shown items. Names that the user has seen keep their state; a new name is shown if `isFirst` says so.
 function chosen(before, all, isFirst) {
   const names = before || Object.assign(new Set(), { known: new Set() });
   for (const one of all) {
@@ -136,7 +136,7 @@ function chosen(before, all, isFirst) {
   return names;
 }
 
-// An arrow from a point; of one too short to be seen nothing.
+// The path of an arrow from a point (x, y); empty if the arrow is at most 2 px long.
 function arrowPath(x, y, dx, dy) {
   const length = Math.hypot(dx, dy);
   if (!(length > 2)) return '';

@@ -1,4 +1,4 @@
-// One chart: some columns of one unit over the axis, with the cursor of the row, peaks, zoom and read-out.
+// One chart: columns of one unit over the axis, with the cursor at the current row, peaks, zoom and read-out.
 
 const CHART_HEIGHT = 190;
 const PAD = { left: 66, right: 16, top: 10, bottom: 36 };
@@ -34,14 +34,14 @@ function createChart(number, state, units, actions) {
   function show(newRun) {
     run = newRun;
     const own = state.charts[number];
-    // Of a run that differs in numbers only, the same curves are drawn again.
+    // If only the numbers of the run differ, the same curves are drawn with the new numbers.
     if (group && shape === shapeNow()) {
       group = run.groups.get(group.key);
       columns = columns.map(column => run.columns[column.index]);
       return draw();
     }
     chooser.replaceChildren(...[...run.groups.values()].map(g => el('option', { value: g.key }, `${g.title}${g.unit ? ` (${units.of(g.unit).name})` : ''}`)));
-    // What nobody has chosen is not kept for another run: what is asked there may be something else.
+    // Only a chart that the user has changed keeps its curves in a new run; other charts show the default curves of the new command.
     const wanted = own && own.isChosen && run.groups.get(own.group);
     group = wanted || firstGroup(run, number);
     const kept = wanted && own.columns ? own.columns.map(key => run.byKey.get(key)).filter(c => c && c.unit === group.unit) : [];
@@ -53,7 +53,7 @@ function createChart(number, state, units, actions) {
     shape = shapeNow();
   }
 
-  // What the chooser, the legend and the curves are made of.
+  // The contents of the menu, the legend and the curves, as text.
   function shapeNow() {
     const own = state.charts[number];
     return [run.shape, units.of('m').name, units.of('rad').name, own && own.group, ...((own && own.columns) || [])].join('\n');
@@ -73,7 +73,7 @@ function createChart(number, state, units, actions) {
     actions.changed();
   }
 
-  // Adds a column of any group, as the table of peaks asks for.
+  // Adds a column of any group, as requested in the table of peaks.
   function add(column) {
     if (!group || column.unit !== group.unit) {
       group = [...run.groups.values()].find(g => g.columns.includes(column));
@@ -118,7 +118,7 @@ function createChart(number, state, units, actions) {
     actions.changed();
   }
 
-  // The rows that the zoom shows.
+  // The first and the last row within the zoom.
   function shownRows() {
     const values = run.axis.values;
     if (!state.zoom) return [0, run.rows - 1];
@@ -127,7 +127,7 @@ function createChart(number, state, units, actions) {
   }
 
   function draw() {
-    // Its width is measured when it changes: asking for it here would lay out the whole page first.
+    // A ResizeObserver tracks the width: reading it at each draw would force a layout of the whole page.
     if (!width) setWidth(picture.clientWidth || 560);
     const { factor } = units.of(group.unit);
     const axisUnit = units.of(run.axis.unit);
@@ -149,7 +149,7 @@ function createChart(number, state, units, actions) {
       high = Math.max(high, ...ends);
     }
     if (!(low <= high)) [low, high] = [0, 1];
-    // What is constant but for rounding is a straight line.
+    // Columns that are constant within rounding appear as straight lines.
     const size = Math.max(Math.abs(low), Math.abs(high));
     if (high - low <= 1e-9 * size) [low, high] = [low - 0.5 * (size || 1), high + 0.5 * (size || 1)];
     const room = 0.06 * (high - low);
@@ -200,7 +200,7 @@ function createChart(number, state, units, actions) {
     });
   }
 
-  // Rings at the peaks, which may be between rows.
+  // Draws rings at the peaks, which may lie between rows.
   function markPeaks() {
     let count = 0;
     const mark = ({ value, at }, k) => {
@@ -217,7 +217,7 @@ function createChart(number, state, units, actions) {
     while (peaks.children.length > count) peaks.lastChild.remove();
   }
 
-  // The extremes in words.
+  // Describes the extrema in words, for screen readers.
   function describe() {
     const one = column => {
       const peak = column.peak;
@@ -258,7 +258,7 @@ function createChart(number, state, units, actions) {
   return { root, show, move, draw: () => { if (run && group) draw(); }, add, unit: () => group && group.unit, count: () => columns.length };
 }
 
-// Hover moves the row; a drag zooms; a double click shows everything.
+// Hovering moves the row, dragging zooms, and a double click shows the whole axis.
 function chartPointer(picture, { axisAt, hover, zoom, bounds }) {
   let from = null;
   const band = svg('rect', { class: 'band', y: PAD.top, height: CHART_HEIGHT - PAD.top - PAD.bottom });

@@ -1,8 +1,8 @@
-// Which charts are shown first, and with which curves.
+// Selects the groups and the curves that the charts show first.
 
 const CHARTS = 3;
 
-// By command: groups with their units in the order in which they answer what it is asked for.
+// By command: groups with their units, the most useful for this command first.
 const FIRST_GROUPS = {
   kinematics: ['Bodies|rad', 'Bodies|rad/s', 'Coordinates|m', 'Points|m', 'Points|m/s', 'Bodies|rad/s2', 'Transmission angles|rad'],
   statics: ['Reactions, magnitudes|N', 'Actuator forces|N m', 'Actuator forces|N', 'Reactions, components|N', 'Shaking force|N', 'Loads|N'],
@@ -15,14 +15,14 @@ const FIRST_GROUPS = {
 function firstGroup(run, number) {
   const groups = [...run.groups.values()];
   let preferred = (FIRST_GROUPS[run.description.command] || []).map(key => run.groups.get(key)).filter(g => g && g.columns.some(varies));
-  // Components where there are no magnitudes.
+  // Components are shown only if there are no magnitudes.
   if (preferred.some(g => g.title === 'Reactions, magnitudes')) preferred = preferred.filter(g => g.title !== 'Reactions, components');
   const rest = groups.filter(g => !preferred.includes(g));
   const order = [...preferred, ...rest.filter(g => g.columns.some(varies)), ...rest.filter(g => !g.columns.some(varies))];
   return order[number] || null;
 }
 
-// Whether two columns are one but for rounding: a point of two bodies.
+// Whether two columns are equal within rounding, as those of a point that two bodies share.
 function isAlike(one, other) {
   if (one.slot === other.slot) return true;
   const [low, high] = extentOf(one);
@@ -31,7 +31,7 @@ function isAlike(one, other) {
   return true;
 }
 
-// Those that vary most, of equal ones the first.
+// The columns that vary most; of equal columns, the first.
 function firstColumns(group) {
   const span = column => { const [low, high] = extentOf(column); return Number.isFinite(high - low) ? high - low : 0; };
   const distinct = [];
@@ -48,7 +48,7 @@ function createCharts(state, units, actions) {
     show: run => { for (const chart of charts) run.axis ? chart.show(run) : (chart.root.hidden = true); },
     move: row => { for (const chart of charts) chart.move(row); },
     draw: () => { for (const chart of charts) chart.draw(); },
-    // To the first chart of its unit that has room, or the last one.
+    // Adds a column to the first chart of its unit that has room; without such a chart, to the last chart.
     add: column => {
       const alike = charts.filter(c => !c.root.hidden && c.unit() === column.unit);
       (alike.find(c => c.count() < MAX_CURVES) || alike[0] || charts.filter(c => !c.root.hidden).pop()).add(column);

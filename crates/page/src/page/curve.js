@@ -1,7 +1,7 @@
-// A curve as a path: all of its rows, or the smallest and largest of each pixel where these are many.
+// A curve as a path: through all rows, or through the smallest and largest values of each pixel if there are many rows.
 
-// Through the rows from `first` to `last`; a gap where there is no value.
-// `across()` are the places of the rows along the axis, written.
+// The path through the rows from `first` to `last`, with gaps at missing values.
+// `across()` returns the horizontal coordinates of these rows as text.
 function curvePath(xs, ys, [first, last], toX, toY, width, across) {
   const count = last - first + 1;
   if (count > 3 * width) return denseCurve(xs, ys, [first, last], toX, toY);
@@ -20,7 +20,7 @@ function curvePath(xs, ys, [first, last], toX, toY, width, across) {
   return d;
 }
 
-// In each pixel the first value, the smallest, the largest and the last one.
+// The path through the first, smallest, largest and last value of each pixel.
 function denseCurve(xs, ys, [first, last], toX, toY) {
   let d = '';
   let pixel = null;
@@ -54,7 +54,7 @@ function denseCurve(xs, ys, [first, last], toX, toY) {
   return d;
 }
 
-// A curve in little, of at most so many points.
+// A small curve through at most `points` rows.
 function sparkline(values, width, height, [low, high], points = 90) {
   const span = high - low || 1;
   const last = values.length - 1;

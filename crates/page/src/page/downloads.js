@@ -1,4 +1,4 @@
-// What can be taken along: all data and peaks as CSV, a picture as SVG.
+// Downloads: all data and peaks as CSV, a picture as SVG.
 
 function saveText(text, name, type) {
   const link = el('a', { href: URL.createObjectURL(new Blob([text], { type })), download: name });
@@ -10,7 +10,7 @@ function saveText(text, name, type) {
 
 const csvField = text => (/[",\n]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text);
 
-// As the tables of the command: `name [unit]`, then rows in SI with the fewest digits that give back every bit.
+// The format of the tables of the commands: headings `name [unit]`, then rows in SI units with the fewest digits that restore every bit.
 function dataCsv(run) {
   const number = v => (Number.isNaN(v) ? '' : v === Infinity ? 'inf' : v === -Infinity ? '-inf' : Object.is(v, -0) ? '-0' : String(v));
   const lines = [run.columns.map(c => csvField(c.unit ? `${c.key} [${c.unit}]` : c.key)).join(',')];
@@ -26,7 +26,7 @@ function peaksCsv(run, columns) {
 
 const KEPT_STYLES = ['fill', 'fill-opacity', 'stroke', 'stroke-width', 'stroke-dasharray', 'stroke-linejoin', 'stroke-linecap', 'stroke-opacity', 'font-size', 'font-family', 'font-weight', 'display', 'paint-order', 'vector-effect', 'opacity'];
 
-// A picture by itself: the style of each element becomes attributes.
+// A stand-alone picture: the computed style of each element becomes attributes.
 function svgText(picture) {
   const copy = picture.cloneNode(true);
   const all = [picture, ...picture.querySelectorAll('*')];

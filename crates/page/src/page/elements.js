@@ -1,4 +1,4 @@
-// Elements of the document. What comes from a scene is always text, never markup.
+// Elements of the document. Strings from a scene are always inserted as text, never as markup.
 
 const SVG = 'http://www.w3.org/2000/svg';
 
@@ -22,14 +22,14 @@ function svg(tag, attributes, ...children) {
   return filled(document.createElementNS(SVG, tag), attributes, children);
 }
 
-// Sets the text of an element where it has changed: a text node is not replaced at every move.
+// Sets the text of an element if it has changed. The text node itself is kept.
 function setText(element, text) {
   if (element.firstChild) {
     if (element.firstChild.nodeValue !== text) element.firstChild.nodeValue = text;
   } else element.textContent = text;
 }
 
-// Work that can wait until what is seen is drawn. `done()` is a promise that nothing waits any more.
+// Deferred work, done after the visible parts are drawn. `done()` is a promise that resolves when no task is left.
 function createLater() {
   const tasks = new Map();
   let waiting = null;
@@ -37,7 +37,7 @@ function createLater() {
   function act(finish) {
     const begun = performance.now();
     for (const [name, task] of tasks) {
-      // A task that is not done in its share goes on the next time.
+      // An unfinished task continues in the next idle period.
       if (!task(() => performance.now() - begun > 8)) break;
       tasks.delete(name);
       if (performance.now() - begun > 8) break;
@@ -49,7 +49,8 @@ function createLater() {
     }
   }
   return {
-    // `task(isLate)` is whether it is done; it may leave the rest to another time when it is late. Of one name only the newest is done.
+    // `task(isLate)` returns true when it is finished; it may stop and return false once `isLate()` is true. A new task replaces
+    // an old one of the same name.
     add(name, task) {
       tasks.delete(name);
       tasks.set(name, task);
@@ -59,7 +60,7 @@ function createLater() {
   };
 }
 
-// The children of an element, made anew only where what they say has changed.
+// A function that replaces the children of an element only if their signature has changed.
 function createRenewed(element) {
   let before = null;
   return (signature, children) => {

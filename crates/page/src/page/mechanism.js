@@ -1,20 +1,20 @@
-// The mechanism in a row, as SVG: dragged by a body in the plane, turned in space.
+// The mechanism in the current row, as SVG. In the plane the user drags a body, in space the view.
 
 const HEIGHT = 400;
 const MARGIN = 34;
-// Where labels are beside their marks, and how large they are, px: width of a letter, and height.
+// Positions of labels relative to their marks, px, and LABEL_SIZE: width of a letter and height of a line, px.
 const LABEL_PLACES = [{ x: 10, y: -10 }, { x: -11, y: -10 }, { x: 10, y: 21 }, { x: -11, y: 21 }, { x: 0, y: -14 }, { x: 13, y: 5 }, { x: -13, y: 5 }, { x: 0, y: 26 }];
-// The same for a pin on the ground, whose mark goes on below it.
+// Positions for a pin on the ground, whose symbol extends below it.
 const GROUND_PLACES = [1, 0, 4, 6, 5, 3, 2].map(k => LABEL_PLACES[k]);
 const LABEL_SIZE = [9, 13];
-// Letters over letters are worse than letters over a mark; a name that leaves the picture is cut.
+// Penalties for a label that covers another label, and for a label that crosses the edge; covering a mark counts 1.
 const [OVER_LABEL, OVER_EDGE] = [3, 2];
 const CLOSED = new Set(['plate', 'block', 'cam', 'rack']);
-// In so many rows it is seen what is in their way.
+// Number of rows in which overlaps of labels are counted.
 const LABEL_ROWS = 24;
-// How far a rod goes on beyond its sleeve in space, in half lengths of a hinge.
+// Length of a rod beyond its sleeve in space, in half lengths of a hinge.
 const GUIDE_MARGIN = 2.6;
-// The least length of half a hinge, px.
+// Least half length of a hinge, px.
 const LEAST_UNIT = 7;
 
 function createMechanism(state, onMove, onTurn) {
@@ -62,9 +62,9 @@ function createMechanism(state, onMove, onTurn) {
     fit();
   }
 
-  // Fills the picture with all that the mechanism goes through.
+  // Scales the picture to the region that the mechanism covers during the run.
   function fit() {
-    // Measured when it changes, as the charts'.
+    // A ResizeObserver tracks the width, as in charts.
     if (!width) width = root.clientWidth || 560;
     root.setAttribute('viewBox', `0 0 ${width} ${HEIGHT}`);
     const { middle, size, radius } = bounds;
@@ -83,13 +83,13 @@ function createMechanism(state, onMove, onTurn) {
     move(row);
   }
 
-  // Labels stay where they are beside their marks: where least is in their way in some rows of the run.
+  // Chooses the position of each label relative to its mark: the one with the fewest overlaps in LABEL_ROWS rows of the run.
   function placeLabels() {
     const last = Math.max(0, run.rows - 1);
     const rows = Array.from({ length: Math.min(LABEL_ROWS, run.rows) }, (_, k) => Math.round((k * last) / LABEL_ROWS));
     const marks = items.filter(item => item.placeLabel);
     const taken = rows.map(r => marks.flatMap(mark => mark.boxes(r)));
-    // A second time with what came later, where any label is still over something.
+    // While labels overlap, further passes take later labels into account.
     for (let pass = 0; pass < 3; pass++) {
       if (!marks.map(mark => mark.placeLabel(rows, taken)).some(Boolean)) break;
     }
@@ -134,10 +134,10 @@ function createMechanism(state, onMove, onTurn) {
     return createMark(part, at, w);
   }
 
-  // Half a hinge in space, px: on small screens no less than can be seen.
+  // Half the length of a hinge in space, px; on small screens at least LEAST_UNIT.
   const unit = () => Math.max(LEAST_UNIT, drawing.size * view.scale);
 
-  // The ends of a rod that goes through a sleeve: beyond the sleeve and beyond where it is fixed to its body.
+  // The ends of a rod through a sleeve. They lie beyond the sleeve and beyond the point where the rod is fixed to its body.
   function shaft({ ends, axis }, r) {
     const [u, a, b] = [[0, 0, 0], [0, 0, 0], [0, 0, 0]];
     frames.direct(ends[0].body, axis, r, u);
@@ -154,7 +154,7 @@ function createMechanism(state, onMove, onTurn) {
     const classes = `${part.look} ${colored(part.body)}`;
     const main = svg('path', { class: classes });
     const inner = part.look === 'slot' ? svg('path', { class: 'slot-inside' }) : null;
-    // In space a bar interrupts what is behind it, and a guide of the ground ends at walls.
+    // In space a bar has a rim that interrupts lines behind it, and a guide on the ground ends at walls.
     const rim = !frames.isPlane && part.look === 'bar' ? svg('path', { class: 'rim' }) : null;
     const walls = !frames.isPlane && part.look === 'guide' && frames.isFixed(part.body) ? svg('path', { class: 'ground-line' }) : null;
     const group = svg('g', { 'data-body': part.body }, title, rim, main, inner, walls);
@@ -171,7 +171,7 @@ function createMechanism(state, onMove, onTurn) {
       };
     }
     const nearness = r => {
-      // The line to a centre of mass is before all.
+      // Lines to centres of mass are drawn last.
       let sum = part.look === 'arm' ? Infinity : 0;
       for (const p of part.points) sum += view.nearness(frames.place(part.body, p, r, w));
       return sum / part.points.length;
@@ -199,7 +199,7 @@ function createMechanism(state, onMove, onTurn) {
         },
       };
     }
-    // In the plane the outline is fixed to its body, in meters; only its frame moves.
+    // In the plane the outline has coordinates of its body, in metres; only the transform of the group changes.
     renew = next => {
       part = next;
       const d = outlinePath(part, frames.isFixed(part.body));
@@ -225,21 +225,21 @@ function createMechanism(state, onMove, onTurn) {
     const isBehind = part.look === 'support';
     layers[isBehind ? 'parts' : 'marks'].append(shape);
     if (label) layers.words.append(label);
-    // Beside the mark, where no other label is in the row of the first picture.
+    // `placeLabel` chooses the position of the label.
     const places = frames.isPlane && part.ground.length ? GROUND_PLACES : LABEL_PLACES;
     let [place] = places;
     let labelBoxes = [];
     return {
       element: shape,
       renew(next) { part = next; },
-      // What it covers itself, px: left, top, width, height, and which mark it is.
+      // The boxes that the mark covers: left, top, width and height in px, and the mark.
       boxes(r) {
         const [x, y] = at(part.at, r);
         const own = [[x - 7, y - 7, 14, 14, shape]];
         if (isBehind) own.push([x - 20, y + 5, 40, 24, shape]);
         return own;
       },
-      // Takes the place with the least in its way, and adds its own boxes. Says how much is in its way.
+      // Chooses the position with the least overlap, adds its boxes to `taken`, and returns the overlap.
       placeLabel(rows, taken) {
         if (!label) return 0;
         rows.forEach((_, k) => { taken[k] = taken[k].filter(box => box !== labelBoxes[k]); });
@@ -255,7 +255,7 @@ function createMechanism(state, onMove, onTurn) {
         return least;
       },
       inMarks: !isBehind,
-      // Centres of mass and what is driven are before all others.
+      // Centres of mass and symbols of driven joints are drawn last.
       depth: r => (['center-of-mass', 'turned', 'pushed'].includes(part.look) ? Infinity : view.nearness(frames.place(part.at.body, part.at.point, r, w))),
       move(r) {
         const [x, y] = at(part.at, r);
@@ -294,7 +294,7 @@ function createMechanism(state, onMove, onTurn) {
     overlay.move(row);
   }
 
-  // The far parts first.
+  // Orders the elements so that near parts are drawn over far ones.
   function sort() {
     for (const layer of ['parts', 'marks']) {
       const own = items.filter(item => (item.inMarks ? 'marks' : 'parts') === layer);
@@ -344,14 +344,14 @@ function createMechanism(state, onMove, onTurn) {
   return { root, show, move, overlay: () => overlay, refresh: () => { if (drawing) { overlay.layOut(); overlay.move(row); } }, angles: () => view && view.angles };
 }
 
-// The box of a label at a place beside its mark, px: left, top, width, height, and which mark it is of.
+// The box of a label at a position relative to its mark: left, top, width and height in px, and the mark.
 function labelBox(text, place, [x, y], mark) {
   const long = text.length * LABEL_SIZE[0];
   const before = place.x < 0 ? long : place.x > 0 ? 0 : 0.5 * long;
   return Object.assign([x + place.x - before, y + place.y - LABEL_SIZE[1], long, LABEL_SIZE[1], mark], { isLabel: true });
 }
 
-// Paths in a group behind its title: each with its class, and where it is shaded the part of its colour.
+// Sets the paths of a group after its title. Each has its class, and a shaded path the percentage of its colour.
 function renewPaths(group, paths) {
   while (group.children.length > paths.length + 1) group.lastChild.remove();
   paths.forEach(([name, d, part], k) => {
@@ -363,7 +363,7 @@ function renewPaths(group, paths) {
   });
 }
 
-// How much a label is over boxes of others, and over the edges of the picture.
+// The weighted number of boxes of other marks that a label covers, plus the penalty for the edges of the picture.
 function inWayOf([left, top, long, high, mark], others, width) {
   let sum = left < 0 || left + long > width || top < 0 || top + high > HEIGHT ? OVER_EDGE : 0;
   for (const other of others) {
@@ -373,14 +373,14 @@ function inWayOf([left, top, long, high, mark], others, width) {
   return sum;
 }
 
-// What the elements of a drawing are made of: two drawings of one shape differ in numbers only.
+// The contents of a drawing as text: two drawings with the same shape differ only in numbers.
 function shapeOf(drawing) {
   const part = p => [p.part, p.look, p.title, p.label, p.body, (p.ground || []).length, p.at && p.at.body, (p.points || []).length, (p.axis || []).length].join();
   const arrow = a => [a.name, a.title, a.group, a.direction, a.columns || a.parts.map(part => part.column)].join();
   return [drawing.view === null, drawing.bodies.map(b => `${b.name}|${b.paint}|${b.placements.length}`).join(), ...drawing.parts.map(part), ...drawing.arrows.map(arrow), ...drawing.paths.map(p => `${p.name}|${p.requested}`)].join('\n');
 }
 
-// An outline in the frame of its body, m. A wheel that turns has a spoke.
+// The path of an outline in the frame of its body, m. A moving wheel has a spoke.
 function outlinePath(part, isFixed) {
   if (part.look === 'wheel') {
     const [[x, y], [r]] = part.points;
@@ -389,7 +389,7 @@ function outlinePath(part, isFixed) {
   return part.points.map(([x, y], k) => `${k ? 'L' : 'M'}${x} ${y}`).join('') + (CLOSED.has(part.look) ? 'Z' : '');
 }
 
-// The row in which a point of a body is nearest to the pointer; of two branches the one that goes on from this row.
+// The row in which a point of a body is nearest to the pointer. A term for the distance from this row keeps the branch of the motion.
 function nearestRow(run, frames, view, anchor, [sx, sy], row) {
   const rows = run.rows;
   const reach = Math.max(12, Math.ceil(rows / 5));
@@ -397,7 +397,7 @@ function nearestRow(run, frames, view, anchor, [sx, sy], row) {
   let best = row;
   let least = Infinity;
   for (let step = -reach; step <= reach; step++) {
-    // A motion that ends where it begins goes on there.
+    // A closed motion continues at its first row.
     const k = run.isClosed ? (((row + step) % (rows - 1)) + rows - 1) % (rows - 1) : row + step;
     if (k < 0 || k >= rows) continue;
     const [x, y] = view.screen(frames.place(anchor.body, anchor.point, k, w));
@@ -408,7 +408,7 @@ function nearestRow(run, frames, view, anchor, [sx, sy], row) {
   return best;
 }
 
-// Pointer drags: a body in the plane, the view in space.
+// Handles pointer drags: of a body in the plane, of the view in space.
 function dragging(root, { isPlane, grab, follow, turn }) {
   let held = null;
   let last = null;

@@ -1,6 +1,6 @@
-// Numbers: unpacked to the last bit, and written for people in the units that they choose.
+// Numbers: unpacks them exactly, and formats them in the selected units.
 
-// Base64 of a gzip stream of doubles: first the least significant bytes of all of them, then the next, and so on.
+// Unpacks doubles from Base64 of a gzip stream: first the least significant bytes of all numbers, then the next bytes, and so on.
 async function unpack(text) {
   const packed = Uint8Array.from(atob(text.trim()), c => c.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
@@ -15,7 +15,7 @@ async function unpack(text) {
 const POWERS = { '-': '⁻', 0: '⁰', 1: '¹', 2: '²', 3: '³', 4: '⁴', 5: '⁵', 6: '⁶', 7: '⁷', 8: '⁸', 9: '⁹' };
 const raised = text => [...String(text)].map(c => POWERS[c] || c).join('');
 
-// A number to so many significant digits, with a true minus.
+// A number with the given count of significant digits and the minus sign U+2212.
 function format(value, digits = 5) {
   if (Number.isNaN(value)) return '–';
   if (!Number.isFinite(value)) return value > 0 ? '∞' : '−∞';
@@ -34,7 +34,7 @@ function format(value, digits = 5) {
   return text.replace('-', '−');
 }
 
-// A coordinate of a picture to a tenth of a pixel. Those within a picture are written once: a curve has hundreds.
+// A coordinate as text, rounded to a tenth of a pixel. Texts of coordinates within a picture are cached, because a curve has hundreds.
 const TENTHS = [];
 function tenth(value) {
   const tenths = Math.round(10 * value);
@@ -44,10 +44,10 @@ function tenth(value) {
 
 const scientific = value => (value === 0 ? '0' : Number.isFinite(value) ? value.toExponential(1).replace('-', '−').replace('+', '') : String(value));
 
-// A unit as it is printed: `N m` becomes N·m, `m/s2` m/s².
+// A unit for display: `N m` becomes N·m, and `m/s2` becomes m/s².
 const printedUnit = unit => unit.replace(/ /g, '·').replace(/([a-zA-Z])(\d)/g, (_, letter, power) => letter + raised(power));
 
-// The units of a page: those of the scene, with degrees for angles as on pictures, or those of SI.
+// The units of a page: either the units of the scene, with degrees for angles as in the pictures, or SI units.
 function createUnits(displayUnits) {
   const known = {};
   for (const { si, unit, factor } of displayUnits) known[si] = { unit, factor };
@@ -55,7 +55,7 @@ function createUnits(displayUnits) {
   if (!known.m) known.m = { unit: 'm', factor: 1 };
   return {
     mode: 'scene',
-    // Name and factor of what is a unit of SI in the data.
+    // Name and factor of the displayed unit for an SI unit of the data.
     of(si) {
       const root = /^(rad|m)(\/s2?)?$/.exec(si);
       if (this.mode === 'si' || !root) return { name: printedUnit(si), factor: 1 };
@@ -68,7 +68,7 @@ function createUnits(displayUnits) {
       const space = name === '°' || name === '' ? '' : ' ';
       return format(value * factor, digits) + (Number.isFinite(value) ? space + name : '');
     },
-    // What the two modes are called.
+    // Labels of the two modes.
     names() {
       const { rad, m } = known;
       return { scene: `${rad.unit}, ${m.unit}`, si: 'rad, m' };
@@ -76,7 +76,7 @@ function createUnits(displayUnits) {
   };
 }
 
-// Round numbers from one value to another, about so many, with the decimals that tell them apart.
+// About `wanted` round numbers between two values, with the number of decimals that distinguishes them.
 function ticks(from, to, wanted, isDegrees) {
   const span = to - from;
   if (!(span > 0) || !Number.isFinite(span)) return { values: [from], decimals: 2 };
@@ -85,11 +85,11 @@ function ticks(from, to, wanted, isDegrees) {
   let step = [1, 2, 2.5, 5, 10].map(m => m * power).find(s => s >= rough * 0.999);
   if (isDegrees && span > 12) step = [5, 10, 15, 30, 45, 90, 180, 360].find(s => s >= rough * 0.999) || Math.ceil(rough / 360) * 360;
   const values = [];
-  // A tick at the end is not lost to rounding.
+  // The tolerance keeps ticks at both ends despite rounding.
   const first = Math.ceil(from / step - 1e-6);
   const last = Math.floor(to / step + 1e-6);
   for (let k = first; k <= last && values.length < 60; k++) values.push(k * step);
-  // So many that the step is exact: 2.5 needs one more than 2.
+  // Enough decimals to print the step exactly: 2.5 needs one more than 2.
   let decimals = 0;
   while (decimals < 12 && Math.abs(step * 10 ** decimals - Math.round(step * 10 ** decimals)) > 1e-6 * step * 10 ** decimals) decimals++;
   return { values, decimals };

@@ -1,4 +1,4 @@
-// The page: one run after another in the same document.
+// The page. It shows one run after another in the same document.
 
 function create(root, options = {}) {
   const state = readState(options.hash === false ? '' : location.hash);
@@ -8,11 +8,11 @@ function create(root, options = {}) {
   let pending = null;
   const unitProxy = { of: (...a) => units.of(...a), text: (...a) => units.text(...a), names: () => units.names() };
 
-  // What is not seen at once can wait.
+  // Parts below the visible ones are filled later.
   const later = createLater();
 
   const actions = {
-    // A row that someone asks for: playing stops.
+    // Moves to a row that the user selects; this stops the animation.
     move(newRow) {
       player.stop();
       move(newRow);
@@ -58,7 +58,7 @@ function create(root, options = {}) {
     el('header', {}, el('div', {}, title, subtitle), el('div', { class: 'tools' }, hash, unitButton, themeButton)), note, words.top,
     el('div', { class: 'grid' }, left, charts.root), peaks.tableCard, words.root);
 
-  // Another run of the same scene keeps the position, where it has the same axis; one of another scene begins at its first.
+  // Shows a run. The position is kept if the scene and the axis are the same; otherwise the run starts at its first row.
   function show(description, numbers, isOther) {
     const axis = run && run.axis && run.axis.key;
     let before = run ? axis && run.axis.values[row] : state.at;
@@ -111,7 +111,7 @@ function create(root, options = {}) {
     remember();
   }
 
-  // The address follows when nothing has moved for a moment: browsers limit how often it may change.
+  // Writes the state to the address after a pause of 300 ms, because browsers limit how often the address may change.
   function remember() {
     if (options.hash === false) return;
     clearTimeout(pending);
@@ -144,7 +144,7 @@ function create(root, options = {}) {
     const { target } = event;
     if (event.ctrlKey || event.metaKey || event.altKey || !run || !run.axis) return;
     if (target.closest && target.closest('input:not([type=range]), textarea, select, [contenteditable]')) return;
-    // A slider of another part of the document has its own keys.
+    // Other inputs of the document, such as sliders, handle their keys themselves.
     if (target.closest && target.closest('input') && !root.contains(target)) return;
     const isButton = target.closest && target.closest('button, summary, a');
     const step = event.shiftKey ? 10 : 1;
@@ -169,7 +169,7 @@ function create(root, options = {}) {
       run.numbers = numbers;
     },
     move: actions.move,
-    // A promise that nothing of it waits for its turn any more.
+    // A promise that resolves when no deferred work is left.
     settled: later.done,
     row: () => row,
     run: () => run,
@@ -177,7 +177,7 @@ function create(root, options = {}) {
   };
 }
 
-// Whether all bodies end where they began.
+// Whether all bodies have the same position in the last row as in the first.
 function isClosed(run) {
   const d = run.description.drawing;
   if (!d || run.rows < 3) return false;
@@ -189,7 +189,7 @@ function isClosed(run) {
   }));
 }
 
-// Which forces and paths are shown.
+// The check boxes that select the forces and paths to show.
 function createChoices(state, mechanism, changed) {
   const root = el('div', { class: 'choices' });
   const renewed = createRenewed(root);

@@ -1,7 +1,7 @@
-// The largest values at a glance, and the table of all peaks with places, sparklines and jumps.
+// The largest values as buttons, and the table of all peaks with their positions, sparklines and links to these positions.
 
 const CHIPS = 6;
-// Units in the order in which their largest values are asked for.
+// Units of the buttons, the most useful first.
 const CHIP_UNITS = ['N', 'N m', 'W', 'kg m2', 'm/s2', 'm/s', 'rad/s2', 'rad/s', 'J', 'm', 'rad'];
 
 function createPeaks(units, actions, later) {
@@ -27,7 +27,7 @@ function createPeaks(units, actions, later) {
       if (entry.isIntersecting) { seen.add(own); now(own); } else seen.delete(own);
     }
   }, { rootMargin: '400px' });
-  // On paper all of them are seen.
+  // All rows are visible in print.
   window.addEventListener('beforeprint', () => rows.forEach(now));
 
   function show(newRun) {
@@ -39,7 +39,7 @@ function createPeaks(units, actions, later) {
     if (run.shape === shape) {
       for (const own of rows) [own.column, own.isOld] = [run.columns[own.column.index], true];
       seen.forEach(now);
-      // The others before they come to be seen.
+      // Fills the lines outside the visible part later.
       let k = 0;
       later.add('peaks', isLate => {
         while (k < rows.length && !isLate()) if (rows[k++].isOld) fill(rows[k - 1]);
@@ -65,7 +65,7 @@ function createPeaks(units, actions, later) {
     sift();
   }
 
-  // The line of a column, without its numbers.
+  // Creates the line of a column, without its numbers.
   function line(column) {
     const own = { column, isOld: true };
     const end = which => ({
@@ -82,7 +82,7 @@ function createPeaks(units, actions, later) {
     return own;
   }
 
-  // Its numbers, but for the value of the row: that is written where the line is seen.
+  // Fills in the numbers, except the value in the current row, which is written only for visible lines.
   function fill(own) {
     own.isOld = false;
     const { column } = own;
@@ -101,7 +101,7 @@ function createPeaks(units, actions, later) {
     }
   }
 
-  // By unit the column with the largest value.
+  // The column with the largest value of each unit.
   function largestOfUnits() {
     const found = new Map();
     for (const column of run.columns) {
@@ -121,7 +121,7 @@ function createPeaks(units, actions, later) {
       const chip = el('button', { type: 'button', class: 'chip', onclick: () => actions.move(run.rowAt(chip.at)) }, el('span', { class: 'chip-name' }), el('strong'), el('span', { class: 'chip-at' }));
       chips.append(chip);
     }
-    // A long name goes on in another line after one of its points.
+    // Zero-width spaces allow a long name to break after a dot or an underscore.
     chosen.forEach((column, k) => {
       const chip = chips.children[k];
       const { min, max } = column.peak;
@@ -155,7 +155,7 @@ function createPeaks(units, actions, later) {
       row = newRow;
       for (const own of seen) now(own);
     },
-    // The rows that the filter leaves.
+    // The columns that the filter leaves.
     listed: () => rows.filter(r => !r.line.hidden).map(r => r.column),
   };
 }

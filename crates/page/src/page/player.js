@@ -1,4 +1,4 @@
-// The row: slider, playing, speed, and what is said of it.
+// The player: slider, animation, speed, and the read-out of the current row.
 
 const PASS_SECONDS = 6;
 

@@ -1,4 +1,4 @@
-// A run: its description with the columns as arrays, what belongs in one chart, and rows by their place on the axis.
+// A run: its description, its columns as arrays, the groups of columns for charts, and the search for a row by a value of the axis.
 
 function createRun(description, numbers) {
   const d = typeof description === 'string' ? JSON.parse(description) : description;
@@ -12,9 +12,9 @@ function createRun(description, numbers) {
   }
   const axis = d.axis === null || d.axis === undefined ? null : columns[d.axis];
   const run = { description: d, rows, columns, axis, slot, groups: groupsOf(columns, axis), byKey: new Map(columns.map(c => [c.key, c])) };
-  // What tables and choices are made of: two runs of one shape differ in numbers only.
+  // The contents of tables and menus: two runs with the same shape differ only in numbers.
   run.shape = [d.command, d.axis, ...d.columns.map(c => `${c.key}|${c.label}|${c.unit}|${c.group}|${c.description}`)].join('\n');
-  // The rows from the first to the last on the screen, as they are written in curves. All charts have one axis.
+  // Horizontal coordinates of the visible rows, as text in px. All charts share them, because they share the axis.
   let places = { of: '', across: [] };
   run.places = ([first, last], toX, scale) => {
     const of = [first, last, scale].join();
@@ -25,10 +25,10 @@ function createRun(description, numbers) {
   return run;
 }
 
-// Whether the command says that a column is zero but for rounding.
+// Whether the command reports that a column is zero within rounding.
 const isRounding = column => Boolean(column.peak) && column.peak.min.value === 0 && column.peak.max.value === 0;
 
-// The smallest and the largest value of a column in its rows; of one that is rounding zero.
+// The smallest and the largest value of a column over its rows; both are zero for a column that is zero within rounding.
 function extentOf(column) {
   if (!column.extent && isRounding(column)) column.extent = [0, 0];
   if (!column.extent) {
@@ -49,7 +49,7 @@ function varies(column) {
   return high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high));
 }
 
-// Columns of one group and one unit, in their order. The axis and the time are no curves.
+// The columns by group and unit, in their order. The axis and the time are omitted.
 function groupsOf(columns, axis) {
   const groups = new Map();
   for (const column of columns) {
@@ -61,7 +61,7 @@ function groupsOf(columns, axis) {
   return groups;
 }
 
-// The row that is nearest to a value of the axis.
+// The row nearest to a value of the axis.
 function rowAt(axis, rows, at) {
   if (!axis || rows === 0) return 0;
   const values = axis.values;

@@ -1,5 +1,5 @@
-// The symbols of joints in space as they are seen: lists of paths about their points, px, each with its class and, where it is shaded, the part of its colour.
-// Sizes are in half lengths of a hinge, as those of the pictures.
+// The symbols of joints in space: lists of paths relative to the point of the joint, px. Each path has its class; a shaded path also
+// has the percentage of its colour. Sizes are in half lengths of a hinge, as in the pictures.
 
 const CYLINDERS = { hinge: [0.5, 1], sleeve: [0.5, 1.3], screw: [0.5, 1.3], 'left-screw': [0.5, 1.3], disc: [1, 0.3] };
 const BALLS = { ball: 0.55, 'rod-end': 0.41, weld: 0.4, cross: 0.3, teeth: 0.3 };
@@ -9,8 +9,8 @@ const polygon = (points, isOpen) => points.map(([x, y], k) => `${k ? 'L' : 'M'}$
 const along = (count, point) => Array.from({ length: count + 1 }, (_, k) => point(k / count));
 const circlePath = ([x, y], r) => `M${x + r} ${y}A${r} ${r} 0 1 1 ${x - r} ${y}A${r} ${r} 0 1 1 ${x + r} ${y}`;
 
-// `see(n, c, a)` is where a point along the normal, across, and along the axis is in the picture, px, and how near: a unit is half a hinge.
-// `unit` is its length, px, and `away` the direction from the moving body in the picture.
+// `see(n, c, a)` maps coordinates along the normal, across, and along the axis, in half lengths of a hinge, to the picture (px) and to
+// the nearness. `unit` is half the length of a hinge, px. `away` is the direction away from the moving body in the picture.
 function solidPaths(look, see, unit, away) {
   const cylinder = CYLINDERS[look];
   const paths = [];
@@ -40,7 +40,7 @@ function solidPaths(look, see, unit, away) {
   return paths;
 }
 
-// The side, the end that is seen, and the pin in it.
+// The lateral surface, the visible end face, and the pin in it.
 function cylinderPaths(see, [radius, half], unit) {
   const axis = see(0, 0, 1);
   const sign = axis[2] < 0 ? -1 : 1;
@@ -55,7 +55,7 @@ function cylinderPaths(see, [radius, half], unit) {
   return seen < 0.999 ? [['solid', side, 28], ['solid', end(1), 10], ['dark', end(0.35)]] : [['solid', side, 28]];
 }
 
-// The part of a thread that is seen.
+// The visible part of a thread.
 function threadPath(see, [radius, half], hand) {
   let d = '';
   let isOn = false;
@@ -69,7 +69,7 @@ function threadPath(see, [radius, half], hand) {
   return d;
 }
 
-// The faces of a box that look at the reader.
+// The faces of a box that face the viewer.
 function blockPaths(see, [half, length], foot) {
   const sizes = [half, half, length];
   const paths = [];
@@ -90,7 +90,7 @@ function blockPaths(see, [half, length], foot) {
   return paths;
 }
 
-// A ball with its light.
+// A ball with highlights.
 function ballPaths([x, y], r) {
   const lights = [[0.12, 0.72, 38], [0.22, 0.48, 20], [0.3, 0.22, 3]];
   return [['ball', circlePath([x, y], r), 55], ...lights.map(([by, size, part]) => ['ball light', circlePath([x - by * r, y - by * r], size * r), part])];
@@ -100,14 +100,14 @@ function arrowBetween(a, b) {
   return arrowPath(a[0], a[1], b[0] - a[0], b[1] - a[1]);
 }
 
-// The hatched ground at a joint, along a direction, on the side away from the moving body.
+// Hatched ground at a joint along a direction, on the side away from the moving body.
 function groundPath([x, y], direction, away, unit) {
   const isSeen = direction && Math.hypot(direction[0], direction[1]) > 0.4 * unit;
   const [u, v] = isSeen ? direction : [1, 0];
   const length = Math.hypot(u, v);
   let [nx, ny] = [-v / length, u / length];
   const side = nx * away[0] + ny * away[1];
-  // Below, where the body is on neither side.
+  // If the body is on neither side, the ground is drawn below.
   const isLevel = Math.abs(side) < 0.2 * Math.max(unit, Math.hypot(away[0], away[1]));
   if (isLevel ? ny < 0 : side < 0) [nx, ny] = [-nx, -ny];
   return groundLine([x + 0.5 * unit * nx, y + 0.5 * unit * ny], [nx, ny], 1.1 * unit);
@@ -119,13 +119,13 @@ function groundLine([x, y], [nx, ny], half) {
   return linePath(a, b) + hatching(a, b);
 }
 
-// A hatched wall across the end of a guide; below it where it is seen from its end.
+// A hatched wall across the end of a guide. If the view is along the guide, the wall is drawn below it.
 function wallPath(at, [u, v], seen, unit) {
   const length = Math.hypot(u, v);
   return seen < 0.4 ? groundPath(at, null, [0, 1], unit) : groundLine(at, [u / length, v / length], 0.8 * unit);
 }
 
-// The ground beside a block that slides on it from one end to another.
+// Hatched ground beside a block that slides on it from a to b.
 function railPath(a, b, seen, unit) {
   if (seen < 0.4) return groundPath([0, 0], null, [0, 1], unit);
   const length = Math.hypot(b[0] - a[0], b[1] - a[1]);

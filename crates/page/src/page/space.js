@@ -1,6 +1,6 @@
-// Where points of bodies are in a row, and in the picture.
+// Positions of points of bodies in a row, and in the picture.
 
-// By body and row: the place of a point, written into `out` as x, y, z.
+// Placements of the bodies. `place` and `direct` write x, y, z into `out`.
 function createFrames(drawing, run) {
   const bodies = drawing.bodies.map(body => body.placements.map(k => run.slot(k)));
   const isPlane = drawing.view === null;
@@ -47,7 +47,7 @@ function createFrames(drawing, run) {
   return { isPlane, place, direct, isFixed: body => !bodies[body].length, placement: (body, row) => bodies[body].map(p => p[row]) };
 }
 
-// An orthographic view: what points to the right, upwards and to the viewer, and where it is in the picture.
+// An orthographic view: unit vectors to the right, upwards and towards the viewer, and the origin and scale in the picture.
 function createView(angles) {
   const view = { scale: 1, x: 0, y: 0, right: [1, 0, 0], up: [0, 1, 0], toward: [0, 0, 1], angles: null };
   view.look = (azimuth, elevation) => {
@@ -65,7 +65,7 @@ function createView(angles) {
   return view;
 }
 
-// What all parts go through: the middle and the sides of a box, and the radius of a ball about its middle.
+// The bounding box of all parts over the run, by middle and sides, and the radius of the bounding sphere about this middle.
 function boundsOf(drawing, frames, rows) {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];

@@ -1,4 +1,4 @@
-// The state of a page in its address: a link shows the same row, zoom, curves and view.
+// The state of a page in its address, so that a link shows the same row, zoom, curves and view.
 
 function readState(hash) {
   const state = { row: null, zoom: null, charts: [], units: 'scene', view: null, arrows: null, paths: null, forces: true, showPaths: true };

@@ -30,7 +30,7 @@ function drivePath([ax, ay], [bx, by], unit) {
   return arrowPath(ax + 0.3 * dx + aside * dy, ay + 0.3 * dy - aside * dx, 0.4 * dx, 0.4 * dy);
 }
 
-// Strokes on the right of a line of the ground, seen along it.
+// Hatching on the right-hand side of the line from a to b.
 function hatching([ax, ay], [bx, by]) {
   const [dx, dy] = [bx - ax, by - ay];
   const length = Math.hypot(dx, dy) || 1;

@@ -1,10 +1,10 @@
-// What a run says: messages, findings, numbers, tables, events, the scene and where the results come from.
+// The texts of a run: messages, findings, numbers, tables, events, the scene and the provenance of the results.
 
 function createWords(units, actions, later) {
   const root = el('div', { class: 'words' });
   const top = el('div', { class: 'messages' });
 
-  // By place: what a card was made of, and the card.
+  // The cards in their order, each with the signature of its contents.
   let cards = [];
   let shownRun = null;
   const renewedTop = createRenewed(top);
@@ -18,7 +18,7 @@ function createWords(units, actions, later) {
     else later.add('words', () => { fill(); return true; });
   }
 
-  // Cards stay as they are, open or closed, where what they say has not changed.
+  // A card with unchanged contents is kept, open or closed.
   function fill() {
     const d = shownRun.description;
     const { axis } = shownRun;
@@ -42,7 +42,7 @@ function createWords(units, actions, later) {
   return { root, top, show };
 }
 
-// What the reader has opened stays open.
+// Opens the sections that are open in the previous card.
 function keepOpen(before, now) {
   const [old, details] = [before.querySelectorAll('details'), now.querySelectorAll('details')];
   if (old.length === details.length) details.forEach((own, k) => { own.open = old[k].open; });
@@ -53,7 +53,7 @@ function message({ severity, text, help }) {
     el('strong', {}, severity), ' ', el('span', {}, text), help ? el('p', {}, `try: ${help}`) : null);
 }
 
-// Failures first and open; the others behind a line where they are many.
+// Shows failed findings first. More than 12 passed findings are collapsed.
 function findingsCard(findings) {
   if (!findings.length) return null;
   const failed = findings.filter(f => !f.pass);

@@ -6,12 +6,12 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-#: A line of the function that gives a name a value, with what the name means if it is a constant of the mechanism. A value is numbers, names,
-#: operators and parentheses only; text of a scene is in comments and is never executed.
+#: An assignment in the generated function: name, value and, for constants of the mechanism, the meaning in a comment. A value consists of numbers,
+#: names, operators and parentheses only. Text of a scene occurs only in comments, and is never executed.
 _ASSIGNMENT = re.compile(r"^    ([A-Za-z]\w*) = ((?:[A-Za-z]\w*|[\d.]+(?:e[+-]?\d+)?|[-+*/(), ])+?)(?:  # (.*))?$", re.MULTILINE)
 #: A quantity in the description of the function: name, meaning.
 _QUANTITY = re.compile(r"^    (\w+): (.*)$", re.MULTILINE)
-#: A quantity that it returns.
+#: A quantity that the function returns.
 _RETURNED = re.compile(r'^        "(\w+)": \1,$', re.MULTILINE)
 
 

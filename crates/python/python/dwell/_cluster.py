@@ -61,7 +61,7 @@ class _Study:
 
     @property
     def scene(self) -> pathlib.Path:
-        """The scene file beside the results, which has their name."""
+        """The scene file beside the results, with the same base name."""
         return pathlib.Path(self.folder) / "study.toml"
 
     def run(self, *shard: str, threads: int | None = None) -> None:
@@ -102,7 +102,7 @@ def _by_ray(study: _Study, blocks: int, progress: Progress) -> None:
 def _by_dask(study: _Study, blocks: int, progress: Progress) -> None:
     import distributed
 
-    # Its functions have no types.
+    # The functions of Dask have no type annotations.
     dask: Any = distributed
     try:
         client, own = dask.get_client(), False

@@ -43,7 +43,7 @@ class Drawn(Protocol):
 
 
 def places(mechanism: Drawn, q: float | Sequence[float] | Array | None) -> dict[str, dict[str, Array]]:
-    """By body, the positions of its points at coordinates q (default: at assembly)."""
+    """The positions of the points of each body at coordinates q (default: at assembly), m."""
     state = mechanism.at(mechanism.start if q is None else q)  # type: ignore[arg-type]
     return {
         body: {point: state.position(f"{body}.{point}") for point in points} for body, points in mechanism.points.items()
@@ -143,7 +143,7 @@ def animate_mechanism(mechanism: Drawn, motion: Results | None, frames: int, int
         coordinates = np.array([motion[name][rows] for name in mechanism.actuators]).T
     else:
         low, high = mechanism.limits or (mechanism.start[0], mechanism.start[0] + 2 * np.pi)
-        # The limits themselves are singular.
+        # The mechanism is singular at the limits themselves.
         inset = 0.0 if mechanism.limits is None else 1e-3 * (high - low)
         coordinates = np.linspace(low + inset, high - inset, frames)[:, None]
     corners = [
@@ -172,7 +172,7 @@ def animate_mechanism(mechanism: Drawn, motion: Results | None, frames: int, int
 
 
 def plot_columns(results: Results, names: Sequence[str], x: str) -> Any:
-    """Plots columns over another one, with one axis for each unit."""
+    """Plots columns over another column, with one axis for each unit."""
     chosen = list(names) or [name for name in results if name != x][:1]
     units = list(dict.fromkeys(results.units[name] for name in chosen if results[name] is not None))
     figure, all_axes = _pyplot().subplots(len(units), sharex=True, squeeze=False, layout="constrained")

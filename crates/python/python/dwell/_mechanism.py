@@ -110,7 +110,7 @@ class Mechanism:
 
     @property
     def limits(self) -> tuple[float, float] | None:
-        """The limits of the only coordinate, rad or m, if it has any."""
+        """The limits of the coordinate, rad or m; None unless the mechanism has exactly one coordinate with limits."""
         return self._native.limits
 
     @property
@@ -234,7 +234,7 @@ class Mechanism:
         return animate_mechanism(self, motion, frames, interval)
 
     def _repr_svg_(self) -> str:
-        # As wide as a picture in a text; the height follows from the drawing.
+        # The width suits a text column; the height follows from the drawing.
         return re.sub('width="[0-9]+" height="[0-9]+"', 'width="640"', self._native.svg(list(self.start)), count=1)
 
     def _coordinates(self, values: float | Sequence[float]) -> list[float]:

@@ -48,7 +48,7 @@ class StateSpace:
 
     @property
     def matrices(self) -> tuple[Array, Array, Array, Array]:
-        """A, B, C, D."""
+        """The matrices A, B, C and D."""
         return self.a, self.b, self.c, self.d
 
 

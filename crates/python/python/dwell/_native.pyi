@@ -1,4 +1,4 @@
-"""The native half of the package: see the classes of `dwell`, which name arrays and units."""
+"""The compiled half of the package. The classes of `dwell` wrap it; their documentation states shapes and units."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 _Array = npt.NDArray[np.float64]
-# Called with the number of completed steps, and of all steps.
+# A callback with two arguments: the number of completed steps, and the number of all steps (0 if unknown).
 _Progress = Callable[[int, int], None]
 
 __version__: str

@@ -8,7 +8,7 @@ import warnings
 from types import TracebackType
 from typing import Any
 
-#: Seconds after which it is shown.
+#: Delay before the progress is shown, s.
 SILENT = 2.0
 
 
@@ -35,7 +35,7 @@ class Progress:
     def _tqdm(self, of: int) -> Any:
         try:
             with warnings.catch_warnings():
-                # In a notebook without widgets tqdm shows text, and warns.
+                # In a notebook without widgets tqdm shows text and issues a warning.
                 warnings.simplefilter("ignore")
                 from tqdm.auto import tqdm
         except ImportError:

@@ -133,7 +133,7 @@ class Motion(Results):
         time = self["t"]
         if at.size and not (np.all(at >= time[0]) and np.all(at <= time[-1])):
             raise ValueError(f"the motion lasts from {time[0]} to {time[-1]} s")
-        # A row before, and one after: an event may write two rows at one instant.
+        # The rows before and after the time. Two rows may have the same time, because an event writes a row before and one after it.
         left = np.clip(np.searchsorted(time, at, side="right") - 1, 0, max(len(time) - 2, 0))
         found: dict[str, Array] = {}
         for name in self._columns:

@@ -1,4 +1,4 @@
-//! The joints: which points of which bodies they connect, and their kinds.
+//! The joints: the points that they connect, and their kinds.
 
 mod coupling;
 mod gears;
@@ -16,7 +16,7 @@ use dwell_kinetostatics::Guide;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// A joint as read; nothing in it if it was wrong, while its name still counts as known.
+/// A joint as read; its contents are `None` if it is invalid, but its name counts as known.
 #[derive(Debug, Clone)]
 pub(crate) struct ParsedJoint {
     pub(crate) name: String,
@@ -30,7 +30,7 @@ pub(crate) struct ParsedJoint {
 #[derive(Debug)]
 pub(crate) struct Joints<'a> {
     pub(crate) list: Vec<ParsedJoint>,
-    /// Which joints a name stands for: several only if it is that of a pin of several bodies.
+    /// The joints of a name; several only if it is that of a pin of several bodies.
     by_name: HashMap<String, Range<usize>>,
     pub(crate) couplings: Vec<Coupling>,
     /// Couplings, which are read after the coordinates.
@@ -103,8 +103,8 @@ impl<'a> Joints<'a> {
         self.list.get(joint.0)?.joint.as_ref()?.guide()
     }
 
-    /// A joint between two bodies stands in the list under its own name; the joints of a pin of
-    /// several bodies have names of their own, which no other joint may have.
+    /// Names the joints: a joint between two bodies has its own name in the list; each joint of a pin of several bodies
+    /// has its own name, which no other joint may have.
     fn name_pins(&mut self) {
         for (k, joint) in self.list.iter().enumerate() {
             let named = self.by_name.get(&joint.name);

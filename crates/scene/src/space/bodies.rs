@@ -55,8 +55,8 @@ impl Notation for Space {
     }
 }
 
-/// Warns of a tensor that no distribution of mass has. It is used as it is: published mechanisms have such, and the equations of motion
-/// do not mind.
+/// Warns of a tensor that no distribution of mass has. The tensor is used unchanged: some published mechanisms have such tensors, and
+/// the equations of motion are still valid.
 fn warn_of_excess(entry: &Entry<'_>, mass: &Mass, fields: &TableReader<'_>) {
     let [one, two, three] = mass.principal_moments();
     if mass.excess_moment() <= EXCESS * (one + two + three) {

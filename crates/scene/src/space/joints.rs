@@ -1,4 +1,4 @@
-//! The joints: which points of which bodies they connect, along which axes.
+//! The joints: the points that they connect, and their axes.
 
 use super::values::{direction, two_directions};
 use crate::bodies::{Bodies, TWO_POINTS};
@@ -15,7 +15,7 @@ use dwell_geometry::JointId;
 use dwell_geometry::space::{Condition, Joint, JointKind, Side, Vec3};
 use std::f64::consts::TAU;
 
-/// A joint as read; nothing in it if it was wrong, while its name still counts as known.
+/// A joint as read; its contents are `None` if it is invalid, but its name counts as known.
 #[derive(Debug)]
 pub(super) struct ParsedJoint<'a> {
     pub(super) name: &'a str,
@@ -72,7 +72,7 @@ impl<'a> Joints<'a> {
     }
 }
 
-/// The kinds of joints that scenes in the plane alone have, and what stands for them in space.
+/// The kinds of joints that exist only in the plane, and their counterparts in space.
 const PLANAR_KINDS: [(&str, &str); 4] = [
     (
         "slot",

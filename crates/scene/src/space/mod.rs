@@ -1,4 +1,4 @@
-//! What is written in scenes in space alone, whose points have three numbers.
+//! The parts of scenes that exist only in space, where points have three numbers.
 
 mod actuators;
 mod assembly;

@@ -38,7 +38,7 @@ fn exists(kind: JointKind, component: Component) -> bool {
     }
 }
 
-/// The components of a joint in the axes of the ground, but those that are always zero.
+/// The components of a joint in the axes of the ground, without those that are always zero.
 pub(super) fn in_ground_axes(joint: &Joint, ground: usize) -> Vec<Component> {
     let own_axis = (0..2).find(|k| joint.side_body(*k).0 == ground);
     let own_axis = own_axis.map(|k| joint.sides[k].axis);

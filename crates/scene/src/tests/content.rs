@@ -1,4 +1,4 @@
-//! What a scene says, as data.
+//! The data of a scene.
 
 use super::*;
 use crate::{Calibration, DwellRequest, MotionDuration, PathPoint};

@@ -1,4 +1,4 @@
-//! What is said of scenes with something wrong: the catalogue in errors.txt, and what does not fit it.
+//! Messages for invalid scenes: the catalogue in errors.txt, and further ones.
 
 use super::*;
 use std::fmt::Write as _;

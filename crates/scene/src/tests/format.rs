@@ -1,5 +1,5 @@
-//! The description of the keys, and what is made of it: the schema, the documentation. What they
-//! say is held against what the reader does.
+//! The description of the keys, and its products, the schema and the documentation, compared with the behaviour of the
+//! reader.
 
 use super::*;
 use crate::keys::{self, KeySchema, Presence, TableSchema, ValueShape, kinds};

@@ -1,4 +1,4 @@
-//! What driven.toml says, to the last digit: friction, drives, led actuators and events.
+//! The contents of driven.toml, to the last digit: friction, drives, prescribed actuators and events.
 
 use super::*;
 use crate::{EventTrigger, MotionDuration, NamedEvent, SceneLocation};

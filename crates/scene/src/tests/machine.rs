@@ -1,4 +1,4 @@
-//! What machine.toml says, to the last digit: every kind of joint, actuator, coordinate and load,
+//! The contents of machine.toml, to the last digit: every kind of joint, actuator, coordinate and load,
 //! prescribed motions and sweeps.
 
 use super::*;

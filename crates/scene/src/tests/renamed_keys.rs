@@ -3,7 +3,7 @@
 use super::*;
 use crate::tests::format::tables;
 
-/// A text that one of the three scenes contains once, and the same with a key as it was called.
+/// A text that one of the three scenes contains once, and the text with the former name of a key.
 const RENAMED: [(&str, &str, &str); 26] = [
     (WHOLE, "relative-band = 0.02", "band = 0.02"),
     (WHOLE, "initial-coordinate = 30", "start = 30"),

@@ -1,4 +1,4 @@
-//! What a scene in space is read as.
+//! The data of scenes in space.
 
 use super::format::{merged, tables, tables_of_examples};
 use super::mutations::pieces;

@@ -22,7 +22,7 @@ const GUESS_TOLERANCE: f64 = 1e-6;
 /// Maximum steps of an integration: a machine that has not completed its revolutions by then never does.
 const MAX_STEPS: usize = 100_000;
 
-/// The same cycle, shifted to the first revolution of the coordinate.
+/// The cycle, shifted to the first revolution of the coordinate.
 fn in_first_revolution(mut cycle: Cycle) -> Cycle {
     let offset = cycle.cycle_angle * (cycle.initial_state[0] / cycle.cycle_angle).floor();
     cycle.initial_state[0] -= offset;
@@ -116,7 +116,7 @@ fn work_columns(prepared: &SceneMachine<'_, impl MachineScene>) -> impl Iterator
     })
 }
 
-/// The column of the coordinate in the samples of a cycle, where it is the only one.
+/// The column of the coordinate in the samples of a cycle with a single coordinate.
 pub const COORDINATE_COLUMN: usize = 1;
 
 /// One cycle: time, states, acceleration and works since its start.
@@ -170,9 +170,9 @@ pub struct SizedFlywheel {
 
 /// Whether a machine has a steady cycle.
 pub enum CycleSearch<'a, S: MachineScene = PlaneScene> {
-    /// It was found.
+    /// The cycle was found.
     Steady(Box<CycleResults<'a, S>>),
-    /// None was found, or its error is too large to say: why.
+    /// No cycle was found, or its error is too large to decide; with the reason.
     NoCycle {
         /// The scene with its machine.
         prepared: Box<SceneMachine<'a, S>>,

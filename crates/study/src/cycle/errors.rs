@@ -9,19 +9,19 @@ pub(crate) const MAX_SPEED_ERROR: f64 = 1e-3;
 /// The estimated errors of a steady cycle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CycleErrors {
-    /// Of the period and of every speed, relative to it.
+    /// Relative error of the period and of every speed.
     pub speed: f64,
-    /// Of the coordinate where the speed is least, and where it is greatest, rad.
+    /// Errors of the coordinates at which the speed is least and greatest, rad.
     pub positions: [f64; 2],
-    /// Of the coefficient of fluctuation.
+    /// Error of the coefficient of fluctuation.
     pub fluctuation: f64,
-    /// Of every work, J.
+    /// Error of every work, J.
     pub work: f64,
     /// By Floquet multiplier.
     pub multipliers: Vec<f64>,
 }
 
-/// What is known of the stability of a cycle.
+/// The stability of a cycle, as far as its errors decide.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CycleStability {
     /// A small disturbance decays.

@@ -19,7 +19,7 @@ use dwell_scene::SceneFile;
 use std::f64::consts::{PI, TAU};
 
 /// The steady cycle of a scene, and the flywheel for a target coefficient of speed fluctuation if given. If no steady
-/// cycle is found, [`TrajectoryOutcome::early_stop`] says why.
+/// cycle is found, [`TrajectoryOutcome::early_stop`] has the reason.
 ///
 /// # Errors
 /// [`StudyError`] when the free coordinate does not rotate fully, nothing does work, or a load depends on time.
@@ -89,7 +89,7 @@ fn speed_text(
     format!("{in_unit} {unit}/s ({minute} 1/min)")
 }
 
-/// What is said of the cycle; the numbers in it are recorded.
+/// The summary of the cycle; its numbers are recorded.
 fn summary(results: &CycleResults<'_, impl MachineScene>, record: &mut Record) -> String {
     let (prepared, cycle, errors) = (&results.prepared, &results.steady, &results.errors);
     let (coordinate, _) = prepared.first_free_coordinate();
@@ -154,7 +154,7 @@ fn stability_text(cycle: &Cycle, errors: &CycleErrors, record: &mut Record) -> S
     )
 }
 
-/// The works, what is left of their sum, and the errors of all numbers.
+/// The works, the remainder of their sum, and the errors of all numbers.
 fn work_text(
     prepared: &SceneMachine<'_, impl MachineScene>,
     cycle: &Cycle,

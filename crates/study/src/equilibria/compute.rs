@@ -35,12 +35,13 @@ const MAX_STARTS: usize = 3200;
 /// Range of a length on both sides of the start, in sizes of the mechanism.
 const LENGTH_RANGE: f64 = 2.0;
 
-/// Where equilibria were looked for.
+/// The range in which equilibria were searched for.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SearchedRange {
     /// The interval of the only coordinate of the mechanism, rad or m, in which all are found.
     Interval([f64; 2]),
-    /// So many starts within the ranges of the free coordinates, rad or m; what no start leads to is not found.
+    /// The number of starts within the ranges of the free coordinates, rad or m. An equilibrium to which no start leads
+    /// is not found.
     Starts {
         /// How many.
         starts: usize,
@@ -222,7 +223,7 @@ pub struct EquilibriaResults<'a, S: MachineScene = PlaneScene> {
     pub prepared: SceneMachine<'a, S>,
     /// The equilibria.
     pub found: Vec<Equilibrium>,
-    /// Where they were looked for.
+    /// The range in which they were searched for.
     pub searched: SearchedRange,
     /// One row per equilibrium.
     pub table: Table,

@@ -14,8 +14,8 @@ use dwell_page::Page;
 use dwell_report::TableExport as _;
 use std::f64::consts::TAU;
 
-/// The equilibria of a scene: with one coordinate all of its range, with several those that Newton's method finds from
-/// many starts.
+/// The equilibria of a scene: with one coordinate, all in its range; with several, those that Newton's method finds
+/// from many starts.
 ///
 /// # Errors
 /// [`StudyError`] when a load depends on time, or with several coordinates none is found.
@@ -60,7 +60,7 @@ fn static_force_page<S: MachineScene>(
     Some(page)
 }
 
-/// What is said of the equilibria; the numbers in it are recorded.
+/// The summary of the equilibria; its numbers are recorded.
 fn summary(results: &EquilibriaResults<'_, impl MachineScene>, record: &mut Record) -> String {
     let (prepared, found) = (&results.prepared, &results.found);
     record.add_count("equilibria", found.len());
@@ -93,7 +93,7 @@ fn summary(results: &EquilibriaResults<'_, impl MachineScene>, record: &mut Reco
     text + &prepared.branch_note()
 }
 
-/// Where equilibria were looked for.
+/// The text about the range in which equilibria were searched for.
 fn searched_text(
     results: &EquilibriaResults<'_, impl MachineScene>,
     record: &mut Record,

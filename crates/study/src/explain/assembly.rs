@@ -201,7 +201,7 @@ pub(crate) fn freedom_text(degrees_of_freedom: usize, actuators: usize) -> Strin
     format!("the mechanism has {freedom} and {actuators}")
 }
 
-/// Labels of so many actuators.
+/// The labels of all actuators.
 pub(crate) fn driven_labels(actuators: usize) -> Labels {
     let actuators = (0..actuators).map(ActuatorId);
     labels(actuators.map(SceneLocation::Actuator), "drives it")
@@ -261,7 +261,7 @@ pub(crate) fn not_one_actuator(scene: &PlaneScene) -> StudyError {
     wrong_actuators(scene, actuators, actuator_labels(scene, "drives it"))
 }
 
-/// The same of a scene in the plane or in space, with labels of its actuators.
+/// The error for a scene in the plane or in space, with labels of its actuators.
 pub(crate) fn wrong_actuators(scene: &SceneFile, actuators: usize, labels: Labels) -> StudyError {
     let given = count(actuators, "actuator");
     let message = format!("the scene has {given}: the reduced model needs exactly one");
@@ -334,7 +334,7 @@ fn describe_by_angles(mechanism: &Mechanism, bodies: &[BodyId], modes: &[Vec<f64
     modes.join("; or ")
 }
 
-/// Entries for [assembly]: of one joint if it differs in every mode, else of all.
+/// Entries for [assembly]: of one joint if it differs in every mode, otherwise of all.
 fn suggested_hints(scene: &PlaneScene, joints: &[JointId], modes: &[Vec<f64>]) -> String {
     let mechanism = &scene.mechanism;
     let joint = |k: usize| &mechanism.joints[joints[k].0];

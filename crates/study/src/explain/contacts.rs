@@ -28,7 +28,8 @@ pub(super) fn explain_sticking(scene: &impl NamedScene, load: usize, what: &str)
     scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
 }
 
-/// Explains steps that are so short that the motion makes no progress: by a load that the program computes, where there is one.
+/// Explains steps that are so short that the motion makes no progress. If a load is given as a function of a program, the error
+/// names it.
 pub(super) fn explain_no_progress(
     scene: &impl NamedScene,
     function: Option<usize>,

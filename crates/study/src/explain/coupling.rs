@@ -21,7 +21,7 @@ pub(crate) fn couplings(
 }
 
 /// The first coupling of an actuator coordinate whose function has no finite value or derivative at
-/// `q` (rad or m): joint, value of the variable, and what is not finite.
+/// `q` (rad or m): joint, value of the variable, and the quantity that is not finite.
 pub(crate) fn non_finite_coupling(
     mechanism: &Mechanism,
     q: &[f64],

@@ -10,7 +10,7 @@ pub(crate) type Labels = Vec<(SceneLocation, String)>;
 /// Bodies or joints that a message marks.
 const MAX_MARKED: usize = 8;
 
-/// An error of a scene, what to try (nothing if that is empty), and its places in the file.
+/// An error of a scene with a suggestion (may be empty) and its places in the file.
 pub fn scene_error<L: Into<String>>(
     scene: &SceneFile,
     message: impl Into<String>,
@@ -80,7 +80,7 @@ pub(crate) fn body_names(mechanism: &Mechanism, bodies: &[BodyId]) -> String {
     quoted(bodies.iter().map(|&b| mechanism.body_name(b)))
 }
 
-/// The same; "the mechanism" if there are none.
+/// The names of bodies; "the mechanism" if there are none.
 pub(crate) fn body_names_or_mechanism(mechanism: &Mechanism, bodies: &[BodyId]) -> String {
     match bodies {
         [] => "the mechanism".to_owned(),

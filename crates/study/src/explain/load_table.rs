@@ -1,4 +1,4 @@
-//! Where the argument of a load's table is beyond its ends: nothing is known of the load there.
+//! Errors for arguments beyond the ends of a load's table, where the load is undefined.
 
 use super::{NamedScene, StudyError, scene_error};
 use crate::number_format::{coordinate_unit, number};
@@ -17,15 +17,15 @@ pub(crate) fn table_of<C: Copy>(magnitude: &Magnitude<C>) -> Option<(Signal<C>, 
     }
 }
 
-/// Whether a table has a value of its own at `x`.
+/// Whether a table covers `x`.
 pub(crate) fn covers(table: &Spline, x: f64) -> bool {
     let [first, last] = table.range();
     let tolerance = RANGE_TOLERANCE * (last - first);
     (first - tolerance..=last + tolerance).contains(&x)
 }
 
-/// The error where a load's table of this magnitude does not cover a value of its argument; `when` says where in the motion. Coordinates
-/// are known by their names and by whether they are angles.
+/// The error if the table of a magnitude does not cover a value of its argument; `when` describes the place in the motion. Coordinates
+/// are given by their names and whether they are angles.
 pub(crate) fn off_table_error<C: Copy>(
     scene: &impl NamedScene,
     magnitude: &Magnitude<C>,

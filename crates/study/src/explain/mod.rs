@@ -1,4 +1,4 @@
-//! Errors with their locations in the scene file. Below all analyses: nothing here depends on any of them.
+//! Errors with their locations in the scene file. All analyses use this module; it depends on none of them.
 
 mod assembly;
 mod contacts;

@@ -28,7 +28,7 @@ pub fn explain_motion(scene: &PlaneScene, plan: &Plan, error: &DynamicsError) ->
     }
 }
 
-/// The same of what needs no plan, in the plane or in space: of everything but positions.
+/// Explains all errors except those of positions, in the plane or in space; this needs no plan.
 pub(crate) fn explain_any_motion(scene: &impl NamedScene, error: &DynamicsError) -> StudyError {
     match error {
         DynamicsError::Load(load) => explain_load(scene, *load),
@@ -63,16 +63,16 @@ pub(crate) fn explain_any_motion(scene: &impl NamedScene, error: &DynamicsError)
     }
 }
 
-/// What limits the steps of an integration.
+/// The limits of the steps of an integration.
 pub(crate) struct StepLimits {
-    /// The longest step that was asked for, s.
+    /// The requested longest step, s.
     pub(crate) max_step: Option<f64>,
     /// The option that sets the tolerance.
     pub(crate) tolerance: &'static str,
 }
 
-/// Explains a motion that takes too many steps (`what` says how many): it is the longest step allowed that makes them many where they are on
-/// average at least half as long, else the tolerance.
+/// Explains a motion that takes too many steps (`what` states their number). The cause is the longest step if the average step is at least
+/// half as long, otherwise the tolerance.
 pub(crate) fn explain_max_steps(
     scene: &SceneFile,
     t: f64,
@@ -329,7 +329,7 @@ fn explain_near_branches(
     scene_error(scene, message, help, places)
 }
 
-/// No equilibrium, because a force keeps its sign.
+/// Explains that there is no equilibrium because a force keeps its sign.
 fn explain_unbalanced(
     scene: &impl NamedScene,
     actuator: usize,
@@ -423,7 +423,7 @@ fn rounded_down(t: f64) -> Option<String> {
 mod tests {
     use super::*;
 
-    /// The longest step is blamed where it makes the steps many, and nothing else then; the tolerance by its own option.
+    /// The message names the longest step if it is the cause, and otherwise the tolerance with its option.
     #[test]
     fn too_many_steps_are_blamed_on_what_makes_them_many() {
         let text = include_str!("../../tests/run/pendulum.toml");

@@ -1,4 +1,4 @@
-//! What messages about a motion need to know of a scene, in the plane or in space.
+//! The names and places of a scene that messages about a motion need, in the plane or in space.
 
 use dwell_geometry::{ActuatorId, BodyId};
 use dwell_scene::{NamedStop, PlaneScene, SceneFile, SceneLocation, SpaceScene};
@@ -19,7 +19,7 @@ pub trait NamedScene: Deref<Target = SceneFile> {
     /// The name of an actuator, and whether it drives an angle; otherwise it drives a length.
     fn actuator(&self, actuator: usize) -> Option<(&str, bool)>;
 
-    /// The name of a load, or of a drive behind the loads.
+    /// The name of a load, or of a drive, which follow the loads.
     fn load_name(&self, load: usize) -> Option<&str>;
 
     /// Its end stops.
@@ -37,7 +37,7 @@ pub trait NamedScene: Deref<Target = SceneFile> {
     /// Whether there is a `[motion]`.
     fn has_motion(&self) -> bool;
 
-    /// Where the initial state is given: without `[motion]`, in the assembly.
+    /// The place of the initial state: `[motion]`, or else the assembly.
     fn initial_state_location(&self) -> SceneLocation {
         match self.has_motion() {
             true => SceneLocation::Motion,

@@ -9,7 +9,7 @@ use dwell_geometry::{ActuatorId, Mechanism, Plan, PositionError, RangeLimit};
 use dwell_scene::{PlaneScene, SceneFile, SceneLocation};
 use std::f64::consts::TAU;
 
-/// A length, m, to so many digits in the scene's own unit: `12.5 mm`.
+/// A length, m, with `count` digits in the scene's unit: `12.5 mm`.
 pub(crate) fn own_length(file: &SceneFile, length: f64, count: usize) -> String {
     let (value, unit) = file.to_scene_unit(length, false);
     format!("{} {unit}", digits(value, count))
@@ -27,8 +27,8 @@ pub(crate) fn own_speed(file: &SceneFile, speed: f64, is_angle: bool) -> String 
     format!("{} {unit}/s", digits(value, 3))
 }
 
-/// A coordinate with its name: `phi = 2.046915388 rad (117.28°)`, a length in the scene's own unit. What is finer is rounding at the end
-/// of a range.
+/// A coordinate with its name: `phi = 2.046915388 rad (117.28°)`, a length in the scene's own unit. Further digits are rounding at the
+/// end of a range.
 pub(crate) fn describe_coordinate(file: &SceneFile, name: &str, q: f64, is_angle: bool) -> String {
     let rounded = (q * 1e9).round() * 1e-9 + 0.0;
     match is_angle {
@@ -41,7 +41,7 @@ pub(crate) fn describe_coordinate(file: &SceneFile, name: &str, q: f64, is_angle
     }
 }
 
-/// What the end of a range is, and where: `limit position of `rod` at s = 0.2 m`. `revolutions` are added to an angle.
+/// A description of the end of a range: `limit position of `rod` at s = 0.2 m`. `revolutions` are added to an angle.
 pub(crate) fn describe_limit(
     (file, mechanism): (&SceneFile, &Mechanism),
     plan: &Plan,
@@ -99,8 +99,8 @@ pub fn explain_position(scene: &PlaneScene, plan: &Plan, error: &PositionError) 
     explain_position_in(&scene.quoted_coordinate(), scene, plan, error)
 }
 
-/// The same in a coordinate of another name than the actuator's: that of the plan. One arm for each error, so longer than a
-/// screen.
+/// Explains a position in a coordinate with another name than the actuator's, that of the plan. One arm for each error, so
+/// longer than a screen.
 pub(crate) fn explain_position_in(
     phi: &str,
     scene: &PlaneScene,

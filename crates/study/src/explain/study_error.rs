@@ -53,9 +53,9 @@ pub enum SweepError {
     Axis {
         /// The text given.
         given: String,
-        /// What is wrong with it.
+        /// The fault.
         reason: String,
-        /// What to try.
+        /// The suggestion.
         help: String,
     },
     /// The axes together are invalid.
@@ -85,13 +85,13 @@ pub enum SweepError {
     Store {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The fault.
         reason: String,
     },
 }
 
 impl SweepError {
-    /// What to try.
+    /// The suggestion.
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Axis { help, .. } => Some(help.clone()),

@@ -1,4 +1,4 @@
-//! A scene as plain data for export, and what of it cannot be exported.
+//! A scene as plain data for export, and the parts that cannot be exported.
 
 use super::OVER_COORDINATE;
 use crate::explain::{NamedScene, StudyError, explain_machine, not_one_actuator, scene_error};
@@ -23,16 +23,16 @@ pub(crate) struct ExportedScene<'a> {
     pub(crate) scene: &'a PlaneScene,
     /// The scene with the loads of its drives.
     pub(crate) loaded: PlaneScene,
-    /// Its model with the requested reactions; every constant magnitude is one.
+    /// Its model with the requested reactions; every constant magnitude is 1.
     pub(crate) model: Model,
     pub(crate) description: MachineDescription,
 }
 
 impl<'a> ExportedScene<'a> {
-    /// Compiles what a scene requests, over an interval in its unit if one is given.
+    /// Compiles the requests of a scene, over an interval in its unit if one is given.
     ///
     /// # Errors
-    /// [`StudyError::Scene`] where the scene has several freedoms, dry friction, end stops or change points.
+    /// [`StudyError::Scene`] if the scene has several freedoms, dry friction, end stops or change points.
     pub(crate) fn new(
         scene: &'a PlaneScene,
         interval: Option<(f64, f64)>,
@@ -90,7 +90,7 @@ pub(crate) fn reject_friction(
     ))
 }
 
-/// Rejects what has no function of the coordinate alone.
+/// Rejects contacts, because their forces are not functions of the coordinate alone.
 fn reject_contacts(scene: &PlaneScene) -> Result<(), StudyError> {
     let friction = scene.loads.iter().position(|l| l.friction().is_some());
     reject_friction(scene, friction)?;
@@ -144,7 +144,7 @@ fn reject_change_points(scene: &PlaneScene, domain: Domain) -> Result<(), StudyE
     }
 }
 
-/// The interval of the coordinate: what is given in the scene's unit, a period, or the range without its ends.
+/// The interval of the coordinate: the given one in the scene's unit, a period, or the range without its ends.
 ///
 /// # Errors
 /// [`StudyError::Scene`] for an interval outside the range, and for a coordinate without ends.
@@ -274,7 +274,7 @@ pub(super) fn point_names(scene: &PlaneScene) -> Vec<String> {
     named.collect()
 }
 
-/// The loads, and the drives behind them, by the units of all of them.
+/// The loads, followed by the drives, with the units of all of them.
 pub(crate) fn describe_loads<S: MachineScene, K: LoadShape>(
     (scene, units): (&S, &[LoadUnit]),
     loads: &[Load<K, CoordinateOf<S>>],
@@ -297,7 +297,7 @@ pub(crate) fn describe_loads<S: MachineScene, K: LoadShape>(
     all
 }
 
-/// Sentences about what is not exported.
+/// Sentences about the parts that are not exported.
 pub(super) fn left_out(scene: &PlaneScene, model: &Model) -> Vec<String> {
     let known = model.reactions();
     let requested = scene.requests.reactions.iter();
@@ -306,7 +306,7 @@ pub(super) fn left_out(scene: &PlaneScene, model: &Model) -> Vec<String> {
     missing_parts(missing, scene.motion.as_ref())
 }
 
-/// The same of reactions, and of the events of a motion.
+/// Sentences about reactions, and about the events of a motion.
 pub(crate) fn missing_parts<C, R>(
     reactions: impl Iterator<Item = String>,
     motion: Option<&FreeMotionSpec<C, R>>,
@@ -325,12 +325,13 @@ pub(crate) fn missing_parts<C, R>(
     all
 }
 
-/// Positions at which the size of the inertia is looked for.
+/// Positions at which the size of the inertia is evaluated.
 pub(crate) fn parts_of(domain: Domain) -> [f64; 5] {
     [0.1, 0.3, 0.5, 0.7, 0.9].map(|part| domain.from + part * domain.length())
 }
 
-/// What m, the forces and lengths come to, from inertias, the mass (kg) and the size (m) of a mechanism, and the units of loads.
+/// Reference sizes of m, forces and lengths, from inertias, the mass (kg) and the size (m) of a mechanism, and the units of
+/// loads.
 pub(crate) fn reference_sizes(
     inertias: impl Iterator<Item = f64>,
     (mass, length): (f64, f64),
@@ -358,12 +359,12 @@ pub(crate) fn reference_sizes(
 /// The unit of a load's magnitude, and its law.
 pub(crate) type LoadUnit = (&'static str, Strength);
 
-/// Those of loads, drives among them.
+/// The units of loads, including drives.
 pub(crate) fn load_units<K: LoadShape>(kinds: impl Iterator<Item = K>) -> Vec<LoadUnit> {
     kinds.map(|kind| (kind.unit(), kind.strength())).collect()
 }
 
-/// How a load acts: by a parameter if its magnitude is a constant, else by an input.
+/// The effect of a load: by a parameter if its magnitude is a constant, otherwise by an input.
 fn magnitude_effect<K: LoadShape, C>(load: &Load<K, C>, law: Strength) -> LoadEffect {
     let resistance = match law {
         Strength::Direct | Strength::Elastic { .. } => None,
@@ -382,7 +383,7 @@ fn magnitude_effect<K: LoadShape, C>(load: &Load<K, C>, law: Strength) -> LoadEf
     }
 }
 
-/// What an export leaves out of a magnitude that is no constant.
+/// A sentence on the variation of a magnitude, which the export omits.
 fn varying_input<C>(kind: &str, name: &str, magnitude: &Magnitude<C>) -> Option<String> {
     let constant = matches!(magnitude, Magnitude::Constant(_));
     (!constant).then(|| format!("how {kind} {name} varies: its magnitude is an input"))
@@ -420,7 +421,7 @@ fn drive_effect<C>(
     }
 }
 
-/// The value of a magnitude at t = 0, where it depends on nothing else; else zero.
+/// The value of a constant magnitude, or of a law of time at t = 0; otherwise zero.
 fn value_at_start<C>(magnitude: &Magnitude<C>) -> f64 {
     match magnitude {
         Magnitude::Constant(value) => *value,

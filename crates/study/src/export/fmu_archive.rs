@@ -16,7 +16,7 @@ const COMPILERS: [&str; 3] = ["cc", "gcc", "clang"];
 /// The bytes of an FMU, and a sentence about its library.
 ///
 /// # Errors
-/// [`StudyError::Scene`] where it cannot be packed.
+/// [`StudyError::Scene`] if it cannot be packed.
 pub fn fmu_archive(
     scene: &SceneFile,
     export: &Export,
@@ -107,7 +107,7 @@ fn compiles(compiler: &str, files: &FmuFiles, folder: &Path) -> bool {
     command.output().is_ok_and(|output| output.status.success())
 }
 
-/// The same bytes for the same files: no times, no order but theirs.
+/// A ZIP archive whose bytes depend only on the files and their order; it contains no times.
 fn zip<'a>(files: impl Iterator<Item = (&'a str, &'a [u8])>) -> zip::result::ZipResult<Vec<u8>> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);

@@ -1,4 +1,4 @@
-//! What a coupling moves within so small a part of the coordinate that no function of an export shows it.
+//! Motions of a coupling within such a small part of the coordinate that no function of an export resolves them.
 
 use super::OVER_COORDINATE;
 use super::description::ExportedScene;
@@ -12,11 +12,11 @@ const INTERVALS: u32 = 8192;
 /// Parts of a radian, or of the mechanism's size, that are rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// How much of what the rates at two points account for the rule may miss where they are alike.
+/// Allowed relative error of the trapezoidal rule if the rates at both points are similar.
 const STEEPEST: f64 = 0.02;
 
-/// Refuses a coupling whose coordinate changes between two points by what its rates at both do not account for, nor their difference: the
-/// trapezoidal rule errs by less where the points resolve the law.
+/// Rejects a coupling if the change of its coordinate between two points does not follow from its rates at both, nor from their
+/// difference: the error of the trapezoidal rule is smaller if the points resolve the law.
 pub(super) fn reject_hidden_motion(
     scene: &PlaneScene,
     exported: &ExportedScene<'_>,

@@ -31,12 +31,12 @@ const OVER_COORDINATE: (SceneLocation, &str) = (
     "over this coordinate",
 );
 
-/// What of a scene is exported, and how accurately.
+/// The exported parts of a scene, and the accuracy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExportRequest {
     /// Accuracy and numbers.
     pub request: Request,
-    /// The model's own operations instead of cells; the accuracy is then that of rounding.
+    /// The operations of the model instead of cells; the error is then that of rounding.
     pub exact: bool,
     /// Interval in the scene's unit; `None` for a full period, or the range without 2 % at each end.
     pub interval: Option<(f64, f64)>,
@@ -64,8 +64,8 @@ pub(crate) fn fit_in_plane(
     export.map_err(|error| explain_export(scene, &exported, asked, error))
 }
 
-/// Fits the functions of a scene's machine in cells, whether they are asked for or the model's own operations: a program that calls
-/// nothing else is without what records operations.
+/// Fits the functions of a scene's machine in cells, even if the model's operations are requested. A program that calls only this
+/// function does not contain the code that records operations.
 ///
 /// # Errors
 /// As [`compute_export`](crate::compute_export).

@@ -25,7 +25,7 @@ pub enum ExportTarget {
     Matlab,
     /// The rows of `dwell reduce` in a format of tables.
     Rows(TableFormat),
-    /// The same as a JSON list of name, unit and values of every column.
+    /// The rows as a JSON list of name, unit and values of every column.
     Json,
 }
 
@@ -72,7 +72,7 @@ pub(crate) fn several_freedoms_outcome(export: &SeveralFreedomsExport) -> Outcom
     outcome
 }
 
-/// Writes what a target needs of a machine: its rows, or its fitted functions.
+/// Writes the machine for a target: its rows, or its fitted functions.
 pub(crate) fn export_machine(
     scene: &SceneFile,
     target: ExportTarget,
@@ -176,7 +176,7 @@ fn rows(
     Ok(outcome)
 }
 
-/// What is said of an export; the numbers in it are recorded.
+/// The summary of an export; its numbers are recorded.
 fn summary(scene: &SceneFile, export: &Export, record: &mut Record) -> String {
     let (machine, measured) = (&export.machine, &export.measured);
     let (title, coordinate) = (&scene.title, &machine.coordinate);
@@ -205,7 +205,7 @@ fn summary(scene: &SceneFile, export: &Export, record: &mut Record) -> String {
     text
 }
 
-/// The errors of an export, and what it consists of.
+/// The text on the errors and the size of an export.
 fn worth(export: &Export, record: &mut Record) -> String {
     let errors = &export.measured.errors;
     // Of an exact export, nothing was asked for.

@@ -110,7 +110,7 @@ impl FunctionSampler for SceneSampler<'_> {
 /// The operations of all functions, by part.
 ///
 /// # Errors
-/// [`RecordingError`] where they are not the same over the domain.
+/// [`RecordingError`] if they differ over the domain.
 pub(crate) fn recorded(
     exported: &ExportedScene<'_>,
 ) -> Result<[StraightLine; 3], RecordingError<DynamicsError>> {

@@ -84,7 +84,8 @@ pub(crate) fn several_freedoms_in_plane(
     }
 }
 
-/// Refuses drags: c |v| v is not a number times a function of the coordinates where several of them move the point.
+/// Rejects drags: if several coordinates move the point, c |v| v is not a product of a number and a function of the
+/// coordinates.
 fn reject_drags(scene: &PlaneScene) -> Result<(), StudyError> {
     let is_drag = |load: &Load| load.kind.strength() == Strength::Quadratic;
     let Some(load) = scene.loads.iter().position(is_drag) else {

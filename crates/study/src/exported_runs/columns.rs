@@ -8,7 +8,7 @@ use toml::{Table, Value};
 /// The names of the columns in both tables, as a small TOML file gives them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ColumnNames {
-    /// The coordinate; none: the only column with `.velocity`, `.acceleration` and `.actuator_force` beside it.
+    /// The coordinate; `None` for the only column that also has `.velocity`, `.acceleration` and `.actuator_force`.
     pub coordinate: Option<String>,
     /// Its speed.
     pub speed: Option<String>,
@@ -29,7 +29,7 @@ pub(super) struct Run {
     pub(super) name: String,
     pub(super) is_angle: bool,
     pub(super) q: ExportedColumn,
-    /// None where the file has none: that of the paper's runs is meant.
+    /// `None` if the file has none; the speed of the paper's runs is then assumed.
     pub(super) speed: Option<ExportedColumn>,
     pub(super) acceleration: Option<ExportedColumn>,
     pub(super) force: ExportedColumn,

@@ -31,18 +31,18 @@ pub struct ExportedRuns {
     pub q: Vec<f64>,
     /// m, ½m′, a and b at each.
     pub coefficients: Vec<Coefficients>,
-    /// What half a unit of the last printed digits makes of m, of ½m′, of any a, of any b, at most.
+    /// Largest effect of half a unit of the last printed digit on m, ½m′, any a and any b.
     pub rounding: Coefficients,
-    /// The same of the interpolation of run ii onto the positions of run i.
+    /// Largest effect of the interpolation of run ii at the positions of run i.
     pub resampling: Coefficients,
-    /// Half a unit of the last printed digit of the positions, rad or m; zero where they are at equal distances over a whole
+    /// Half a unit of the last printed digit of the positions, rad or m; zero if they are equally spaced over a whole
     /// revolution.
     pub position_rounding: f64,
     /// The largest difference between changes of m and the integral of ½m′, relative to the largest m.
     pub contradiction: f64,
-    /// Whether the positions are those of a whole revolution, at equal distances.
+    /// Whether the positions are equally spaced over a whole revolution.
     pub is_whole_revolution: bool,
-    /// Remarks: what was assumed.
+    /// Notes on assumptions.
     pub notes: Vec<String>,
 }
 
@@ -116,7 +116,7 @@ pub fn combine_runs(
     Ok(combined)
 }
 
-/// Positions of a whole revolution are at equal distances but for their printed digits.
+/// The positions; over a whole revolution, equally spaced ones without the rounding of printed digits.
 fn positions(q: &[f64], rows: usize, is_whole: bool) -> Vec<f64> {
     let equal = |k: usize| q[0] + TAU * k as f64 / rows as f64;
     match is_whole {
@@ -208,8 +208,8 @@ impl Equations {
         ]
     }
 
-    /// What errors of accelerations and of squares of speeds are worth in the forces of both runs, by the coefficients that
-    /// were found.
+    /// The effect of errors of accelerations and of squares of speeds on the forces of both runs, by the computed
+    /// coefficients.
     fn force_errors(
         &self,
         [of_acceleration, of_square]: [f64; 2],

@@ -1,4 +1,4 @@
-//! The reduced parameters of exported runs: the positions of the files, and what is between them.
+//! The reduced parameters of exported runs: at the positions of the files, and between them.
 
 use super::combine::ExportedRuns;
 use super::sample_errors::all_of;

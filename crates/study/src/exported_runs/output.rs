@@ -23,12 +23,12 @@ use dwell_report::{Block, Document, Files, TableFormat};
 /// Part of the reduced model that may be left open by all errors together, before the result is none.
 const USELESS: f64 = 0.05;
 
-/// The reduced parameters of two exported runs: of run i (uniform speed) and of run ii (uniform acceleration). Without an
-/// interpolation, the best for their positions.
+/// The reduced parameters of two exported runs: of run i (uniform speed) and of run ii (uniform acceleration). Without a given
+/// interpolation, the best for their positions is used.
 ///
 /// # Errors
-/// [`StudyError`]: a column is missing, the runs do not determine m or contradict each other, a trigonometric series is asked for
-/// positions that are no whole revolution.
+/// [`StudyError`]: a column is missing, the runs do not determine m or contradict each other, or a trigonometric series is
+/// requested for positions that are not a whole revolution.
 // Long: one result after another.
 pub fn reduce_runs(
     name: &str,

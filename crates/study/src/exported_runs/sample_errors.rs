@@ -1,4 +1,4 @@
-//! What the printed digits and the interpolation leave open in the reduced parameters of exported runs.
+//! Errors of the reduced parameters of exported runs from printed digits and interpolation.
 
 use super::combine::ExportedRuns;
 use super::sampled_model::{SampleInterpolation, SampledModel};
@@ -83,8 +83,7 @@ pub(super) fn all_of(c: &Coefficients) -> Vec<f64> {
     [c.m, c.half_dm].into_iter().chain(rest).collect()
 }
 
-/// What the printed digits leave open in each coefficient: of forces and motions, and of positions, where a digit is a change
-/// of the value.
+/// The error of each coefficient from printed digits: of forces and motions, and of positions.
 fn printed_errors(runs: &ExportedRuns) -> Vec<f64> {
     let mut rounding = all_of(&runs.rounding);
     let rows = runs.coefficients.windows(2).zip(runs.q.windows(2));

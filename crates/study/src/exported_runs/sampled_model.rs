@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 /// How values between positions are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SampleInterpolation {
-    /// Straight lines: m and ½m′ each by itself, as a table is usually read.
+    /// Straight lines: m and ½m′ are interpolated separately, as tables usually are.
     Linear,
     /// Cubic polynomials with given slopes: of m twice ½m′, otherwise by differences of fourth order.
     Cubic,
@@ -93,7 +93,7 @@ impl SampledModel {
             .collect())
     }
 
-    /// One of the coefficients of [`Self::values`], of which there may be thousands.
+    /// One coefficient of [`Self::values`], without evaluating the others.
     #[cfg(feature = "output")]
     pub(super) fn value(&self, q: f64, index: usize) -> Option<f64> {
         let (q, curve) = (self.within(q).ok()?, self.curves.get(index)?);
@@ -106,8 +106,8 @@ impl SampledModel {
         within.ok_or(PositionError::OutOfRange { q, from, to })
     }
 
-    /// The largest coefficients of the last eighth of the series of each function, summed: what the series leaves out is of
-    /// that size; zero without series.
+    /// The largest coefficients of the last eighth of the series of each function, summed, as an estimate of the truncation
+    /// error; zero without series.
     pub(super) fn tails(&self) -> Vec<f64> {
         self.curves.iter().map(SampledCurve::tail).collect()
     }

@@ -317,7 +317,7 @@ fn what_cannot_be_combined_is_named() {
     }
 }
 
-/// Run ii at ever fewer, other positions: what is stated covers the error of its interpolation.
+/// Run ii at fewer and fewer other positions: the stated error covers that of its interpolation.
 #[test]
 fn runs_at_other_positions_are_interpolated() {
     let scene = scene("single-dwell");
@@ -385,7 +385,8 @@ fn runs_of_exudyn_give_the_reduced_model() {
     }
 }
 
-/// Of ten thousand columns each costs as one of few: positions between the rows are evaluated for what is drawn alone.
+/// The time per column does not grow with the number of columns: positions between the rows are evaluated for drawn
+/// columns only.
 #[test]
 fn thousands_of_columns_take_seconds() {
     let rows = 37;

@@ -14,11 +14,11 @@ pub struct ExportedColumn {
     pub name: String,
     /// The unit in brackets after the name.
     pub unit: Option<String>,
-    /// Its values, as they are written.
+    /// Its values, as in the file.
     pub values: Vec<f64>,
     /// Half a unit of the last printed digit, of the value where that is largest.
     pub rounding: f64,
-    /// Its error by interpolation onto other positions.
+    /// Its error by interpolation at other positions.
     pub resampling: f64,
 }
 
@@ -31,21 +31,21 @@ pub struct ExportedTable {
     pub columns: Vec<ExportedColumn>,
 }
 
-/// A line of the text, and where it begins.
+/// A line of the text, and its offset.
 #[derive(Clone, Copy)]
 struct Line<'t> {
     at: usize,
     text: &'t str,
 }
 
-/// How fields are told apart.
+/// The separator of fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Separator {
     Character(char),
     Blanks,
 }
 
-/// A field, and where it is in the text.
+/// A field, and its offset in the text.
 struct Field<'t> {
     span: Range<usize>,
     text: &'t str,
@@ -56,7 +56,8 @@ impl ExportedTable {
     /// tabs, semicolons, commas or blanks; with any but commas a comma is a decimal mark.
     ///
     /// # Errors
-    /// [`SceneError`] with the place in the text: no numbers, no header, a row of another length, what is no finite number.
+    /// [`SceneError`] with the place in the text: no numbers, no header, a row of another length, or a value that is not
+    /// finite.
     pub fn read(file: &str, text: &str) -> Result<Self, SceneError> {
         let lines = lines_of(text);
         let is_data = |line: &Line<'_>| !is_comment(line) && Separator::of_numbers(line).is_some();
@@ -101,7 +102,7 @@ impl ExportedTable {
         })
     }
 
-    /// A table of columns that are known to all their bits, such as those of a NumPy archive.
+    /// A table of exact columns, such as those of a NumPy archive.
     pub fn of_columns(file: &str, columns: Vec<(String, Vec<f64>)>) -> Self {
         let of = |(name, values): (String, Vec<f64>)| {
             let largest = values.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
@@ -166,7 +167,7 @@ fn column(head: &str) -> ExportedColumn {
 }
 
 impl Separator {
-    /// The separator with which a line is nothing but numbers, at least two of them.
+    /// The separator with which a line consists of at least two numbers and nothing else.
     fn of_numbers(line: &Line<'_>) -> Option<Self> {
         let all = ['\t', ';', ','].map(Self::Character);
         let all = all.into_iter().chain([Self::Blanks]);
@@ -209,7 +210,7 @@ impl Separator {
         fields
     }
 
-    /// Adds a row to the columns; otherwise where it is wrong, what, and what to do.
+    /// Adds a row to the columns; the error has the place, the fault and a suggestion.
     fn add_row(
         self,
         line: &Line<'_>,
@@ -290,8 +291,8 @@ impl Separator {
     }
 }
 
-/// Half a unit of the last digit of the largest value, where the longest number of a column has so many significant ones: a
-/// shorter one ends by chance. Integers alone are exact.
+/// Half a unit of the last digit of the largest value; `digits` is the number of significant digits of the longest number,
+/// because shorter ones end by chance. A column of integers is exact.
 fn half_unit(values: &[f64], digits: usize) -> f64 {
     let largest = values.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
     let bits = 0.5 * f64::EPSILON * largest;
@@ -302,7 +303,7 @@ fn half_unit(values: &[f64], digits: usize) -> f64 {
     (0.5 * 10_f64.powf(exponent)).max(bits)
 }
 
-/// A field that is a number, or stands for a missing one.
+/// Whether a field is a number, or represents a missing one.
 fn could_be_number(text: &str) -> bool {
     let missing = ["", "nan", "-nan", "inf", "-inf", "na", "n/a", "null", "-"];
     missing.contains(&text.to_lowercase().as_str())

@@ -24,10 +24,10 @@ pub(super) struct TimedRun {
     pub(super) motion_resampling: [f64; 2],
 }
 
-/// The run with its speeds and accelerations; without columns of them those that the procedure means.
+/// The run with its speeds and accelerations; without such columns, those of the paper's procedure.
 ///
 /// # Errors
-/// [`SceneError`]: one row, a coordinate that does not grow, or a speed that contradicts its acceleration.
+/// [`SceneError`]: one row, a coordinate that does not increase, or a speed that contradicts its acceleration.
 pub(super) fn with_speeds(
     run: Run,
     accelerates: bool,
@@ -87,7 +87,8 @@ pub(super) fn with_speeds(
 }
 
 impl TimedRun {
-    /// q̇² changes by twice the integral of q̈ over q, whatever the motion: degrees beside radians do not.
+    /// Checks that q̇² changes by twice the integral of q̈ over q, as in every motion. A mixture of degrees and radians
+    /// does not.
     fn check_speed(&self) -> Result<(), SceneError> {
         let (q, v, a) = (&self.run.q.values, &self.speed, &self.acceleration);
         let integral: f64 = (1..q.len())
@@ -109,7 +110,7 @@ impl TimedRun {
         ))
     }
 
-    /// What half a unit of the last printed digit makes of accelerations and of squares of speeds.
+    /// The effect of half a unit of the last printed digit on accelerations and on squares of speeds.
     pub(super) fn motion_rounding(&self) -> [f64; 2] {
         let of = |column: &Option<ExportedColumn>| column.as_ref().map_or(0.0, |c| c.rounding);
         let fastest = self.speed.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
@@ -119,7 +120,7 @@ impl TimedRun {
         ]
     }
 
-    /// Whether so many rows are a whole revolution at equal distances, but for the printed digits.
+    /// Whether this number of rows is a whole revolution with equal spacing, within the printed digits.
     pub(super) fn is_whole_revolution(&self, rows: usize) -> bool {
         let q = &self.run.q.values[..rows];
         if !self.run.is_angle || rows < 4 {

@@ -89,7 +89,7 @@ fn pivot_name(runs: &ExportedRuns) -> &'static str {
         .unwrap_or("driven-crankshaft")
 }
 
-/// A column's name as that of an entry of a scene, quoted where it needs that; `phi` where it cannot be one.
+/// A column's name as the name of an entry of a scene, quoted if necessary; `phi` if it cannot be one.
 fn entry_name(column: &str) -> String {
     let allowed = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
     match (

@@ -51,9 +51,9 @@ fn nearest_equilibrium(
 pub struct StateSpaceNames {
     /// Names and units of the states.
     pub states: Vec<Column>,
-    /// Of the inputs.
+    /// Columns of the inputs.
     pub inputs: Vec<Column>,
-    /// Of the outputs.
+    /// Columns of the outputs.
     pub outputs: Vec<Column>,
 }
 

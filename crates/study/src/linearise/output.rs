@@ -26,7 +26,7 @@ pub fn linearise<S: MachineScene>(scene: &S, point: OperatingPoint) -> Result<Ou
     Ok(outcome)
 }
 
-/// A matrix: its name, what its rows and its columns stand for, its rows.
+/// A matrix: its name, the quantities of its rows and columns, and its rows.
 type NamedMatrix<'a> = (&'static str, &'a [Column], &'a [Column], &'a [Vec<f64>]);
 
 /// The four matrices with the names of their rows and columns.

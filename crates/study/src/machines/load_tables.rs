@@ -10,7 +10,7 @@ use dwell_kinetostatics::{MachineModel, Signal};
 const POSITIONS: usize = 360;
 /// Halvings of the distance between two of them: to a rounding of the interval.
 const HALVINGS: usize = 50;
-/// So near to an end of a table, in parts of the interval, its end is that of the table.
+/// An end within this distance of an end of a table, relative to the interval, is the end of the table.
 const OWN_END: f64 = 1e-9;
 
 /// The first load whose table does not cover its argument, and the argument; `motion_of` gives a coordinate with its rate and acceleration.
@@ -48,7 +48,7 @@ impl<S: MachineScene> SceneMachine<'_, S> {
         first_uncovered(model, 0.0, |of| state.coordinate_with_acceleration(of))
     }
 
-    /// Refuses a state that the table of a load does not cover; `when` says which state it is.
+    /// Rejects a state that the table of a load does not cover; `when` describes the state.
     pub(crate) fn require_covered(&self, y: &[f64], when: &str) -> Result<(), StudyError> {
         let Some((load, value)) = self.uncovered(y) else {
             return Ok(());

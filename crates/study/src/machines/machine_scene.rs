@@ -1,4 +1,4 @@
-//! What a scene is to the analyses of its machine, in the plane or in space.
+//! The trait of a scene for the analyses of its machine, in the plane or in space.
 
 use crate::explain::{NamedScene, StudyError};
 use dwell_dynamics::{DynamicsError, Machine, MovingModel, NonconservativeSource};
@@ -18,12 +18,13 @@ pub struct MotionStart {
     pub coordinates: Vec<f64>,
     /// Speeds, rad/s or m/s.
     pub velocities: Vec<f64>,
-    /// The laws of prescribed coordinates; none where it is free.
+    /// The laws of prescribed coordinates; `None` if it is free.
     pub laws: Vec<Option<Law>>,
 }
 
 impl MotionStart {
-    /// That of a motion if there is one; else every actuator is free, at rest in the assembly configuration.
+    /// The start of the motion, if there is one. Otherwise every actuator is free, at rest in the assembly
+    /// configuration.
     pub(crate) fn new<C, R>(motion: Option<&FreeMotionSpec<C, R>>, assembly: &[f64]) -> Self {
         match motion {
             Some(spec) => Self {
@@ -47,7 +48,7 @@ pub trait MachineScene: NamedScene {
     /// A component of a reaction.
     type Reaction: std::fmt::Debug + Copy + PartialEq + Send + Sync + 'static;
 
-    /// Where its motion starts.
+    /// The start of its motion.
     fn motion_start(&self) -> MotionStart;
 
     /// Its machine, with some reactions and those that friction needs.
@@ -59,14 +60,14 @@ pub trait MachineScene: NamedScene {
     /// The requested reactions: those that the loads determine, and the others.
     ///
     /// # Errors
-    /// [`StudyError`] where the mechanism has no pose.
+    /// [`StudyError`] if the mechanism has no pose.
     fn sorted_reactions(&self, model: &Self::Model)
     -> Result<[Vec<Self::Reaction>; 2], StudyError>;
 
     /// Names and units (of a force or a moment) of the reactions of a model.
     fn reaction_units(&self, model: &Self::Model) -> Vec<(String, &'static str)>;
 
-    /// The same as columns.
+    /// The determinate requested reactions as columns.
     fn reaction_columns(&self, model: &Self::Model) -> Vec<Column> {
         let all = self.reaction_units(model).into_iter();
         all.map(|(name, unit)| Column::new(name, unit)).collect()
@@ -84,7 +85,7 @@ pub trait MachineScene: NamedScene {
     /// Whether a coordinate is an angle; otherwise it is a length.
     fn is_angle(coordinate: CoordinateOf<Self>) -> bool;
 
-    /// The name of what does work on the machine.
+    /// The name of a source of work.
     fn name_of_source(&self, source: NonconservativeSource) -> &str {
         match source {
             NonconservativeSource::Load(load) => self.load_name(load).unwrap_or_default(),
@@ -101,7 +102,7 @@ pub trait MachineScene: NamedScene {
     /// [`StudyError::Scene`] at the first of them.
     fn reject_unknown_columns(&self) -> Result<(), StudyError>;
 
-    /// The mechanism at values of its only coordinate, rad or m, one for each row of a page; none where it has several, or a
+    /// The mechanism at values of its only coordinate, rad or m, one for each row of a page; `None` if it has several, or a
     /// position cannot be reached.
     fn drawing_along(&self, coordinate: &[f64]) -> Option<Drawing>;
 

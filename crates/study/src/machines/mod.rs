@@ -1,4 +1,4 @@
-//! The machine of a scene, in the plane or in space, for the analyses that ask for what it does and not for what it is made of.
+//! The machine of a scene, in the plane or in space, for the analyses that need its behaviour and not its parts.
 
 mod in_plane;
 mod load_tables;

@@ -37,7 +37,7 @@ impl<'a, S: MachineScene> SceneMachine<'a, S> {
         })
     }
 
-    /// Where the assembly mode in use is far from the approximate angles that the scene gives.
+    /// A note if the assembly mode in use is far from the approximate angles of the scene.
     #[cfg(feature = "output")]
     pub(crate) fn branch_note(&self) -> String {
         self.scene.assembly_note(self.machine.model())

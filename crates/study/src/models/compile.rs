@@ -86,7 +86,7 @@ pub(crate) fn with_loads(scene: &PlaneScene, model: Model) -> Result<Model, Stud
         .map_err(|e| explain_machine(scene, e.into()))
 }
 
-/// The model of what a scene requests, with its loads: they may need groups that the inertia does not.
+/// The model of the requests of a scene with its loads, which may need groups that the inertia does not.
 pub(crate) fn loaded_determinate_model(scene: &PlaneScene) -> Result<Model, StudyError> {
     with_loads(scene, determinate_model(scene)?)
 }
@@ -113,7 +113,7 @@ pub(crate) fn end_stops(stops: &[NamedStop]) -> Vec<EndStop> {
     stops.iter().map(one).collect()
 }
 
-/// By actuator: prescribed where there is a law, else free.
+/// By actuator: prescribed if there is a law, otherwise free.
 pub(crate) fn coordinate_modes(laws: &[Option<Law>]) -> Vec<CoordinateMode> {
     let mode = |law: &Option<Law>| match law {
         Some(law) => CoordinateMode::Prescribed(law.clone()),
@@ -131,7 +131,7 @@ pub fn build_machine(
     machine_with_laws(scene, &spec.laws, reactions)
 }
 
-/// The same with a law for each actuator that is prescribed.
+/// The machine of a scene with a law for each prescribed actuator.
 pub fn machine_with_laws(
     scene: &PlaneScene,
     laws: &[Option<Law>],
@@ -140,7 +140,8 @@ pub fn machine_with_laws(
     machine_of(scene, laws, compile_model(scene, reactions)?)
 }
 
-/// The same without reactions and without the groups that no inertia, load or drive needs; and how many these are.
+/// The machine without reactions and without the groups that no inertia, load or drive needs, with the number of these
+/// groups.
 ///
 /// # Errors
 /// [`StudyError::Scene`] when the mechanism cannot be assembled, or a load or a drive does not fit it.

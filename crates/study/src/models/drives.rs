@@ -1,4 +1,4 @@
-//! Names of what a machine has besides its mechanism: states of drives, and sources of work.
+//! Names of the states of drives, and of sources of work.
 
 use dwell_kinetostatics::{Drive, Motor};
 
@@ -22,7 +22,7 @@ pub(crate) fn motor_of<C: Copy>(drive: &Drive<C>) -> Option<&Motor<C>> {
     })
 }
 
-/// Name, unit and meaning of what motors have besides their states: the current of one without inductance, the
+/// Name, unit and meaning of the quantities of motors other than states: the current of a motor without inductance, the
 /// electrical power and the efficiency.
 pub(crate) fn motor_columns<C: Copy>(
     drives: &[Drive<C>],

@@ -1,4 +1,4 @@
-//! A scene with the exact reduced model of what it requests.
+//! A scene with the exact reduced model of its requests.
 
 use crate::explain::StudyError;
 use crate::machines::MachineScene as _;
@@ -9,7 +9,7 @@ use dwell_kinetostatics::{ExactModel, ReducedModel};
 use dwell_scene::PlaneScene;
 use std::f64::consts::TAU;
 
-/// A scene and the reduced model of what it requests.
+/// A scene and the reduced model of its requests.
 #[derive(Debug)]
 pub struct PreparedScene<'a> {
     /// The scene.
@@ -19,7 +19,7 @@ pub struct PreparedScene<'a> {
 }
 
 impl<'a> PreparedScene<'a> {
-    /// Compiles what a scene requests.
+    /// Compiles the requests of a scene.
     ///
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be put together or does not have one
@@ -29,7 +29,7 @@ impl<'a> PreparedScene<'a> {
         Ok(Self { scene, model })
     }
 
-    /// Compiles what a scene requests, without the groups that affect neither inertia nor a requested
+    /// Compiles the requests of a scene, without the groups that affect neither inertia nor a requested
     /// reaction. For analyses that ignore loads.
     ///
     /// # Errors
@@ -61,8 +61,8 @@ impl<'a> PreparedScene<'a> {
         initial_reduced_state(self.scene)
     }
 
-    /// `count` + 1 equally spaced coordinates over the range, rad, of an angle: over a revolution from 0, or
-    /// between the limit positions, of which a thousandth is left out where everything grows.
+    /// `count` + 1 equally spaced coordinates over the range, rad, of an angle: over a revolution from 0, or between
+    /// the limit positions, of which a thousandth is left out, because the coefficients grow without bound there.
     pub fn range_positions(&self, count: usize) -> Vec<f64> {
         let (from, to) = match self.model.range().limits() {
             None => (0.0, TAU),

@@ -30,7 +30,7 @@ impl Default for SolverSettings {
 }
 
 impl SolverSettings {
-    /// The same for the integrator, without samples.
+    /// The options of the integrator, without samples.
     pub(crate) fn options(&self) -> Options {
         Options {
             atol: self.atol,

@@ -85,7 +85,7 @@ pub fn scene_caption(scene: &SceneFile, text: &str) -> String {
     format!("{}. {text}", scene.title.trim_end_matches('.'))
 }
 
-/// A coordinate's name as a symbol, where it is the name of a Greek letter.
+/// A coordinate's name, as a symbol if it is the name of a Greek letter.
 pub fn symbol(name: &str) -> String {
     const GREEK: [(&str, &str); 8] = [
         ("alpha", "α"),
@@ -121,8 +121,8 @@ pub fn coordinate_label(prepared: &PreparedScene<'_>) -> String {
 /// A spread below this part of the values is rounding.
 const MIN_SPREAD: f64 = 1e-12;
 
-/// The vertical extent of the curves. Towards a limit position they grow without bound, so there the extent
-/// is that of the inner nine tenths of the range.
+/// The vertical extent of the curves. Towards a limit position they grow without bound; the extent is then that of the
+/// inner nine tenths of the range.
 pub(crate) fn inner_range(range: Range, curves: &[Series]) -> Option<[f64; 2]> {
     if range == Range::Full {
         return None;

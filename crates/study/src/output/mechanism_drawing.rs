@@ -15,7 +15,7 @@ const SPRING: f64 = 0.05;
 pub struct MechanismDrawing<'a> {
     positions: &'a [Vec<BodyPose>],
     parts: PlaneParts<'a>,
-    /// What is drawn over the bodies and under the joints.
+    /// Shapes over the bodies and under the joints.
     paths: Vec<Shape>,
 }
 

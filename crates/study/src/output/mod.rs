@@ -1,4 +1,4 @@
-//! What the results of all analyses share when they are written: captions, drawings, provenance.
+//! Common parts of the output of all analyses: captions, drawings, provenance.
 
 mod captions;
 mod distinct_names;
@@ -39,10 +39,10 @@ pub struct Outcome {
     pub files: Files,
     /// Results of checks.
     pub findings: Vec<Finding>,
-    /// What can be drawn.
+    /// The available pictures.
     pub pictures: Vec<Picture>,
     /// The page that shows the results and the pictures that are drawn, with its path.
     pub page: Option<(String, Document)>,
-    /// What its one-file HTML page shows beside that: rows, peaks, the moving mechanism.
+    /// Additional contents of its one-file HTML page: rows, peaks, the moving mechanism.
     pub run: Option<Box<Page>>,
 }

@@ -7,11 +7,11 @@ use crate::page::{error_messages, scene_page};
 use dwell_page::{FileLink, Page, PageTable};
 use dwell_report::{Block, Document};
 
-/// Adds the page to the files of an outcome that is drawn: rows, peaks and mechanism where the analysis has them, and what is
-/// printed, its numbers, findings and messages.
+/// Adds the page to the files of an outcome that is drawn: rows, peaks and mechanism, if the analysis has them, and the
+/// printed text, the numbers, findings and messages.
 ///
 /// # Errors
-/// [`StudyError::Page`] where it cannot be made.
+/// [`StudyError::Page`] if it cannot be encoded.
 pub fn add_page(
     outcome: &mut Outcome,
     result: &CommandResult<'_>,
@@ -56,7 +56,7 @@ pub fn add_page(
     Ok(())
 }
 
-/// The files beside a page.
+/// Links to the files beside a page.
 fn links(outcome: &Outcome, own: &str) -> Vec<FileLink> {
     let folder = own.rsplit_once('/').map_or("", |(folder, _)| folder);
     let link = |path: &str| {
@@ -75,7 +75,7 @@ fn links(outcome: &Outcome, own: &str) -> Vec<FileLink> {
         .collect()
 }
 
-/// A page with the tables of a document, without that of the numbers, which a page shows anyway.
+/// A page with the tables of a document, except that of the numbers, which every page shows.
 pub(super) fn tables_page(document: &Document) -> Box<Page> {
     let mut heading = String::new();
     let mut tables = Vec::new();

@@ -1,4 +1,4 @@
-//! The pictures of an analysis: described with the results, drawn afterwards, and only those that are wanted.
+//! The pictures of an analysis: described with the results, and drawn afterwards on request.
 
 use super::Outcome;
 use super::page_file::tables_page;
@@ -16,7 +16,7 @@ use rayon::prelude::*;
 pub enum Pictures {
     /// None.
     None,
-    /// Those that answer what the analysis is asked for first.
+    /// The pictures of the main results of the analysis.
     #[default]
     Main,
     /// All, and the animation of the mechanism.
@@ -83,10 +83,10 @@ impl Picture {
         }
     }
 
-    /// Where everything in it is; of an animation, in each frame.
+    /// The layout of the picture; for an animation, of each frame.
     ///
     /// # Errors
-    /// [`ReportError::Size`], [`ReportError::NoFrames`] or [`ReportError::AnimationSize`] where it cannot be drawn.
+    /// [`ReportError::Size`], [`ReportError::NoFrames`] or [`ReportError::AnimationSize`] if it cannot be drawn.
     pub fn layouts(&self) -> Result<Vec<Layout>, ReportError> {
         match &self.content {
             Content::Figure(figure) => Ok(vec![Layout::of(figure)?]),
@@ -138,10 +138,10 @@ fn svg_path(png: &str) -> String {
 }
 
 impl Outcome {
-    /// Draws the pictures that are wanted, on all cores, and adds them to the files, with the page that shows them.
+    /// Draws the requested pictures on all cores, and adds them and the page that shows them to the files.
     ///
     /// # Errors
-    /// [`StudyError::Report`] where one cannot be drawn.
+    /// [`StudyError::Report`] if one cannot be drawn.
     pub fn draw(
         mut self,
         (wanted, format): (Pictures, PictureFormat),

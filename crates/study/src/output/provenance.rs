@@ -15,7 +15,7 @@ fn line(scene: &SceneFile, hash: &str) -> String {
     format!("Dwell {version} · scene {} (sha256 {hash})", scene.name)
 }
 
-/// The same with a short hash, and the method.
+/// The signature with a short hash, and the method.
 pub(super) fn signature(scene: &SceneFile, method_text: &str) -> String {
     let line = line(scene, &scene.hash()[..SHORT_HASH]);
     match method_text {

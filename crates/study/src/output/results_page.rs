@@ -1,4 +1,4 @@
-//! The page of an analysis whose results are single numbers: what is printed, its pictures, and every number with its
+//! The page of an analysis whose results are single numbers: the printed text, its pictures, and every number with its
 //! unit and its error.
 
 use super::{Outcome, Picture, provenance_line};
@@ -14,7 +14,7 @@ const DIGITS: usize = 9;
 pub(super) const RESULTS_HEADER: [&str; 4] = ["quantity", "value", "unit", "estimated error"];
 
 /// Adds the page of an analysis to its outcome, from its summary (whose first line is the heading of the results), its numbers and its
-/// figure, where it has one. The names of both files begin with a `stem`.
+/// figure, if it has one. The names of both files begin with a `stem`.
 pub(crate) fn add_results_page(
     outcome: &mut Outcome,
     scene: &SceneFile,
@@ -50,7 +50,7 @@ pub(crate) fn add_results_page(
     outcome.pictures.extend(picture);
 }
 
-/// A printed line as it stands in Markdown: names of a scene may hold what would mark a part of it.
+/// A printed line escaped for Markdown, because names of a scene may contain markup characters.
 fn plain(line: &str) -> String {
     let mut text = String::new();
     for c in line.trim().chars() {

@@ -1,16 +1,16 @@
-//! The file that tells programs what a command came to: `NAME-COMMAND.json`.
+//! The summary of a command for programs: `NAME-COMMAND.json`.
 
 use super::Outcome;
 use crate::explain::StudyError;
 use dwell_report::{Message, SceneRecord, Summary};
 use dwell_scene::{SceneError, SceneFile};
 
-/// What a command came to, beside its outcome.
+/// The result of a command, in addition to its outcome.
 #[derive(Debug, Clone, Copy)]
 pub struct CommandResult<'a> {
     /// The name of the command.
     pub command: &'a str,
-    /// Its scene, where it reads one.
+    /// Its scene, if it reads one.
     pub scene: Option<&'a SceneFile>,
     /// The path of the file, relative to the output folder.
     pub path: &'a str,
@@ -23,7 +23,7 @@ pub struct CommandResult<'a> {
 /// Adds the summary to the files of an outcome that is drawn.
 ///
 /// # Errors
-/// [`StudyError::Report`] where it cannot be written as JSON.
+/// [`StudyError::Report`] if it cannot be written as JSON.
 pub fn add_summary(outcome: &mut Outcome, result: &CommandResult<'_>) -> Result<(), StudyError> {
     let scene = result.scene.map(|scene| SceneRecord {
         name: scene.name.clone(),
@@ -66,7 +66,7 @@ pub fn add_summary(outcome: &mut Outcome, result: &CommandResult<'_>) -> Result<
     Ok(())
 }
 
-/// What an exit status means.
+/// The meaning of an exit status.
 fn status_meaning(status: u8) -> &'static str {
     match status {
         0 => "success",

@@ -1,4 +1,4 @@
-//! Which columns of a run are forces that can be drawn as arrows, and where they act.
+//! Selects the columns of a run that are drawn as force arrows, with their points of application.
 
 mod contacts;
 #[cfg(test)]
@@ -35,7 +35,7 @@ pub(super) fn plane_arrows(scene: &PlaneScene, results: &TrajectoryResults) -> V
     arrows
 }
 
-/// An arrow that is shown at first, where it acts and where it points to.
+/// An arrow that is shown by default, with its point and its direction.
 pub(crate) fn force_arrow(
     group: &str,
     name: &str,
@@ -70,7 +70,7 @@ impl JointForces<'_> {
         self.results.written_index(Quantity::Reaction(k))
     }
 
-    /// A component along a direction; none where there is no column of it.
+    /// A component along a direction; `None` if it has no column.
     fn part(&self, component: Component, axis: Vec2) -> Option<ForcePart> {
         let column = self.component(component)?;
         let axis = point(axis);
@@ -141,8 +141,8 @@ fn pushing_apart(column: usize, ends: [Anchor; 2]) -> ArrowDirection {
     }
 }
 
-/// Where a load acts and where it points to; none where it is no force at one place, and of separating forces, which are drawn
-/// with the teeth.
+/// The point and the direction of a load; `None` if it is not a force at one point, and for separating forces, which are
+/// drawn with the teeth.
 fn load_direction(
     scene: &PlaneScene,
     kind: &LoadKind,

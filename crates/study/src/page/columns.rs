@@ -1,4 +1,4 @@
-//! The rows of a page: which of them, and what belongs in one chart.
+//! The rows of a page, and the groups of columns in charts.
 
 use crate::number_format::count;
 use crate::trajectory::compute::{Quantity, TrajectoryResults};
@@ -13,20 +13,20 @@ pub(crate) struct RowChoice {
 }
 
 impl RowChoice {
-    /// All rows, or every so many-th with the last one.
+    /// All rows, or every n-th row and the last one.
     pub(crate) fn new(results: &TrajectoryResults) -> Self {
         let columns = results.written.len().max(1);
         Self::of(results.rows.len(), columns)
     }
 
-    /// All of so many rows.
+    /// All rows.
     pub(crate) fn all(rows: usize) -> Self {
         Self {
             rows: (0..rows).collect(),
         }
     }
 
-    /// Of so many rows with so many columns.
+    /// The rows to show for given numbers of rows and columns.
     pub(crate) fn of(rows: usize, columns: usize) -> Self {
         let stride = (rows * columns).div_ceil(MAX_VALUES).max(1);
         let last = rows.saturating_sub(1);
@@ -53,7 +53,7 @@ impl RowChoice {
         chosen
     }
 
-    /// What to say where not all of so many rows are shown.
+    /// A note if only some of all rows are shown.
     pub(crate) fn note(&self, all: usize) -> Option<String> {
         let shown = self.rows.len();
         (shown < all).then(|| {
@@ -80,7 +80,7 @@ pub(crate) fn page_columns(results: &TrajectoryResults, choice: &RowChoice) -> V
     results.written.iter().map(column).collect()
 }
 
-/// What belongs in one chart, where it has one unit.
+/// The chart group of a quantity; columns of a group with the same unit share a chart.
 fn group(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Time => "Time",

@@ -1,5 +1,5 @@
-//! What the page of a run shows, as plain data: rows, peaks and the moving mechanism. It compiles without pictures, for
-//! programs that show a page in a document of their own.
+//! The contents of the page of a run, as plain data: rows, peaks and the moving mechanism. The module compiles without
+//! pictures, for programs that show a page in their own document.
 
 mod arrows;
 mod columns;
@@ -19,7 +19,7 @@ use dwell_scene::{PlaneScene, SceneError, SceneFile};
 pub(crate) use plane::paint;
 use plane::plane_drawing;
 
-/// What the page of any command shows of its scene, without results.
+/// The page of any command with its scene and without results.
 ///
 /// ```
 /// let text = r#"
@@ -81,7 +81,7 @@ pub fn error_messages<'a>(errors: impl IntoIterator<Item = &'a SceneError>) -> V
     all.map(message).collect()
 }
 
-/// The page of a trajectory in the plane, without what is printed.
+/// The page of a trajectory in the plane, without the printed text.
 pub(crate) fn plane_page(scene: &PlaneScene, computed: &ComputedTrajectory<'_>) -> Page {
     let results = &computed.results;
     let mut page = run_page(&scene.file, scene.mechanism.size(), computed);
@@ -92,7 +92,7 @@ pub(crate) fn plane_page(scene: &PlaneScene, computed: &ComputedTrajectory<'_>) 
     page
 }
 
-/// The same without the mechanism, of any scene with a mechanism of this size, m.
+/// The page without the mechanism, for any scene with a mechanism of this size, m.
 pub(crate) fn run_page(scene: &SceneFile, size: f64, computed: &ComputedTrajectory<'_>) -> Page {
     let (trajectory, results) = (&computed.trajectory, &computed.results);
     let choice = RowChoice::new(results);

@@ -11,7 +11,7 @@ use dwell_scene::PlaneScene;
 const PAINTS: usize = 7;
 
 /// The mechanism along the rows of a page.
-/// `poses` are those of all bodies by row, of which those that are not modelled are left out.
+/// `poses` are those of all bodies by row; bodies that are not modelled are omitted.
 pub(super) fn plane_drawing(
     scene: &PlaneScene,
     (poses, modelled): (&[Vec<BodyPose>], &[bool]),

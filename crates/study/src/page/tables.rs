@@ -9,8 +9,8 @@ use dwell_geometry::body_states::BodyStates;
 use dwell_page::{Drawing, Page, PageColumn, Peak};
 use dwell_scene::PlaneScene;
 
-/// A page with the rows of a table whose first column is the axis. `group` says what belongs in one chart with a column, and
-/// what the column is.
+/// A page with the rows of a table whose first column is the axis. `group` returns the chart group of a column, and its
+/// description.
 pub fn table_page(
     page: Page,
     table: &Table,
@@ -56,7 +56,7 @@ fn row_peak(table: &Table, column: usize) -> Option<Peak> {
     })
 }
 
-/// What belongs in one chart, where only the unit tells.
+/// A chart group by the unit alone.
 pub fn unit_group(_: &str, unit: &str) -> (String, String) {
     let group = match unit {
         "rad" | "m" => "Coordinates",
@@ -70,7 +70,7 @@ pub fn unit_group(_: &str, unit: &str) -> (String, String) {
     (group.to_owned(), String::new())
 }
 
-/// The mechanism at values of the only actuator's coordinate, rad or m, one for each row of a page; none where a position cannot
+/// The mechanism at values of the only actuator's coordinate, rad or m, one for each row of a page; `None` if a position cannot
 /// be reached.
 pub fn drawing_along(scene: &PlaneScene, coordinate: &[f64]) -> Option<Drawing> {
     let model = loaded_model(scene).ok()?;

@@ -20,7 +20,7 @@ use dwell_report::{Axis, Figure, Panel, Series};
 /// Maximum number of reactions in a figure; more would not be distinguishable.
 const MAX_CURVES: usize = 6;
 
-/// What the figures share: the scene with its model, and the coordinates.
+/// The common data of the figures: the scene with its model, and the coordinates.
 pub(crate) struct RangeFigures<'a> {
     pub(crate) prepared: &'a dyn ReducedScene,
     pub(crate) q: &'a [f64],
@@ -70,7 +70,7 @@ impl RangeFigures<'_> {
     }
 }
 
-/// m and ½m′; nothing that [`ReducedCurves::rounding`] says to be zero.
+/// m and ½m′, without curves that are zero by [`ReducedCurves::rounding`].
 pub fn reduced(
     prepared: &dyn ReducedScene,
     curves: &ReducedCurves,
@@ -93,7 +93,7 @@ pub fn reduced(
 }
 
 /// a and b of the requested reactions, separately for forces and moments, a few per figure; and a note if
-/// not all are drawn. Nothing that [`ReducedCurves::rounding`] says to be zero.
+/// not all are drawn. Curves that are zero by [`ReducedCurves::rounding`] are omitted.
 pub fn coefficients(
     prepared: &dyn ReducedScene,
     curves: &ReducedCurves,
@@ -116,7 +116,7 @@ pub fn coefficients(
     (figures, note)
 }
 
-/// Of a and b of a reaction: whether it is zero but for rounding.
+/// For a and b of a reaction: whether it is zero within rounding.
 fn coefficients_of(is_rounding: &[bool], reaction: usize) -> [bool; 2] {
     let (a, b) = is_rounding[2..].split_at((is_rounding.len() - 2) / 2);
     [a[reaction], b[reaction]]

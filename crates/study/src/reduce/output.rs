@@ -85,7 +85,7 @@ fn describe_rounding(errors: &RoundingErrors, has_reactions: bool) -> String {
 }
 
 impl<P: ReducedScene> Reduction<P> {
-    /// The first and the last coordinate; over a whole revolution nothing need be said of them.
+    /// The first and the last coordinate; `None` over a whole revolution.
     fn ends(&self) -> Option<[f64; 2]> {
         self.prepared.range().limits()?;
         let q = &self.curves.q;

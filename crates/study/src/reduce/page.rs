@@ -27,7 +27,7 @@ pub(crate) fn page_of<P: ReducedScene>(
     page
 }
 
-/// What belongs in one chart with a column of the table, and what it is.
+/// The chart group of a column of the table, and its description.
 pub(crate) fn column_group(name: &str, _: &str) -> (String, String) {
     let (group, description) = match name {
         "m" => ("Generalised inertia", "m(q): generalised inertia"),

@@ -136,7 +136,7 @@ fn describe_groups(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> Stri
     text
 }
 
-/// Where the bodies are at the start.
+/// The positions of the bodies at the start.
 fn describe_placements(scene: &SpaceScene, model: &Model, record: &mut Record) -> String {
     let (mechanism, plan) = (&scene.mechanism, model.plan());
     let mut pose = plan.pose();

@@ -1,4 +1,5 @@
-//! What a scene in space has, for `dwell check`: its size and masses at the start, loads, drives, stops and motions.
+//! The contents of a scene in space, for `dwell check`: its size and masses at the start, loads, drives, stops and
+//! motions.
 
 use super::views::placed;
 use crate::contents::{ScheduledMotions, describe_actions, describe_center, describe_size};

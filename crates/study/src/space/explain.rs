@@ -30,7 +30,7 @@ fn names_of(scene: &SpaceScene, bodies: &[BodyId]) -> String {
     names.join(", ") + &rest
 }
 
-/// Where the coordinates at assembly are written.
+/// The places of the coordinates at assembly.
 fn start_labels(scene: &SpaceScene) -> Labels {
     let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
     labels(
@@ -140,7 +140,7 @@ fn explain_not_throughout(
     explain_nearly_parallel(scene, &message, pair, angle)
 }
 
-/// What follows from two axes that are nearly parallel.
+/// Explains an error caused by two axes that are nearly parallel.
 fn explain_nearly_parallel(
     scene: &SpaceScene,
     consequence: &str,
@@ -259,7 +259,7 @@ pub(super) fn explain_position(
     scene_error(scene, message, help, [(place, "its coordinate")])
 }
 
-/// The same of several coordinates, where some joints close loops that have no position.
+/// Explains a position of several coordinates at which some joints close loops that have no position.
 fn explain_several(scene: &SpaceScene, joints: &[JointId], error: &PositionError) -> StudyError {
     let ground = scene.mechanism.ground;
     let mut bodies: Vec<BodyId> = Vec::new();
@@ -290,7 +290,7 @@ fn explain_several(scene: &SpaceScene, joints: &[JointId], error: &PositionError
     )
 }
 
-/// The same model under the loads of the scene, the drives' last.
+/// The model under the loads of the scene; those of the drives are last.
 pub(super) fn with_loads(scene: &SpaceScene, model: Model) -> Result<Model, StudyError> {
     let mut loads = scene.loads.clone();
     for drive in &scene.drives {
@@ -302,7 +302,7 @@ pub(super) fn with_loads(scene: &SpaceScene, model: Model) -> Result<Model, Stud
     loaded.map_err(|error| explain_load_error(scene, &error))
 }
 
-/// Explains a load, or a drive behind the loads, that does not fit the mechanism.
+/// Explains a load, or a drive (drives follow the loads), that does not fit the mechanism.
 pub(super) fn explain_load_error(scene: &SpaceScene, error: &LoadError) -> StudyError {
     let load = scene.loads.get(error.load);
     if let Some(friction) = load.and_then(|load| load.friction()) {

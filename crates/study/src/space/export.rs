@@ -31,7 +31,7 @@ pub(super) fn several_freedoms_error(scene: &SpaceScene) -> StudyError {
 /// Fits the functions of a machine in space for export.
 ///
 /// # Errors
-/// [`StudyError::Scene`] where the scene cannot be exported: it says why and what to change.
+/// [`StudyError::Scene`] if the scene cannot be exported; the error states the reason and a change.
 pub(super) fn fit_in_space(
     scene: &SpaceScene,
     asked: &ExportRequest,

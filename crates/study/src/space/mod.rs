@@ -1,4 +1,4 @@
-//! Scenes of mechanisms in space: what can be said of them before they move, and their reduced parameters.
+//! Scenes of mechanisms in space: their contents, their reduced parameters, and their analyses.
 
 mod assembled;
 mod check;

@@ -1,4 +1,4 @@
-//! Pictures of a mechanism in space over its range, beside its reduced parameters.
+//! Pictures of a mechanism in space over its range, in addition to those of its reduced parameters.
 
 use super::prepared::PreparedSpaceScene;
 use super::views::SpacePositions;
@@ -48,8 +48,8 @@ impl<'a> PreparedSpaceScene<'a> {
     }
 }
 
-/// A mechanism in space in three views and an axonometric one, at the first of some positions, which are given with what they are; from
-/// all of them paths are drawn.
+/// A mechanism in space in three views and an axonometric one, at the first of some positions, which are given with descriptions. Paths
+/// are drawn through all positions.
 pub fn figure_of_positions(
     scene: &SpaceScene,
     positions: Vec<(Vec<Placement>, String)>,

@@ -1,4 +1,4 @@
-//! A scene in space with the exact reduced model of what it requests.
+//! A scene in space with the exact reduced model of its requests.
 
 use super::explain::{
     explain_load_error, explain_loads, explain_model, explain_position, with_loads,
@@ -26,7 +26,7 @@ use std::f64::consts::TAU;
 /// Half a stroke without limits, in sizes of the mechanism.
 const DEFAULT_STROKE: f64 = 0.5;
 
-/// A scene in space and the reduced model of what it requests.
+/// A scene in space and the reduced model of its requests.
 #[derive(Debug)]
 pub struct PreparedSpaceScene<'a> {
     /// The scene.
@@ -38,7 +38,7 @@ pub struct PreparedSpaceScene<'a> {
 }
 
 impl<'a> PreparedSpaceScene<'a> {
-    /// Compiles what a scene requests.
+    /// Compiles the requests of a scene.
     ///
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be assembled, or does not have one actuator.
@@ -122,7 +122,7 @@ pub fn model_with_loads(scene: &SpaceScene, reactions: &[Reaction]) -> Result<Mo
     with_loads(scene, compile(scene, reactions)?)
 }
 
-/// The reactions of a model: those that the loads determine, and those that redundant constraints leave open.
+/// The reactions of a model: those that the loads determine, and those that redundant constraints leave undetermined.
 pub(super) fn sort_reactions(
     scene: &SpaceScene,
     model: &Model,
@@ -293,7 +293,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
     }
 }
 
-/// The range of the only actuator about a coordinate; of one with change points the part between two of them, as in the plane.
+/// The range of the only actuator about a coordinate; with change points, the part between two of them.
 fn range_between_change_points(plan: &Plan, start: f64) -> Range {
     let range = plan.range();
     if plan.change_points().is_empty() {
@@ -314,7 +314,8 @@ fn range_between_change_points(plan: &Plan, start: f64) -> Range {
     }
 }
 
-/// The part of the range of the only actuator that is shown, whether its ends are next to limit positions, and what it is.
+/// The part of the range of the only actuator that is shown, whether its ends are next to limit positions, and its
+/// description.
 pub(super) fn range_limits(scene: &SpaceScene, plan: &Plan) -> SweepLimits {
     let (start, is_angle) = (scene.assembly.q[0], is_angle(scene));
     let half_stroke = DEFAULT_STROKE * plan.size();

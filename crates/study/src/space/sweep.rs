@@ -1,4 +1,4 @@
-//! What scenes in space are swept for.
+//! Quantities that sweeps compute from scenes in space.
 
 use super::explain::explain_position;
 use super::prepared::{compile, range_limits, reaction_unit};
@@ -26,7 +26,8 @@ impl SweptScene for SpaceScene {
         Ok(range_curves(self, compile(self, &[])?, RangeCurves::of_inertia)?.extremes())
     }
 
-    /// A variant may leave open what the scene as it is determines: its point says so.
+    /// Rejects a variant that leaves a reaction undetermined which the unchanged scene determines; the message of its
+    /// point states this.
     fn reject_open(
         &self,
         rows: &SpaceRows,

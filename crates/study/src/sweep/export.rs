@@ -20,13 +20,14 @@ pub(crate) struct Counts {
     pub(crate) computed: usize,
 }
 
-/// The distribution of a result, and the points at which it is smallest and largest: of several the first, none where it is constant.
+/// The distribution of a result, and the points at which it is smallest and largest: if there are several, the first; `None` if the
+/// result is constant.
 struct Statistics {
     spread: Spread,
     ends: Option<[u64; 2]>,
 }
 
-/// What the summary and its record tell.
+/// The data of the summary and its record.
 struct SweepReport<'a, S> {
     prepared: &'a PreparedSweep<'a, S>,
     path: &'a Path,
@@ -109,7 +110,7 @@ fn npz(prepared: &PreparedSweep<'_, impl SweptScene>, rows: &[Row]) -> Result<Ve
     Ok(table.npz()?)
 }
 
-/// The table with the index of each row before it and its message behind it.
+/// The table; each row starts with its index and ends with its message.
 fn csv(prepared: &PreparedSweep<'_, impl SweptScene>, rows: &[Row]) -> Result<String, StudyError> {
     let numbers = prepared.requested.table(&prepared.design, rows).csv()?;
     let mut lines = numbers.lines();
@@ -163,7 +164,7 @@ impl<S: SweptScene> SweepReport<'_, S> {
         text + &self.failures() + &prepared.requested.notes
     }
 
-    /// What is counted of the points.
+    /// The counts of points.
     fn counts(&self) -> Record {
         let (design, counts) = (&self.prepared.design, self.counts);
         let mut record = Record::default();

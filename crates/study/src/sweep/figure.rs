@@ -24,7 +24,7 @@ struct ChartGroup<'a> {
     members: Vec<(usize, &'a str)>,
 }
 
-/// What there is to see of a sweep.
+/// The drawn results of a sweep.
 pub(crate) enum Drawn {
     /// The figure, and a note about charts that are left out.
     Figure(Box<Figure>, Option<String>),

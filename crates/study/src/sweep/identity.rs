@@ -1,4 +1,5 @@
-//! What a study is: its definition by key and value, which lies beside its rows and must be the same whenever it goes on.
+//! The identity of a study: its definition by key and value, which is stored beside its rows and must be the same when it
+//! continues.
 
 use crate::explain::SweepError;
 use sha2::{Digest, Sha256};
@@ -13,8 +14,8 @@ pub(crate) const SCENE_TEXT: &str = "scene_text";
 /// The identity of a study, by key, in the order in which differences are reported.
 pub(crate) type StudyIdentity = Vec<(&'static str, String)>;
 
-/// Reads the definition in a folder's file, which must be that of this study, or writes it where there is none, by way of
-/// an unfinished file.
+/// Reads the definition in a folder's file, which must be that of this study, or writes it, through an unfinished file, if
+/// there is none.
 ///
 /// # Errors
 /// [`SweepError::DifferentStudy`] of the folder; [`SweepError::Store`] of a file that is damaged, or cannot be read or written.
@@ -60,7 +61,7 @@ pub(crate) fn study_hash(study: &StudyIdentity) -> String {
     hash.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// In what a stored study differs from this one.
+/// The difference of a stored study from this one.
 fn study_difference(stored: &HashMap<String, String>, study: &StudyIdentity) -> Option<StoreFault> {
     for (key, expected) in study {
         let found = stored.get(*key).map_or("", String::as_str);

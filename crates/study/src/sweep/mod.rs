@@ -1,4 +1,4 @@
-//! `dwell sweep`: results of many variants of a scene, stored in files as they are computed.
+//! `dwell sweep`: results of many variants of a scene, stored in files during the computation.
 
 pub mod compute;
 #[cfg(feature = "output")]

@@ -1,4 +1,4 @@
-//! `dwell sweep`: results of many variants of a scene, stored in files as they are computed.
+//! `dwell sweep`: results of many variants of a scene, stored in files during the computation.
 //!
 //! ```text
 //! --vary … ── Axis ── Design: point k → values ─┐            (rayon, any order)
@@ -27,7 +27,7 @@ const MAX_ROWS: u64 = 20_000_000;
 /// The definition of a parameter sweep.
 #[derive(Debug, Clone, Copy)]
 pub struct ParameterSweep<'a> {
-    /// What varies: `PATH=FROM:TO:COUNT`, `PATH=A,B,C`, `PATH~normal(MEAN,SD)`, `PATH~uniform(FROM,TO)`,
+    /// The variations: `PATH=FROM:TO:COUNT`, `PATH=A,B,C`, `PATH~normal(MEAN,SD)`, `PATH~uniform(FROM,TO)`,
     /// `PATH±TOLERANCE`, `PATH±PERCENT%`, each in the scene's unit.
     pub vary: &'a [String],
     /// Number of random samples.
@@ -108,12 +108,12 @@ impl<'a, S: SweptScene> PreparedSweep<'a, S> {
     }
 }
 
-/// Sweeps a scene: computes the points that the files in its folder do not hold yet, and writes the figure, and the table that is
-/// asked for, once the study is complete.
+/// Sweeps a scene: computes the points that are missing in the files of its folder. When the study is complete, writes the figure
+/// and the requested table.
 ///
 /// # Errors
-/// [`StudyError`] where the sweep is invalid, the unchanged scene cannot be assembled, or a file is of another
-/// study or cannot be written. A point that cannot be computed is no error: its row holds the message.
+/// [`StudyError`] if the sweep is invalid, the unchanged scene cannot be assembled, or a file belongs to another study or cannot
+/// be written. A point that cannot be computed is no error: its row contains the message.
 pub fn sweep(
     scene: &impl SweptScene,
     sweep: &ParameterSweep<'_>,

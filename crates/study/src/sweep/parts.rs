@@ -6,9 +6,9 @@
 //! SCENE-sweep/part-0000065536-0000131071.1-of-1.parquet  some of them, which a run or a shard has computed so far
 //! ```
 //!
-//! Which points a part has follows from the study alone, so that shards fill one folder. Every file is written beside its
-//! place and renamed when it is complete: it is whole, whatever happened to the process that wrote it. A run replaces its
-//! unfinished parts by longer ones from time to time, and in the end by the file of all their points.
+//! The points of a part follow from the study alone, so that shards can fill one folder. Every file is written under a
+//! temporary name and renamed when it is complete, so that it is never partial, even if its process was killed. A run
+//! replaces its unfinished parts by longer ones from time to time, and in the end by the file of all their points.
 
 mod filling;
 mod part_file;
@@ -27,7 +27,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 pub(crate) use stored::{FailedPoints, StoredRows};
 
-/// The definition of the study, beside its parts: readers of a folder of Parquet files leave out names with an underscore.
+/// The definition of the study, beside its parts: readers of a folder of Parquet files ignore names with an underscore.
 const STUDY_FILE: &str = "_study.toml";
 /// Ending of the name of a file that is being written.
 const UNFINISHED: &str = "unfinished";
@@ -44,7 +44,7 @@ pub(crate) struct PartFolder<'a> {
     process: u64,
 }
 
-/// The points of one file, and what there is of them.
+/// The points of one file, and the files with some of them.
 pub(crate) struct Part {
     points: Range<u64>,
     /// Whether its file is there.
@@ -85,10 +85,10 @@ impl<'a> PartFolder<'a> {
         Ok(folder)
     }
 
-    /// All parts with points of this run, each with what there is of them.
+    /// All parts with points of this run, each with its existing files.
     ///
     /// # Errors
-    /// [`SweepError`] of a file that is damaged, or none of this study.
+    /// [`SweepError`] for a file that is damaged or belongs to another study.
     pub(crate) fn parts(&self) -> Result<Vec<Part>, SweepError> {
         let mut files = self.files()?;
         let starts = (0..self.design.points).step_by(PART_LENGTH as usize);
@@ -226,7 +226,7 @@ impl<'a> PartFolder<'a> {
         Err(StoreFault::Reason(format!("cannot be written: {reason}")).with_path(path))
     }
 
-    /// Removes what killed runs left.
+    /// Removes unfinished files of killed runs.
     fn remove_unfinished(&self) {
         for entry in fs::read_dir(&self.path).into_iter().flatten().flatten() {
             let path = entry.path();

@@ -11,7 +11,7 @@ const BLOCKS: u64 = 16;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Share {
     points: u64,
-    /// Points of a block: a whole file where there are as many files as shards.
+    /// Number of points of a block: a whole file if there are at least as many files as shards.
     block: u64,
     shard: Shard,
 }
@@ -30,7 +30,7 @@ impl Share {
         }
     }
 
-    /// The shard; that of all points is 1/1.
+    /// The shard; 1/1 for all points.
     pub(crate) fn shard(&self) -> Shard {
         self.shard
     }

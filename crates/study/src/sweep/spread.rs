@@ -17,7 +17,7 @@ pub(crate) struct Spread {
 }
 
 impl Spread {
-    /// Of the finite values; `None` if there are none.
+    /// The spread of the finite values; `None` if there are none.
     pub(crate) fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<f64> = values.filter(|v| v.is_finite()).collect();
         let min = values.iter().copied().min_by(f64::total_cmp)?;

@@ -17,7 +17,7 @@ pub enum FormulaFormat {
     Code(Language),
 }
 
-/// A scene whose closed forms are written: its file, the name of its coordinate, and what they leave out.
+/// A scene whose closed forms are written: its file, the name of its coordinate, and notes on the omitted parts.
 pub(crate) struct WrittenForm<'a> {
     pub(crate) file: &'a SceneFile,
     pub(crate) coordinate: &'a str,

@@ -7,7 +7,7 @@ use dwell_geometry::{Coordinate, Coupling, JointKind, Vec2, vec2};
 use dwell_scene::PlaneScene;
 use std::f64::consts::{PI, TAU};
 
-/// A relation that is straight to this part of its range is that of a gear or a screw, and no cam.
+/// A relation that is linear to this fraction of its range is that of a gear or a screw, not of a cam.
 const STRAIGHT: f64 = 1e-6;
 
 /// Number of corners of a circle.
@@ -65,7 +65,7 @@ pub(crate) fn pitch_curve(
     })
 }
 
-/// The body that a cam moves, and the point by which it does: that of its guide, or the farthest from its pivot.
+/// The body that a cam moves, and its contact point: the point of its guide, or the point farthest from its pivot.
 fn follower_point(scene: &PlaneScene, coupling: &Coupling) -> Option<(usize, Vec2)> {
     let mechanism = &scene.mechanism;
     match coupling.dependent {
@@ -119,7 +119,7 @@ pub(crate) fn rack_outline([from, to]: [Vec2; 2], normal: Vec2, tooth: f64) -> V
     outline
 }
 
-/// The larger side of what all points of all bodies go through, m.
+/// The larger side of the region that all points of all bodies cover, m.
 pub(crate) fn drawn_size(scene: &PlaneScene, positions: &[Vec<BodyPose>]) -> f64 {
     let all = positions.iter().flat_map(|poses| {
         let bodies = scene.points.iter().take(poses.len()).enumerate();

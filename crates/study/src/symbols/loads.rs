@@ -1,11 +1,11 @@
-//! What is drawn of loads: springs and dampers between points, in the plane and in space.
+//! Symbols of loads: springs and dampers between points, in the plane and in space.
 
 use dwell_geometry::BodyId;
 use dwell_kinetostatics::load::AnyLoadKind;
 use dwell_kinetostatics::{LoadCoordinate, LoadSymbol};
 use dwell_page::LinkLook;
 
-/// What is drawn between two points of bodies, in their frames, for a load; most loads have nothing there.
+/// The symbol of a load between two points of bodies, in their frames; most loads have none.
 pub(crate) fn link_of<V: Copy, C: LoadCoordinate<Point = V>, S>(
     kind: &AnyLoadKind<V, C, S>,
 ) -> Option<(LinkLook, [(BodyId, V); 2])> {

@@ -1,5 +1,4 @@
-//! What pictures and pages draw of a mechanism in the plane: symbols that follow from its motion or its size, and outlines of
-//! its bodies.
+//! Symbols and outlines of a mechanism in the plane, for pictures and pages. They follow from its motion and its size.
 
 mod kinematic;
 mod loads;
@@ -21,15 +20,15 @@ use kinematic::drawn_size;
 
 /// Reference length of the symbols, in sizes of the mechanism.
 const SYMBOL_RATIO: f64 = 0.6;
-/// The same of the whole drawing, below which symbols could not be recognised, and above which they would hide it: the size of a mechanism
-/// without lengths is 1 m.
+/// Limits of the size of symbols relative to the whole drawing: smaller symbols could not be recognised, larger ones would hide it. The
+/// size of a mechanism without lengths is 1 m.
 const MIN_SYMBOL_RATIO: f64 = 0.4;
 const MAX_SYMBOL_RATIO: f64 = 0.85;
 /// Half the distance of the rails of a guide, and of a slot, and the height of the teeth of a rack, in reference lengths.
 const RAIL_DISTANCE: f64 = 0.055;
 const SLOT_DISTANCE: f64 = 0.035;
 const TOOTH: f64 = 0.012;
-/// How far a track goes on beyond the travel, in reference lengths.
+/// Length of a track beyond the travel, in reference lengths.
 const TRACK_MARGIN: f64 = 0.25;
 
 /// The reference length of the symbols of a scene that is drawn at these positions, m.

@@ -1,5 +1,4 @@
-//! What is drawn of a mechanism in the plane, as parts that are fixed to its bodies: the pictures draw it in a position, and a page
-//! moves it.
+//! The drawn parts of a mechanism in the plane, fixed to its bodies: pictures show them in a position, and a page moves them.
 
 use super::{
     RAIL_DISTANCE, SLOT_DISTANCE, TOOTH, TRACK_MARGIN, blocks_on, common_joint_name, is_cylinder,
@@ -18,7 +17,7 @@ const BARREL: f64 = 0.85;
 /// In which positions of a picture a part is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum DrawnIn {
-    /// In the one that is drawn in full, as most that stays where it is.
+    /// Only in the position that is drawn in full, as most fixed parts.
     Full,
     /// In the light ones.
     Light,
@@ -40,7 +39,7 @@ pub(crate) struct PlaneParts<'a> {
 }
 
 impl<'a> PlaneParts<'a> {
-    /// Of a scene at these positions; of bodies about which nothing is said, all.
+    /// The parts of a scene at these positions. Bodies without an entry in `visible` are drawn.
     pub(crate) fn new(
         scene: &'a PlaneScene,
         positions: &[Vec<BodyPose>],

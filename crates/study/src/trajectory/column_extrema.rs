@@ -1,11 +1,11 @@
-//! The extrema of the columns of a trajectory, with their errors, as they are listed.
+//! The extrema of the columns of a trajectory, with their errors, for listings.
 
 #[cfg(feature = "output")]
 use crate::number_format::{digits_within, number};
 use crate::ranges::extent;
 use crate::trajectory::compute::{Extremum, TrajectoryResults};
 
-/// So many columns are named one by one.
+/// Largest number of columns that are named one by one.
 const MAX_NAMED: usize = 40;
 
 /// The minimum and maximum of a column, and where they occur.
@@ -16,7 +16,7 @@ pub(crate) struct ColumnExtrema {
     pub(crate) ends: [Extremum; 2],
     /// The estimated error of its values, in its unit.
     pub(crate) error: f64,
-    /// Whether they are those of the rows, between which there may be larger ones.
+    /// Whether they are the extrema of the rows only; larger ones may lie between the rows.
     #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for texts"))]
     pub(crate) of_rows: bool,
     /// Extent of the abscissa.
@@ -50,7 +50,7 @@ impl ColumnExtrema {
         [value, digits_within(at, error_at, 6)]
     }
 
-    /// The same in other units: values and abscissa times these factors.
+    /// The extrema in other units: values and abscissa times these factors.
     pub(crate) fn scaled(&self, factor: f64, at_factor: f64) -> Self {
         Self {
             name: self.name.clone(),
@@ -78,8 +78,8 @@ impl ColumnExtrema {
     }
 }
 
-/// The sentence about those columns in the tables whose extrema are those of the rows although others are looked for between them: the
-/// first of them one by one.
+/// The sentence about columns in the tables whose extrema are those of the rows, while those of other columns are searched for between
+/// the rows. It names the first of them.
 pub(crate) fn searched_in_rows(results: &TrajectoryResults) -> Option<String> {
     let of_rows = results.written.iter();
     let of_rows = of_rows.filter(|&&k| results.extrema.of_rows[k]);

@@ -29,7 +29,7 @@ const MAX_BALANCE_RESIDUAL: f64 = 1e-9;
 /// Values in a table from which on fewer columns save a noticeable time.
 const MUCH: usize = 50_000;
 
-/// What the largest values are where none could be looked for between the rows.
+/// The note for extrema that were not searched for between the rows.
 const LARGEST_OF_ROWS: &str =
     "these are the largest values of the rows: the motion has too many steps to look between them";
 
@@ -46,7 +46,7 @@ fn contacts(mechanism: &Mechanism) -> Vec<String> {
 /// The results of a trajectory analysis as text.
 pub(crate) struct Document<'a> {
     scene: &'a SceneFile,
-    /// What a designer asks first of a movement.
+    /// The highlights of the movement.
     movement: Movement<'a>,
     /// The bodies that are not modelled.
     unmodelled: Vec<String>,
@@ -63,7 +63,7 @@ pub(crate) struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// Of a scene in the plane.
+    /// The document for a scene in the plane.
     pub(crate) fn new(scene: &'a PlaneScene, computed: &'a ComputedTrajectory<'a>) -> Self {
         let mut document = Self::of_file(&scene.file, scene.mechanism.size(), computed);
         document.movement.scene = Some(scene);
@@ -72,7 +72,7 @@ impl<'a> Document<'a> {
         document
     }
 
-    /// Of any scene, with a mechanism of this size, m.
+    /// The document for any scene, with a mechanism of this size, m.
     pub(crate) fn of_file(
         scene: &'a SceneFile,
         size: f64,
@@ -193,7 +193,7 @@ impl<'a> Document<'a> {
         format!("{}, {all} over {over}", self.title())
     }
 
-    /// What is printed; the numbers go into the record.
+    /// The printed text; its numbers are recorded.
     pub(crate) fn summary(&self, record: &mut Record) -> String {
         let mut text = format!("{}\n", self.first_line());
         if self.trajectory.analysis == Analysis::Kinematics {
@@ -312,7 +312,7 @@ impl<'a> Document<'a> {
         self.results.value_at(row, self.abscissa_column)
     }
 
-    /// A number of this unit in the scene's unit of angles and lengths, and that unit; forces stay in those of SI.
+    /// A number of this unit in the scene's unit of angles and lengths, and that unit; forces stay in SI units.
     fn in_scene_unit(&self, value: f64, unit: &str) -> (f64, String) {
         for (si, is_angle) in [("rad", true), ("m", false)] {
             let Some(rest) = unit.strip_prefix(si) else {
@@ -355,8 +355,8 @@ impl<'a> Document<'a> {
         changes.map(line).collect()
     }
 
-    /// The rounding error, what is shown as zero, the reactions that no table has, the bodies that are not modelled, and the contacts that
-    /// would have to pull; empty where there is nothing to say.
+    /// Remarks on the rounding error, the columns shown as zero, the omitted reactions, the bodies that are not modelled, and the contacts
+    /// that would have to pull; each may be empty.
     fn remarks(&self) -> [String; 5] {
         // Rounded up to a power of ten.
         let rounding = match self.results.rounding_error {

@@ -1,4 +1,4 @@
-//! What a designer asks of a movement first: how far bodies swing, the transmission angles, and where a body rests.
+//! The highlights of a movement: ranges of bodies, transmission angles, and the dwell of a body.
 
 use crate::number_format::digits;
 use crate::trajectory::compute::{Column, Quantity, TrajectoryResults};
@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 const MAX_LISTED: usize = 3;
 /// Digits of angles and lengths.
 const DIGITS: usize = 6;
-/// A body that turns or slides by less than this, rad or m, is at rest but for rounding.
+/// A body that turns or slides by less than this, rad or m, is at rest within rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// A movement along a trajectory: its scene, its results and their abscissa.
@@ -102,8 +102,7 @@ impl Movement<'_> {
         lines.collect()
     }
 
-    /// Where the body of the requested dwell rests: the longest part of the trajectory over which its angle stays within
-    /// the band.
+    /// The dwell of the requested body: the longest part of the trajectory over which its angle stays within the band.
     fn dwell(&self, record: &mut Record) -> String {
         let Some((scene, request)) =
             (self.scene).and_then(|s| Some((s, s.requests.dwell.as_ref()?)))

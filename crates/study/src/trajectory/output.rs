@@ -100,8 +100,8 @@ pub(crate) fn outcome_of(
     })
 }
 
-/// Whether a figure is drawn unless others are wanted: the mechanism, what the analysis is for, and internal forces,
-/// which a scene requests one by one.
+/// Whether a figure is drawn by default: the mechanism, the main results of the analysis, and internal forces, which a
+/// scene requests one by one.
 fn is_main(analysis: Analysis, figure: &str) -> bool {
     let own: &[&str] = match analysis {
         Analysis::Kinematics => &["angles", "travels", "rotations"],

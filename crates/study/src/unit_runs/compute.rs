@@ -25,20 +25,20 @@ use dwell_scene::{PlaneScene, PrescribedMotion, Requests};
 
 /// Positions of each run if their number is not given: a degree apart over a revolution.
 const DEFAULT_POINTS: usize = 361;
-/// Largest admissible difference from the reduced model, relative to what is subtracted: 1.3e-14 or less is measured on 19
-/// cases without a dead point near, 8e-14 on the slotted rocker.
+/// Largest admissible difference from the reduced model, relative to the subtracted force: 1.3e-14 or less is measured on
+/// 19 cases without a dead point near, 8e-14 on the slotted rocker.
 const TOLERANCE: f64 = 1e-12;
 /// Next to a dead point the difference is up to this number of rounding errors of the reduced model: the positions of both
 /// runs differ in the last digit.
 const ROUNDINGS: f64 = 100.0;
 
-/// The runs, what follows from them, and the reduced model at the same positions.
+/// The runs, the parameters from them, and the reduced model at the same positions.
 pub struct UnitRuns<P> {
     /// The scene and its model without loads.
     pub prepared: P,
     /// All columns of run i (unit speed) and of run ii (unit acceleration).
     pub runs: [Table; 2],
-    /// What the runs give: half_dm and b are ½∂m₁/∂q₁ and m_e2, m and a are m₁ and m_e1.
+    /// The parameters from the runs: half_dm and b are ½∂m₁/∂q₁ and m_e2, m and a are m₁ and m_e1.
     pub combined: ReducedCurves,
     /// The exact reduced model at the same positions.
     pub reduced: ReducedCurves,
@@ -77,9 +77,9 @@ pub fn compute_unit_runs<'a, S: UnitRunScene>(
 /// One of the two runs.
 #[derive(Debug, Clone, Copy)]
 pub enum UnitRun {
-    /// With unit speed.
+    /// Run i, with unit speed.
     Speed,
-    /// With unit acceleration, from rest.
+    /// Run ii, with unit acceleration from rest.
     Acceleration,
 }
 
@@ -125,7 +125,7 @@ impl UnitRun {
     }
 }
 
-/// A scene of which the runs can be made.
+/// A scene whose unit runs can be computed.
 pub trait UnitRunScene: RowScene {
     /// The scene with its model.
     type Prepared<'a>: TabulatedScene
@@ -138,7 +138,7 @@ pub trait UnitRunScene: RowScene {
     /// [`StudyError`] when the mechanism cannot be assembled or has several actuators.
     fn prepared_without_loads(&self) -> Result<Self::Prepared<'_>, StudyError>;
 
-    /// The same mechanism with its masses alone: what loads do, is not part of the coefficients.
+    /// The mechanism with its masses alone, because loads are not part of the coefficients.
     fn with_masses_alone(&self) -> Self;
 }
 
@@ -215,8 +215,8 @@ pub struct ComparedCoefficient {
     pub unit: &'static str,
     /// The largest absolute value over the range, of the reduced model.
     pub largest: f64,
-    /// The largest difference over the range, relative to the largest value; or, where the coefficient is zero but for
-    /// rounding, to what it would come to by m and the other reactions.
+    /// The largest difference over the range, relative to the largest value; or, if the coefficient is zero within
+    /// rounding, relative to the size expected from m and the other reactions.
     pub relative_difference: f64,
     /// The largest admissible difference.
     pub tolerance: f64,
@@ -255,7 +255,8 @@ impl<P: ReducedScene> UnitRuns<P> {
         compared.collect()
     }
 
-    /// By coefficient: the largest force of run ii, from which the part of q̇² is subtracted; zero where nothing is.
+    /// By coefficient: the largest force of run ii, from which the part of q̇² is subtracted; zero if nothing is
+    /// subtracted.
     fn lost_digits(&self) -> Vec<f64> {
         let largest = |name: &str| {
             let values = values(&self.runs[1], name);
@@ -285,7 +286,7 @@ impl<P: ReducedScene> UnitRuns<P> {
         symbols
     }
 
-    /// The table: coordinate, combined coefficients by the paper's symbols, and beside them the columns of `dwell reduce`.
+    /// The table: coordinate, combined coefficients by the paper's symbols, and the columns of `dwell reduce`.
     pub fn table(&self) -> Table {
         let mut table = self.combined.table(&self.prepared);
         for column in table.columns.iter_mut().skip(1) {

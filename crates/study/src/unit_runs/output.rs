@@ -13,7 +13,8 @@ use dwell_report::{Block, Document, Figure, Files, TableFormat};
 use dwell_scene::SceneFile;
 
 /// The two kinetostatic runs of a scene over the range of its only actuator, at `points` positions (two or more) if given,
-/// and the reduced parameters that they give. It stops with an error where these are not those of the reduced model.
+/// and the reduced parameters from them. If these differ from the reduced model, [`TrajectoryOutcome::early_stop`] has the
+/// error.
 ///
 /// # Errors
 /// [`StudyError`] when the mechanism cannot be assembled, has several actuators, or a position cannot be
@@ -62,7 +63,7 @@ pub fn unit_runs<S: UnitRunScene>(
     })
 }
 
-/// The coefficient that differs most, beside its tolerance.
+/// The coefficient with the largest difference relative to its tolerance.
 fn worst(comparison: &[ComparedCoefficient]) -> Option<&ComparedCoefficient> {
     let part = |of: &ComparedCoefficient| of.relative_difference / of.tolerance;
     comparison.iter().max_by(|a, b| part(a).total_cmp(&part(b)))

@@ -1,4 +1,4 @@
-//! The combined runs compared with the reduced model, and with what a hand calculation gives.
+//! The combined runs compared with the reduced model, and with a hand calculation.
 
 use super::compute::{compute_unit_runs, values};
 use crate::no_progress;

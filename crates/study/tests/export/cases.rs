@@ -1,4 +1,4 @@
-//! Every planar case of one freedom exports and passes its self-test, or says why it cannot.
+//! Every planar case of one freedom exports and passes its self-test, or is rejected with a reason.
 
 use super::toolchain::{Scratch, c_compiler, cases, compile, request, run};
 use dwell_export::{Precision, c_files};

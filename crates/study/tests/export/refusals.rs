@@ -1,4 +1,4 @@
-//! What cannot be exported: the message names it, points to it and says what to change.
+//! Scenes that cannot be exported: the message names the part, points to it and suggests a change.
 
 use super::toolchain::{case, request};
 use dwell_export::Precision;

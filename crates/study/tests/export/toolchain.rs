@@ -46,7 +46,7 @@ impl Drop for Scratch {
     }
 }
 
-/// A C compiler, if there is one. None is said, not hidden.
+/// A C compiler, if there is one; otherwise the test prints that there is none.
 pub(crate) fn c_compiler() -> Option<&'static str> {
     let there = |name: &&str| Command::new(name).arg("--version").output().is_ok();
     let found = ["gcc", "clang"].into_iter().find(there);

@@ -1,4 +1,4 @@
-//! Which hints a scene with several assembly modes is asked for, and that giving them is enough.
+//! The hints that messages request for scenes with several assembly modes; with them, the scenes are accepted.
 
 use crate::table::scene;
 use dwell_study::{StudyError, check};

@@ -143,7 +143,8 @@ duration = 1
 initial-coordinate = { phi = START }
 "#;
 
-/// Nothing is known of a load beyond its table: equilibria are searched within, and a state beyond is not linearised.
+/// A load is undefined beyond its table: equilibria are searched for within it, and a state beyond it is not
+/// linearised.
 #[test]
 fn equilibria_are_those_within_the_tables_of_loads() {
     let started = |at: &str| scene(&DRIVEN.replace("START", at));
@@ -198,7 +199,7 @@ fn a_way_ends_where_a_load_leaves_its_table() {
     assert_eq!(changed("magnitude = 1", whole).0, 51);
 }
 
-/// Nothing is known of a motion behind the end of a table: its events there are none, and it does not end by them.
+/// A motion is undefined beyond the end of a table: it has no events there and does not end by them.
 #[test]
 fn a_motion_ends_where_a_load_leaves_its_table() {
     let text = r#"

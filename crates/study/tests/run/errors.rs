@@ -1,4 +1,4 @@
-//! No digit is printed beyond the estimated error, and what is rounding is said to be rounding.
+//! No digit is printed beyond the estimated error, and rounding is reported as rounding.
 
 use crate::table::{PENDULUM, scene};
 use dwell_dynamics::Method;
@@ -33,7 +33,7 @@ fn printed(text: &str) -> (f64, f64) {
     (text.parse().unwrap(), unit)
 }
 
-/// What stands between two texts.
+/// The text between two others.
 fn between<'a>(text: &'a str, before: &str, after: &str) -> &'a str {
     let (_, rest) = text
         .split_once(before)

@@ -1,4 +1,4 @@
-//! The separating forces of teeth, in tables, in the reduced model and in what `check` says.
+//! The separating forces of teeth, in tables, in the reduced model and in the text of `check`.
 
 use crate::table::{Table, analyse, case, file, largest, scene};
 use dwell_study::{Analysis, check, reduce};

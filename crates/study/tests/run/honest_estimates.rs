@@ -1,4 +1,4 @@
-//! What a motion to a required accuracy says of its errors, against a far finer run.
+//! The stated errors of a motion to a required accuracy, compared with a far finer run.
 
 use crate::table::scene;
 use dwell_dynamics::Method;

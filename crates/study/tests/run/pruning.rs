@@ -1,4 +1,4 @@
-//! What nothing needs is not modelled, and what remains is the same to the last bit.
+//! Groups that no result needs are not modelled, and the remaining results are the same to the last bit.
 
 use crate::table::{Table, WEIGHTS, analyse, file, scene};
 use dwell_study::{Analysis, StudyError, check};

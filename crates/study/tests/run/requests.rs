@@ -1,4 +1,4 @@
-//! What is not requested is neither written nor drawn, and the rest is as it was, to the last bit.
+//! Columns that are not requested are neither written nor drawn, and the others are the same to the last bit.
 
 use crate::table::{Table, WEIGHTS, analyse, case, file, scene};
 use dwell_scene::PlaneScene;

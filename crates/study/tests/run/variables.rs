@@ -17,7 +17,7 @@ fn requesting(variable: &str) -> PlaneScene {
     ))
 }
 
-/// What each analysis says of a scene, without its result.
+/// The error of each analysis of a scene, without its result.
 fn analyses(scene: &PlaneScene) -> Vec<(&'static str, Result<(), StudyError>)> {
     let trajectory = |analysis| analyse_trajectory(scene, analysis, None, &no_progress).map(drop);
     let settings = SolverSettings::default();

@@ -1,4 +1,4 @@
-//! What motors take and deliver in space: the columns of the plane, and the circuits of the scene.
+//! Input and output of motors in space: the columns of the plane, and the circuits of the scene.
 
 use super::as_in_the_plane::{both, column, difference};
 use super::scene;

@@ -7,7 +7,7 @@ use dwell_study::output::Picture;
 use dwell_study::{Analysis, PictureSpan, analyse_trajectory_within, no_progress, reduce};
 use rayon::prelude::*;
 
-/// What is wrong with some pictures, and their number.
+/// The defects of some pictures, and the number of pictures.
 fn defects(study: &str, pictures: &[Picture]) -> (Vec<String>, usize) {
     let of = |picture: &Picture| {
         let layouts = picture.layouts().expect("a layout");

@@ -1,4 +1,4 @@
-//! What an event costs, and how accurate its time is, by each integrator; reported, and held where the figures are reached.
+//! Cost of an event, and accuracy of its time, for each integrator; reported, and asserted if the requirement is met.
 
 use crate::several::slider_crank;
 use crate::{Run, run};

@@ -1,4 +1,4 @@
-//! What an impact does to the rest of a mechanism: impulses in its pins, momentum of masses that strike each other.
+//! The effects of an impact on a mechanism: impulses in its pins, momentum of colliding masses.
 
 use crate::{run, tolerance};
 use dwell_dynamics::{ContactEvent, Method, StopChange};

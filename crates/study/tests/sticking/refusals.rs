@@ -1,4 +1,4 @@
-//! What friction that holds is refused for, and slips in a scene: by the name of the joint, with a place in the file.
+//! Analyses that reject sticking friction, and mistakes in scenes: messages name the joint, with a place in the file.
 
 use dwell_scene::PlaneScene;
 use dwell_study::{OperatingPoint, compute_linearisation};

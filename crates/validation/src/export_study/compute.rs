@@ -24,7 +24,7 @@ pub(super) const INTERPOLATIONS: [SampleInterpolation; 3] = [
     SampleInterpolation::Cubic,
     SampleInterpolation::Trigonometric,
 ];
-/// What is compared.
+/// The compared quantities.
 pub(super) const QUANTITIES: [&str; 3] = ["m", "reaction", "period"];
 /// The reaction.
 const REACTION: &str = "slide.normal";
@@ -38,7 +38,7 @@ pub(super) struct Cell {
     pub(super) interpolation: SampleInterpolation,
     /// Largest errors of m and of the reaction's a or b, relative to the largest value, and that of the period, relative to it.
     pub(super) errors: [f64; 3],
-    /// What is stated for them.
+    /// The stated errors.
     pub(super) estimates: [f64; 3],
 }
 

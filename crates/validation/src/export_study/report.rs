@@ -13,7 +13,8 @@ use dwell_study::{Outcome, StudyError};
 const NAME: &str = "exported-runs";
 /// The errors that a chart has room for.
 const ERROR_RANGE: [f64; 2] = [1e-16, 1.0];
-/// Differences of rounding, beside what is stated: 3e-13 of the reaction is measured where 2e-13 is stated.
+/// Allowance for rounding in addition to stated errors: the largest measured error of the reaction is 3e-13, where
+/// 2e-13 is stated.
 const ROUNDING: f64 = 2e-13;
 
 /// The report: `exported-runs.md`, `.txt` and the folder `exported-runs/`.

@@ -46,7 +46,7 @@ fn combined(form: Form, what: &str, findings: impl Iterator<Item = Finding>) -> 
     }
 }
 
-/// Adds the report of the forms, beside the results of the grid itself: `extremes-forms`.
+/// Adds the report of the forms, next to the results of the grid itself: `extremes-forms`.
 pub fn add_to(outcome: &mut Outcome, plane: &[SeriesResult], name: &str) {
     let results = evaluate(&Form::OTHERS);
     let figures = [figure(plane, &results)];

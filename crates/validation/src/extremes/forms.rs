@@ -260,6 +260,6 @@ pub fn evaluate(forms: &[Form]) -> Vec<(Form, Vec<SeriesResult>)> {
     forms.iter().map(one).collect()
 }
 
-/// The series that run in each form, besides those of tolerances; all others run once.
+/// The series that run in each form, in addition to those of tolerances; all others run once.
 const IN_FORMS: &str = "limit-four-bar limit-slider-crank flat-parallelogram mass-ratio length power-of-two placement speed revolutions \
                         light-crank short-crank guide-near-path gear-ratio cam-steepness long-links large-group";

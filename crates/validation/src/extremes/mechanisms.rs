@@ -105,7 +105,7 @@ pub struct SliderCrank {
     pub lengths: [f64; 2],
     /// Height of the line above A, m.
     pub height: f64,
-    /// Of crank, rod and slider.
+    /// Masses of crank, rod and slider.
     pub masses: [Mass; 3],
     /// Coordinate and approximate angle of the rod at assembly.
     pub assembly: [f64; 2],

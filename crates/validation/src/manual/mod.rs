@@ -38,7 +38,7 @@ use std::path::{Path, PathBuf};
 
 /// The folder of small scenes for capabilities without a case, within the folder of the cases.
 const CAPABILITY_FOLDER: &str = "capabilities";
-/// The folder of the committed texts of fault studies, beside that of the cases.
+/// The folder of the committed texts of fault studies, next to that of the cases.
 const REPORT_FOLDER: &str = "reports";
 /// Number of checks that have to detect a fault.
 pub const REQUIRED: usize = 2;
@@ -185,7 +185,7 @@ impl Manual {
     }
 }
 
-/// The folder of reports beside that of the cases.
+/// The folder of reports, next to that of the cases.
 fn reports(folder: &Path) -> PathBuf {
     folder.join("..").join(REPORT_FOLDER)
 }

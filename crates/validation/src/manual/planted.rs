@@ -36,7 +36,7 @@ pub struct PlantedScene {
     ignored: OnceLock<BTreeSet<String>>,
 }
 
-/// What is claimed of a scene.
+/// The claims about a scene.
 #[derive(Debug, Clone, PartialEq)]
 struct StateClaims {
     assembly_poses: Vec<Pose>,

@@ -42,7 +42,7 @@ pub(super) struct Rotor {
     start: [f64; 2],
     /// The end of the motion, s, unless an event ends it.
     pub(super) duration: f64,
-    /// In the order of the scene.
+    /// The events, in the order of the scene.
     events: Vec<RotorEvent>,
     /// Lower and upper limit of a stop; infinite without a stop.
     limits: [f64; 2],

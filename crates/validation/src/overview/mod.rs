@@ -35,7 +35,7 @@ pub struct ValidatedCase<'a> {
 pub struct ValidationRun<'a> {
     /// The cases of the plane, then those in space.
     pub cases: Vec<ValidatedCase<'a>>,
-    /// The studies beside them, by name, with their findings: extremes, exported runs.
+    /// The other studies, by name, with their findings: extremes, exported runs.
     pub studies: Vec<(&'static str, &'a [Finding])>,
     /// The reason if the independent reader did not run.
     pub no_reader: Option<String>,

@@ -8,7 +8,7 @@ use dwell_report::{Block, Document, Tile, markdown_text};
 
 /// The period that the source paper prints for its mechanism, s.
 const PUBLISHED_PERIOD: &str = "5.42";
-/// The first check of what commands write.
+/// The first check of written files.
 const FIRST_WRITTEN: Check = Check::WrittenPositions;
 
 /// The number of judged and passed items of one kind.

@@ -103,18 +103,17 @@ impl Combination {
 /// True errors: the largest over the compared times.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Errors {
-    /// Of the free coordinates, rad or m.
+    /// Error of the free coordinates, rad or m.
     pub coordinate: f64,
-    /// Of kinetic + potential energy − work, as a part of the largest kinetic energy; the energies are
+    /// Error of kinetic + potential energy − work, relative to the largest kinetic energy; the energies are
     /// those of the exact model.
     pub energy: f64,
-    /// Of the worst reaction, as a part of the largest reaction of its unit; not a number where there is
-    /// none.
+    /// Error of the worst reaction, relative to the largest reaction of its unit; NaN without reactions.
     pub reaction: f64,
 }
 
 impl Errors {
-    /// Those of a motion with rows missing.
+    /// The errors of a motion with missing rows.
     pub(super) const UNKNOWN: Self = Self {
         coordinate: f64::NAN,
         energy: f64::NAN,

@@ -194,7 +194,7 @@ fn results<S: StudiedScene>(
     points
 }
 
-/// The runs of one evaluator, with the quadrature where the motion follows from the energy.
+/// The runs of one evaluator, with the quadrature if the motion follows from the energy.
 fn collect_trials<'e, S: StudiedScene>(
     evaluator: &'e dyn Evaluator,
     subject: &Subject<S>,

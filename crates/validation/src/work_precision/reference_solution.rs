@@ -138,7 +138,7 @@ impl<'s, S: StudiedScene> ReferenceSolution<'s, S> {
         Ok([kinetic, potential - works])
     }
 
-    /// The errors of some states at the subject's times, with reactions as they are evaluated there.
+    /// The errors of some states at the subject's times, with reactions evaluated there.
     pub(super) fn errors(
         &mut self,
         states: &[Vec<f64>],

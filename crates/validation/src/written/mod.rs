@@ -1,5 +1,5 @@
-//! Checks of what leaves the program that need the program: it runs as a process, and its sentences are compared with its files, and these with
-//! those of other runs, for scenes in the plane and in space. The numbers of the files are judged by `validation/audit`.
+//! Checks of written files that need the program itself. It runs as a process; its printed text is compared with its files, and these with
+//! the files of other runs, for scenes in the plane and in space. `validation/audit` judges the numbers of the files.
 
 mod cycles;
 mod motions;
@@ -19,7 +19,7 @@ pub(crate) const WRITTEN_PREFIX: &str = "written-";
 /// Compares the files of some commands on a scene; why they cannot be compared, in words.
 type Compare = fn(&mut Compared, &Program, &Scene) -> Result<(), String>;
 
-/// What the name of the folder ends with, the key of the finding that fails where nothing can be compared, and the comparison.
+/// The ending of the name of the folder, the key of the finding that fails if nothing can be compared, and the comparison.
 const COMPARISONS: [(&str, &str, Compare); 5] = [
     ("", "written-sentences", poses::compare),
     ("-motion", "written-motion-again", motions::compare),
@@ -28,7 +28,7 @@ const COMPARISONS: [(&str, &str, Compare); 5] = [
     ("-sweep", "written-sweep", sweeps::compare),
 ];
 
-/// Runs the program at `path` on a case and judges what it writes. A run that fails is a failed finding.
+/// Runs the program at `path` on a case and judges its files. A run that fails is a failed finding.
 pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
     let all = COMPARISONS.iter().flat_map(|(end, key, compare)| {
         let program = Program::new(path, &format!("{name}{end}"));

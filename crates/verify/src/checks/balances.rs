@@ -19,10 +19,9 @@
 //! Positions are closed to about 2e-16 of the size; a second difference divides that error by h². With
 //! the steps used here, a few hundredths of a radian and more, 1e-12 of the largest force remains.
 //!
-//! Signs: a reaction is the force or moment of a joint's first body on its second. Where the ground is the
-//! first body, this is the action of the ground; where it is the second, the opposite. The force of a
-//! prismatic joint acts at the second body's point along the first body's normal, with the joint's
-//! moment as a couple.
+//! Signs: a reaction is the force or moment of a joint's first body on its second. If the ground is the first body, this
+//! is the action of the ground; if it is the second, the opposite. The force of a prismatic joint acts at the second
+//! body's point along the first body's normal, with the joint's moment as a couple.
 
 use super::row_step;
 use crate::comparison::{ComparisonSet, FindingSpec, LargestDifference};
@@ -253,7 +252,7 @@ struct BodyBalance {
 }
 
 impl BodyBalance {
-    /// With what acts on the body, about its centre of mass.
+    /// Adds the wrench on the body, about its centre of mass.
     fn with(
         self,
         wrenches: &[BodyWrench],

@@ -8,9 +8,9 @@
 //! |x − x*| → 0                                               (2)
 //! ```
 //!
-//! A subject that changed its assembly branch between two positions would satisfy (1) and (2) at
-//! both. So the branch is also followed from position to position, by Newton steps too short to
-//! jump, and must arrive where the subject says (modulo whole revolutions of a body).
+//! A subject that changed its assembly branch between two positions would satisfy (1) and (2) at both. Therefore the
+//! branch is also followed from position to position, by Newton steps too short to jump, and must arrive at the pose of
+//! the subject (modulo whole revolutions of a body).
 
 use crate::comparison::{FindingSpec, LargestDifference};
 use crate::context::{CheckContext, CheckedPosition};

@@ -18,9 +18,8 @@ use crate::subject::Subject;
 use dwell_findings::Finding;
 use rayon::prelude::*;
 
-/// Compares a subject with every check, in parallel. The findings come in a fixed order, that of
-/// the checks' numbers. If the mechanism itself cannot be written in dense rows, there is one
-/// failed finding that says why.
+/// Compares a subject with every check, in parallel. The findings come in a fixed order, that of the checks' numbers.
+/// If the mechanism itself cannot be written in dense rows, there is one failed finding with the reason.
 pub fn verify_all(
     case: &Case<'_>,
     subject: &dyn Subject,
@@ -49,8 +48,8 @@ pub fn verify_all(
 /// 0.8 the findings hardly differ, at 0.06 second differences lose a digit to rounding.
 pub(crate) const MAX_DIFFERENCE_STEP: f64 = 0.3;
 
-/// The longest step in the imposed value of a row with unit velocities `u`. Since it is measured by
-/// what it does to the mechanism, it suits rows in m and in rad, and is shorter near a dead point.
+/// The longest step in the imposed value of a row with unit velocities `u`. Because it is measured by its effect on the
+/// mechanism, it suits rows in m and in rad, and is shorter near a dead point.
 fn row_step(context: &CheckContext<'_>, u: &[f64]) -> f64 {
     MAX_DIFFERENCE_STEP / context.dense.scaled_norm(u)
 }

@@ -8,18 +8,18 @@ use crate::subject::{Subject, SubjectError};
 use dwell_findings::{Check, Finding};
 use dwell_geometry::{BodyId, Vec2};
 
-/// A point of a body and where it was published to be.
+/// A point of a body with its published position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PublishedPoint {
     /// The body.
     pub body: BodyId,
     /// The point in the body's own frame, m.
     pub local: Vec2,
-    /// Where it is in the plane, m.
+    /// Its published position, m.
     pub position: Vec2,
 }
 
-/// Published values at one position. What was not published is left empty.
+/// Published values at one position. Fields without a published value are empty.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PublishedSample {
     /// The coordinate, rad.
@@ -64,8 +64,7 @@ const QUANTITIES: [[&str; 3]; 5] = [
     ],
 ];
 
-/// One finding for each kind of value that was published. A kind of which nothing was published
-/// gives none.
+/// One finding for each kind of value that was published. A kind without published values has no finding.
 ///
 /// Scales come from the published values themselves, over all samples.
 pub fn published(
@@ -123,7 +122,7 @@ pub fn published(
     given.map(finding).collect()
 }
 
-/// The largest published value of a kind; of a and b that of the unit of reaction `k`.
+/// The largest published value of a kind; for a and b, of the unit of reaction `k`.
 fn scale(moments: &[bool], samples: &[PublishedSample], kind: usize, k: usize) -> f64 {
     let is_moment = |k| moments.get(k) == Some(&true);
     let values = |s: &PublishedSample| -> Vec<f64> {

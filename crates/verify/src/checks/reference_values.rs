@@ -3,16 +3,16 @@
 use crate::comparison::{Comparison, FindingSpec, LargestDifference};
 use dwell_findings::Finding;
 
-/// A quantity at one state, and what it should be there.
+/// A quantity at one state, with its reference value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComparedValue {
-    /// What is compared and where, such as `k1.acceleration, sample 1`.
+    /// The quantity and the state, such as `k1.acceleration, sample 1`.
     pub location: String,
     /// Its unit.
     pub unit: &'static str,
-    /// What the subject has.
+    /// The value of the subject.
     pub value: f64,
-    /// What it should be.
+    /// The reference value.
     pub expected: f64,
     /// The largest value of the unit, which the difference is relative to.
     pub scale: f64,
@@ -20,7 +20,7 @@ pub struct ComparedValue {
     pub condition_number: f64,
 }
 
-/// Compares values with what they should be. Nothing to compare fails.
+/// Compares values with their references. Without values the finding fails.
 pub fn compare_values(spec: &FindingSpec<'_>, domain: String, values: &[ComparedValue]) -> Finding {
     let mut worst = LargestDifference::default();
     for value in values {

@@ -7,8 +7,8 @@
 //! ½ m′(q) ≈ Re Σ_{0<k<N/2} i k c_k e^(i k q)                 (2)
 //! ```
 //!
-//! m is periodic and smooth, so the error falls faster than any power of 1/N: no step, and no
-//! local information at all. N is doubled until the slope at the checked positions no longer moves.
+//! m is periodic and smooth, so the error falls faster than any power of 1/N: the method uses no step and no local
+//! information. N is doubled until the slope at the checked positions no longer changes.
 //!
 //! The nodes are followed from one to the next by the dense side itself, which also shows that the
 //! mechanism comes back to where it started after a revolution.
@@ -38,7 +38,7 @@ const SPECTRAL: FindingSpec<'_> = FindingSpec {
     tolerance_reason: "the interpolant multiplies the rounding of m by the order of its last harmonics",
 };
 
-/// One finding over a full revolution; none over part of one, where m is not periodic.
+/// One finding over a full revolution; none over part of a revolution, because m is then not periodic.
 pub(crate) fn spectral(context: &CheckContext<'_>) -> Vec<Finding> {
     let Some(first) = context.positions.first() else {
         return Vec::new();

@@ -1,5 +1,5 @@
-//! What reactions and actuators do to bodies: forces at points and couples, from the definitions of the reactions and the positions of
-//! the bodies, never from the rows.
+//! The actions of reactions and actuators on bodies: forces at points and couples, from the definitions of the reactions and the
+//! positions of the bodies, never from the rows.
 
 use crate::pose::Pose;
 use crate::rows::terms::{Ends, Term, perpendicular};
@@ -14,11 +14,11 @@ pub(crate) enum Direction {
     Ground(Vec3),
     /// Fixed in a body.
     Body(usize, Vec3),
-    /// From the first point to the second.
+    /// The direction from the first point to the second.
     Line(Ends),
 }
 
-/// What a unit of a reaction or an actuator's force does: of the first body on the second.
+/// The action of a unit of a reaction or of an actuator's force, of the first body on the second.
 #[derive(Debug, Clone)]
 pub(crate) enum Action {
     Force {
@@ -26,7 +26,7 @@ pub(crate) enum Action {
         along: Direction,
         /// A point of a body.
         at: (usize, Vec3),
-        /// From there to where it acts, fixed in a body.
+        /// The vector from there to the point of application, fixed in a body.
         offset: (usize, Vec3),
     },
     Couple {
@@ -41,7 +41,7 @@ pub(crate) enum Action {
         /// Whether the pitch point is beyond the second centre.
         beyond: bool,
     },
-    /// What a law gives to one coordinate it takes from the other: no work is lost.
+    /// A force along one coordinate of a law, with the reaction along the other: their works cancel.
     Coupled {
         dependent: Box<Action>,
         independent: Box<Action>,

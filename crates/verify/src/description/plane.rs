@@ -16,8 +16,8 @@
 //! actuator   θ2 − θ1, or t·d, or |d|              (11) rad or m
 //! ```
 //!
-//! Rows (6) to (8), and (10) with an angle, feel whole revolutions of a body: in a mechanism that has one of these (11) takes an angle
-//! as it is counted, in any other to the nearest turn.
+//! Rows (6) to (8), and (10) with an angle, depend on whole revolutions of a body. In a mechanism with one of these, (11) uses the
+//! counted angle, in any other the angle modulo one revolution.
 
 use super::action::{Action, Direction};
 use super::{DescribedBody, DescribedJoint, DescribedReaction, DescribedRow, Description};
@@ -35,8 +35,8 @@ use dwell_geometry::{
 use dwell_kinetostatics::space::Mass;
 use std::f64::consts::TAU;
 
-/// Two points of one body are one centre when they are this close, in pitch radii: only the turn that the line of centres is counted to
-/// hangs on it.
+/// Two points of one body are one centre when they are this close, in pitch radii: it decides only the number of revolutions of the
+/// line of centres.
 const SAME_CENTRE: f64 = 1e-6;
 
 fn ends(bodies: [BodyId; 2], points: [Vec2; 2]) -> Ends {
@@ -54,7 +54,7 @@ impl Description {
     /// The description of a planar mechanism.
     ///
     /// # Errors
-    /// [`DenseError`] where it refers to something that is not there, an axis is no unit vector, or there is not one mass for each body.
+    /// [`DenseError`] if it refers to a part that does not exist, an axis is no unit vector, or there is not one mass for each body.
     pub(crate) fn in_plane(mechanism: &Mechanism, inertias: Inertias<'_>) -> Result<Self> {
         // References first: what follows indexes by them.
         ConstraintRows::new(mechanism)?;
@@ -221,7 +221,7 @@ impl Lift<'_> {
         }
     }
 
-    /// What a unit of each reaction of a joint does.
+    /// The action of a unit of each reaction of a joint.
     fn actions(&self, joint: &Joint) -> Vec<Action> {
         let at = ends(joint.bodies, joint.points);
         let ([first, second], [x, y, z]) = (at.bodies, Vec3::AXES);

@@ -5,8 +5,8 @@
 //! e·d = 0,    u·d = 0,    u·w = 0,    |d| − L = 0,    u·d − h θ = 0
 //! ```
 //!
-//! with e of the ground, and the teeth of gears at their pitch point. A body that turns idly about the line of its two balls is held from
-//! turning about it.
+//! with e of the ground, and the teeth of gears at their pitch point. A row holds the idle rotation of a body about the line through its
+//! spherical joints.
 
 use super::action::{Action, Direction};
 use super::{DescribedBody, DescribedJoint, DescribedReaction, DescribedRow, Description};
@@ -26,7 +26,8 @@ const COMPONENTS: [&str; 6] = [
 ];
 
 impl Description {
-    /// The description of a mechanism in space, with the bodies whose rotation about the line of their balls is nobody's.
+    /// The description of a mechanism in space, with the bodies that have an idle rotation about the line through their
+    /// spherical joints.
     ///
     /// # Errors
     /// [`DenseError`] where there is not one mass for each body.

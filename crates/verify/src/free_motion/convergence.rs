@@ -43,8 +43,8 @@ pub(super) fn check_convergence(slope: f64) -> Finding {
     }
 }
 
-/// ½m″, on which the Jacobian of the equation of motion rests. BDF only converges more slowly with
-/// a wrong one, so it is checked by itself, against differences of ½m′.
+/// Checks ½m″, which the Jacobian of the equation of motion contains, against differences of ½m′. With a wrong ½m″, BDF
+/// would only converge more slowly, so that the check of the motion does not detect it.
 pub(super) fn check_jacobian<R: ReducedModel>(
     model: &R,
     case: &FreeMotionCase,

@@ -29,11 +29,11 @@ pub(super) struct MultibodySolution {
     state: MultibodyState,
 }
 
-/// All forces but those that depend on reactions, and the inertia.
+/// All forces except those that depend on reactions, and the inertia.
 struct AppliedForces {
     mass: Mat<f64>,
     force: Vec<f64>,
-    /// Of what has no potential, W.
+    /// Power of forces without a potential, W.
     power: f64,
     /// By drive: its action, and the rate of its state.
     drive_forces: Vec<f64>,
@@ -95,7 +95,7 @@ impl MultibodyOde<'_> {
         }
     }
 
-    /// All loads but those that depend on reactions; none if a magnitude cannot be evaluated.
+    /// Adds all loads except those that depend on reactions; `None` if a magnitude cannot be evaluated.
     fn add_loads(&self, point: &EvaluationPoint<'_>, to: &mut AppliedForces) -> Option<()> {
         let at = &point.at;
         for (i, load) in self.system.loads.iter().enumerate() {

@@ -8,10 +8,9 @@
 //! T(k, j) = T(k, j−1) + (T(k, j−1) − T(k−1, j−1)) / ((n_k / n_{k−j})² − 1)          (1)
 //! ```
 //!
-//! gains two orders a column. What begins the table is Gragg's ½ (z_n + z_{n−1} + h f(z_n)): it looks at
-//! the end of the step too, so that a jump of the forces shortly before it is not passed unseen. The step
-//! is done as soon as the last two columns agree; the next is as long as the number of evaluations for
-//! its length makes worth while.
+//! gains two orders a column. The table starts with Gragg's ½ (z_n + z_{n−1} + h f(z_n)), which also evaluates the end
+//! of the step, so that a jump of the forces shortly before it is not missed. The step ends as soon as the last two
+//! columns agree. The length of the next step minimises the number of evaluations per length.
 
 use super::equations::MultibodyOde;
 use super::{MotionSample, MultibodyError, Result};
@@ -24,8 +23,8 @@ const MAX_COLUMNS: usize = 10;
 const MIN_COLUMNS: usize = 3;
 /// Most steps of a run, tried and taken.
 const MAX_STEPS: usize = 20_000;
-/// A step this short, relative to what the motion takes for a radian or a size, crosses a jump of
-/// the forces: no order is left, and what it is wrong by is no more than itself.
+/// A step this short, relative to the time of the motion for a radian or a size, crosses a jump of the forces. The
+/// method then has no order, and its error is at most of the size of the step.
 const MIN_STEP: f64 = 1e-13;
 
 /// A run in the making.
@@ -41,7 +40,7 @@ pub(super) struct ExtrapolationSolver<'a> {
     duration: f64,
 }
 
-/// What came of an attempted step: the new state, if it is accepted, and by what the length changes.
+/// The result of an attempted step: the new state, if it is accepted, and the factor of the length.
 type StepResult = (Option<Vec<f64>>, f64);
 
 /// Evaluations of the table up to row k, the first at the start of the step.

@@ -114,8 +114,8 @@ impl MultibodySystem {
 }
 
 impl MultibodyOde<'_> {
-    /// The friction forces that agree with the reactions which they cause: those without these loads, and what a
-    /// unit of each adds.
+    /// The friction forces that are consistent with the reactions that they cause, from the reactions without these
+    /// loads and the contribution of a unit of each.
     pub(super) fn solve_friction(
         &self,
         frictions: &[usize],

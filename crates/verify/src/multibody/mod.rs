@@ -45,7 +45,7 @@ pub enum MultibodyError {
     /// The mechanism or its start is not sound.
     #[error(transparent)]
     Dense(#[from] DenseError),
-    /// Not one coordinate mode for each actuator.
+    /// The number of coordinate modes is not that of the actuators.
     #[error("the number of coordinate modes is not that of the actuators")]
     CoordinateModes,
     /// A load that cannot act.
@@ -53,7 +53,7 @@ pub enum MultibodyError {
     Load {
         /// Its index.
         load: usize,
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
     },
     /// A drive that cannot act.
@@ -61,7 +61,7 @@ pub enum MultibodyError {
     Drive {
         /// Its index.
         drive: usize,
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
     },
     /// The poses, velocities or times are missing, not finite or not in order.
@@ -78,12 +78,12 @@ pub enum MultibodyError {
         /// Smallest pivot relative to the largest.
         pivot: f64,
     },
-    /// No friction found that fits the reactions it makes, at a time, s.
+    /// At a time, s, no friction is consistent with the reactions that it causes.
     #[error(
         "at t = {0} s no friction force satisfies the friction law: the mechanism is self-locking"
     )]
     SelfLocking(f64),
-    /// A load, drive or law that is no number at a time, s.
+    /// A load, drive or law that is not finite at a time, s.
     #[error("at t = {0} s a load, drive or law is not a finite number")]
     NotFinite(f64),
     /// The accuracy is out of reach from a time on, s.
@@ -91,8 +91,8 @@ pub enum MultibodyError {
     AccuracyNotReached(f64),
 }
 
-/// A motion at one instant: of the multibody equations, or one that is claimed. What is given by
-/// body is in the order of [`Mechanism::bodies`], the ground included.
+/// A motion at one instant: of the multibody equations, or a claimed one. Values by body are in the order of
+/// [`Mechanism::bodies`], including the ground.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MotionSample {
     /// Time, s.
@@ -105,7 +105,7 @@ pub struct MotionSample {
     pub reactions: Vec<f64>,
     /// By actuator: the force of its prescribed motion, N·m or N; zero for a free one.
     pub tau: Vec<f64>,
-    /// By drive: its force on the coordinate, N·m or N, without what its rotor's inertia takes.
+    /// By drive: its force on the coordinate, N·m or N, without the part that accelerates its rotor.
     pub drive_forces: Vec<f64>,
     /// Kinetic energy, with the rotors', J.
     pub kinetic: f64,
@@ -118,13 +118,13 @@ pub struct MotionSample {
 /// A mechanism in motion by its full equations.
 #[derive(Debug, Clone)]
 pub struct MultibodySystem {
-    /// As it was given.
+    /// The given mechanism.
     mechanism: Mechanism,
     masses: Vec<Mass>,
     loads: Vec<Load>,
     modes: Vec<CoordinateMode>,
     drives: Vec<Drive>,
-    /// With an actuator more for each drive, and its frames at the centres of mass.
+    /// The mechanism with an additional actuator for each drive, and with its frames at the centres of mass.
     frames: DenseMechanism,
 }
 
@@ -163,13 +163,12 @@ impl MultibodySystem {
         Ok(system)
     }
 
-    /// Follows the motion from the poses and velocities of `start` (nothing else of it is read but
-    /// its time), with the states of the drives at zero, and yields it at its time and at the
-    /// `times` after it, s. The start is first moved by the least that closes all rows; gears mesh
-    /// as they stand there.
+    /// Follows the motion from the poses and velocities of `start` (nothing else of it is read but its time), with the
+    /// states of the drives at zero, and yields it at its time and at the `times` after it, s. The start is first moved
+    /// by the smallest change that closes all rows; gears mesh in this position.
     ///
     /// # Errors
-    /// [`MultibodyError`] where the start does not close, or the motion cannot be followed.
+    /// [`MultibodyError`] if the start does not close, or the motion cannot be followed.
     pub fn integrate(&self, start: &MotionSample, times: &[f64]) -> Result<Vec<MotionSample>> {
         let rising = std::iter::once(&start.t).chain(times);
         let in_order = rising.clone().all(|t| t.is_finite())

@@ -103,7 +103,7 @@ impl MultibodySystem {
     /// Compares claims with samples of [`MultibodySystem::integrate`] at the same times.
     ///
     /// # Errors
-    /// [`MultibodyError::InvalidStart`] where there are not as many of each, or of what they hold.
+    /// [`MultibodyError::InvalidStart`] if the numbers of samples, or of the values in them, differ.
     pub fn check(
         &self,
         claimed_motion: &[MotionSample],
@@ -164,8 +164,8 @@ impl MultibodySystem {
         })
     }
 
-    /// A finding over what all frames have, claimed and reference: the scale of lengths is at least that of angles at
-    /// an arm of the size, and the reverse; that of angles at most `max_angle`.
+    /// A finding over values of all frames, claimed and reference. The scale of lengths is at least that of angles
+    /// times the size, and the reverse; the scale of angles is at most `max_angle`.
     fn frames_finding(
         &self,
         spec: &FindingSpec<'_>,

@@ -49,8 +49,8 @@ impl MultibodySystem {
         signals.iter().map(|s| self.signal(*s, at)).collect()
     }
 
-    /// A magnitude; none if it needs a coordinate or a signal that is not there. What depends on reactions, and
-    /// external magnitudes, have none of their own.
+    /// A magnitude; `None` if it needs a coordinate or a signal that does not exist. Magnitudes that depend on
+    /// reactions, and external ones, have no value here.
     pub(super) fn magnitude(&self, magnitude: &Magnitude, at: &MultibodyState) -> Option<f64> {
         match magnitude {
             Magnitude::Constant(value) => Some(*value),

@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Gear {
     pub(crate) ends: Ends,
-    /// What θ1 and θ2 are multiplied by: ±r1 and r2.
+    /// The factors of θ1 and θ2: ±r1 and r2.
     factors: [f64; 2],
     /// The body that holds both centres.
     carrier: Option<usize>,
@@ -25,7 +25,7 @@ pub(crate) struct Gear {
 }
 
 impl Gear {
-    /// Of pitch radii (m), with the body that holds both centres, if any.
+    /// A gear pair with pitch radii (m), and the body that holds both centres, if any.
     pub(crate) fn new(
         ends: Ends,
         (radii, internal): ([f64; 2], bool),
@@ -54,7 +54,7 @@ impl Gear {
         ]
     }
 
-    /// Makes the row vanish at these poses.
+    /// Sets the constant so that the row is zero at these poses.
     pub(crate) fn mesh(&mut self, poses: &[Pose]) {
         let psi = Term::LineDirection(self.ends).value(poses);
         self.phase_offset = psi - self.carrier.map_or(0.0, |c| poses[c].angle);

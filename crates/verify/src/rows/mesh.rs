@@ -53,8 +53,8 @@ impl Mesh {
         n1.dot(at(b) - at(a)) + n.dot(turned(b) - turned(a))
     }
 
-    /// How far the teeth are off after moving from some poses to others, m: what they travel on the second wheel less on the first, each
-    /// relative to the carrier by the screw that leads from one pose to the other (its angle below half a revolution).
+    /// The mismatch of the teeth after a motion between two poses, m: their travel on the second wheel minus that on the first, each
+    /// relative to the carrier by the screw motion between the poses (its angle below half a revolution).
     pub(crate) fn travel(&self, from: &[Pose], to: &[Pose]) -> f64 {
         let travel = |wheel: usize| {
             let [before, after] = [from, to].map(|at| in_frame(&at[self.carrier()], &at[wheel]));

@@ -71,7 +71,7 @@ impl Ends {
         [d, v2 - v1, a2 - a1]
     }
 
-    /// The gradients of what changes by w·δP₂ − w·δP₁.
+    /// The gradients of a quantity whose variation is w·δP₂ − w·δP₁.
     fn pair(&self, arms: [Vec3; 2], w: Vec3) -> [Gradient; 2] {
         [force_at(arms[0], -w), force_at(arms[1], w)]
     }

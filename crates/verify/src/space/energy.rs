@@ -19,8 +19,8 @@ impl DensePose<'_> {
         0.5 * bodies.map(of_body).sum::<f64>()
     }
 
-    /// The potential energy of a load of constant magnitude, J; none of one that has no potential. The angle of a spring is that nearest to
-    /// its free angle.
+    /// The potential energy of a load of constant magnitude, J; `None` for a load without a potential. The angle of a spring is that
+    /// nearest to its free angle.
     pub fn potential_energy(&self, (kind, magnitude): (LoadKind, f64)) -> Option<f64> {
         let at_rest = vec![BodyMotion::default(); self.placements.len()];
         let bodies = SpaceBodies {

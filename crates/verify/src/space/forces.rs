@@ -1,4 +1,4 @@
-//! What loads do to bodies in space, from their positions and motions.
+//! The forces of loads on bodies in space, from their positions and motions.
 
 use super::joints::Sides;
 use crate::placed_load::{Line, LineKind, PlacedLoad};

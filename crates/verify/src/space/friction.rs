@@ -9,8 +9,7 @@ use dwell_kinetostatics::space::{LoadKind, Mass};
 use dwell_kinetostatics::{Friction, FrictionContact};
 
 impl DensePose<'_> {
-    /// The loads with the forces of those that are friction, which are given for them by load: at speeds and accelerations of the actuators. Not
-    /// numbers where friction locks itself.
+    /// The loads, with the forces of frictions at speeds and accelerations of the actuators, by load. NaN if friction locks itself.
     ///
     /// # Errors
     /// [`DenseError`](crate::DenseError) where the equations have no singular values.

@@ -1,4 +1,4 @@
-//! Where the sides of joints are, and how far joints are from closed.
+//! Positions of the sides of joints, and closure errors of joints.
 
 use crate::description::space::mesh;
 use dwell_geometry::space::{Joint, JointKind, Placement, Vec3};
@@ -36,15 +36,15 @@ impl Sides {
         self.n.cross(self.p).dot(self.u).atan2(self.n.dot(self.p))
     }
 
-    /// How far a screw's travel is from that of its angle, which may have whole turns, each of 2π pitch.
+    /// The difference of a screw's travel from that of its angle, m, without whole revolutions.
     fn screw_error(&self, pitch: f64) -> f64 {
         let turns = (self.d.dot(self.u) / pitch - self.angle()) / TAU;
         (turns - turns.round()) * TAU * pitch
     }
 }
 
-/// How far a joint is from closed, m and rad, at placements of all bodies. The row of a gear pair is one of
-/// velocities: what its wheels have travelled is seen by comparing two poses, not here.
+/// The closure error of a joint, m and rad, at placements of all bodies. The row of a gear pair is one of velocities:
+/// [`mesh_error`] compares the travel of its wheels in two poses.
 pub fn closure_error(joint: &Joint, placements: &[Placement]) -> f64 {
     let sides = Sides::of(joint, placements);
     let Sides { u, w, n, p, d } = sides;
@@ -67,8 +67,8 @@ pub fn closure_error(joint: &Joint, placements: &[Placement]) -> f64 {
     found.iter().fold(0.0, |all, part| all.max(part.abs()))
 }
 
-/// How far the teeth of a gear pair are off after moving from one pose to another, m: what they travel on the second wheel less on the first, each
-/// relative to the carrier by the screw that leads from one pose to the other (its angle below half a revolution). None of other joints.
+/// The mismatch of the teeth of a gear pair after a motion between two poses, m: their travel on the second wheel minus that on the first,
+/// each relative to the carrier by the screw motion between the poses (its angle below half a revolution). `None` for other joints.
 pub fn mesh_error(joint: &Joint, poses: [&[Placement]; 2]) -> Option<f64> {
     let mesh = mesh(joint)?;
     let [from, to] = poses.map(crate::pose::Pose::all_in_space);

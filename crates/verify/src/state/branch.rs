@@ -1,4 +1,4 @@
-//! The branch of claimed states: that of the assembly, by continuing its pose densely.
+//! Checks that claimed states are on the branch of the assembly, by continuing its pose densely.
 
 use super::{AssembledMechanism, ClaimedState, not_dense};
 use crate::comparison::{Comparison, FindingSpec, LargestDifference};
@@ -81,7 +81,7 @@ pub(super) fn check_mesh(assembled: &AssembledMechanism<'_>, states: &[ClaimedSt
     )
 }
 
-/// Compares the moved frames of claimed states with those that are continued from the assembly to their coordinates.
+/// Compares the moved frames of claimed states with the frames continued from the assembly to their coordinates.
 fn compare_continued(
     assembled: &AssembledMechanism<'_>,
     spec: &FindingSpec<'_>,

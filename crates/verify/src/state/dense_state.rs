@@ -34,7 +34,7 @@ pub(super) struct DenseState<'a> {
     joint_wrenches: Vec<BodyWrench>,
     /// The velocities at unit speed of each row.
     pub(super) unit_velocities: Vec<Vec<f64>>,
-    /// Multipliers that hold nothing, where reactions are components of forces and rows repeat each other.
+    /// Self-stresses, if reactions are components of forces and rows are redundant.
     stresses: Vec<Vec<f64>>,
 }
 
@@ -131,8 +131,8 @@ impl<'a> DenseState<'a> {
         })
     }
 
-    /// One comparison in the state: the difference, what the scale is at least, and the error of the reference. `what`
-    /// names the quantity after the state; empty where there is only one.
+    /// One comparison in the state: the difference, a lower bound of the scale, and the error of the reference. `what`
+    /// names the quantity after the state; it is empty if there is only one.
     pub(super) fn compare(
         &self,
         set: &mut ComparisonSet,
@@ -157,8 +157,7 @@ impl<'a> DenseState<'a> {
             .max(of(&self.bounds.x_ddot, &self.solution.x_ddot))
     }
 
-    /// The largest force of inertia or of a load, moments over the size: what reactions are
-    /// relative to where they all vanish.
+    /// The largest force of inertia or of a load, moments over the size: the scale of reactions if they all vanish.
     pub(super) fn largest_force(&self) -> f64 {
         let size = self.dense.size();
         let loads = self.load_wrenches.iter();
@@ -183,7 +182,7 @@ impl<'a> DenseState<'a> {
         self.dense.bodies[body].momentum_rate(pose, [&self.claimed_dot, &self.claimed_ddot])
     }
 
-    /// The same with the accelerations that positions show.
+    /// The rate with the accelerations from differences of positions.
     pub(super) fn rate_by_differences(&self, body: usize, second: Twist) -> Wrench {
         let (of, pose) = (&self.dense.bodies[body], &self.configuration.poses[body]);
         let omega = of.columns.twist(&self.claimed_dot).angular;
@@ -202,8 +201,8 @@ impl<'a> DenseState<'a> {
         }
     }
 
-    /// What acts on a body less the rate of its momenta, component by component: the difference, the sum of absolute terms with those of
-    /// the claimed motion, and the error, moments over the size, N.
+    /// The wrench on a body minus the rate of its momenta, by component: the difference, the sum of absolute terms with those of the
+    /// claimed motion, and the error. Moments are divided by the size, N.
     pub(super) fn balance(
         &self,
         body: usize,
@@ -255,7 +254,7 @@ impl<'a> DenseState<'a> {
         }
     }
 
-    /// t with v t + ½ a t² = the longest step; a second where nothing moves.
+    /// t with v t + ½ a t² = the longest step, s; 1 s at rest.
     pub(super) fn time_step(&self) -> f64 {
         let DenseSolution { x_dot, x_ddot, .. } = &self.solution;
         let [v, a] = [x_dot, x_ddot].map(|x| self.dense.scaled_norm(x));
@@ -332,7 +331,8 @@ impl<'a> DenseState<'a> {
         self.largest_force() * (v + a * self.time_step())
     }
 
-    /// What the reactions of a joint do at unit speed of each actuator, what the largest force could, and its rounding, W.
+    /// The power of the reactions of a joint at unit speed of each actuator, that of the largest force, and its rounding,
+    /// W.
     pub(super) fn joint_powers(&self, joint: &DescribedJoint) -> Vec<[f64; 3]> {
         let largest = self.largest_force() * self.dense.size();
         let units = self.unit_velocities[self.dense.actuator_row()..].iter();
@@ -347,8 +347,8 @@ impl<'a> DenseState<'a> {
         powers.collect()
     }
 
-    /// Power of actuators and loads less the rate of the kinetic energy, that of the loads, and the sum of what its
-    /// terms could be, |F| |v|, W: a force across its velocity is rounded as if it were along it.
+    /// Power of actuators and loads minus the rate of the kinetic energy, the power of the loads, and the sum of the
+    /// bounds of the terms, |F| |v|, W: the rounding of a force across its velocity is that of a force along it.
     pub(super) fn power_balance(&self) -> [f64; 3] {
         let (mut sum, mut terms) = (0.0, 0.0);
         let mut add = |power: f64, max: f64| {
@@ -379,8 +379,8 @@ impl<'a> DenseState<'a> {
         [sum, of_loads, terms]
     }
 
-    /// What the ground and the loads do less the rate of the momentum, with the sum of absolute
-    /// terms: forces, and moments about the ground's moved origin over the size, N.
+    /// The wrench of the ground and the loads minus the rate of the momentum, with the sum of absolute terms: forces,
+    /// and moments about the ground's moved origin over the size, N.
     pub(super) fn momentum_balance(&self) -> Vec<[f64; 2]> {
         let (dense, ground) = (self.dense, self.dense.ground);
         let mut total = NetWrench::default();

@@ -62,10 +62,11 @@ const ENERGY_RATE: FindingSpec<'_> = FindingSpec {
     ..LAGRANGE
 };
 
-/// Checks claimed states by kinetic energy and virtual work alone, as [`check_states`] does by the equations of motion. Each reaction costs some twenty closings a state.
+/// Checks claimed states by kinetic energy and virtual work alone, while [`check_states`] uses the equations of motion. Each reaction needs
+/// about twenty closings for each state.
 ///
-/// The findings are state-inertia, state-kinetic, state-lagrange and state-released, in this order. Reactions
-/// that are not determined are left out, and state-released where none is. If the mechanism is not determinate there is one failed finding.
+/// The findings are state-inertia, state-kinetic, state-lagrange and state-released, in this order. Reactions that are not determined are
+/// omitted, and so is state-released if none is determined. If the mechanism is not determinate there is one failed finding.
 ///
 /// [`check_states`]: super::check_states
 pub fn check_energies(assembled: &AssembledMechanism<'_>, states: &[ClaimedState]) -> Vec<Finding> {
@@ -181,8 +182,8 @@ impl StateChecker<'_> {
 }
 
 impl DenseState<'_> {
-    /// By row: the claimed multiplier, an actuator's force last; of a joint whose reactions are components of force and moment, what these do
-    /// as the row opens at unit speed. None of rows that belong to no joint.
+    /// By row, those of the actuators last: the claimed multiplier. For a joint whose reactions are components of force and moment, their
+    /// power if the row opens at unit speed. `None` for rows that belong to no joint.
     fn claimed_multipliers(&self) -> Vec<Option<f64>> {
         let (dense, state) = (self.dense, self.state);
         let mut all = vec![None; dense.rows.len()];
@@ -202,7 +203,7 @@ impl DenseState<'_> {
         all
     }
 
-    /// One of the claimed generalised inertias; not a number where none is claimed.
+    /// One of the claimed generalised inertias; NaN if none is claimed.
     fn inertia(&self, k: usize) -> f64 {
         self.state.inertias.get(k).copied().unwrap_or(f64::NAN)
     }
@@ -224,7 +225,7 @@ impl DenseState<'_> {
         0.5 * self.dense.inertia(&self.configuration, v, v)
     }
 
-    /// (3) for every row; none for those that are not determined.
+    /// (3) for every row; `None` for rows that are not determined.
     fn lagrange(&self) -> Vec<Option<Extrapolated>> {
         let dense = self.dense;
         let unit_velocities = &self.unit_velocities;

@@ -88,7 +88,7 @@ fn val_every_joint_in_free_motion() {
     }
 }
 
-/// The same a few kilometres away: differences of large numbers must cost neither side its digits.
+/// The mechanism a few kilometres away: differences of large numbers must not cost digits on either side.
 #[test]
 fn val_every_joint_far_away() {
     for setup in crate::mechanisms::all() {

@@ -1,4 +1,4 @@
-//! A machine in a few lines, what the multibody equations make of it, and what the reduced ones claim.
+//! A machine in a few lines, with its motion by the multibody equations and by the reduced ones.
 
 use dwell_dynamics::{
     CoordinateMode, Machine, MachineOde, Method, OdeState, Options, StepControl, integrate,
@@ -24,7 +24,7 @@ pub(crate) struct Plant {
     pub(crate) mechanism: Mechanism,
     pub(crate) masses: Vec<Mass>,
     pub(crate) initial_guess: Vec<Option<f64>>,
-    /// What is known roughly of each joint; empty where nothing is.
+    /// The branch hint of each joint; empty without hints.
     pub(crate) branch_hints: Vec<Option<f64>>,
     pub(crate) loads: Vec<Load>,
     modes: Vec<CoordinateMode>,
@@ -97,7 +97,7 @@ impl Plant {
         id
     }
 
-    /// A free coordinate, where it starts and how fast.
+    /// A free coordinate with its initial value and velocity.
     pub(crate) fn free(
         &mut self,
         bodies: [BodyId; 2],

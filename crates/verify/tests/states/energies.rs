@@ -92,7 +92,7 @@ fn every_action_and_reaction_counts() {
     }
 }
 
-/// Without a term of the equations: what speeds make, what accelerations make, a load.
+/// Every omitted term of the equations is found: those of speeds, of accelerations, and of a load.
 #[test]
 fn every_term_counts() {
     let mut detected = [0; 3];

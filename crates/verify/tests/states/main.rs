@@ -85,7 +85,7 @@ fn failing(findings: &[Finding]) -> Vec<&str> {
     failed.map(|f| f.key.as_str()).collect()
 }
 
-/// Every single number of a state, made wrong by a millionth of what its kind has, is found.
+/// A change of any number of a state by a millionth of the largest of its kind is found.
 #[test]
 fn every_number_counts() {
     for setup in all() {
@@ -178,7 +178,7 @@ fn loads_count() {
     }
 }
 
-/// What is missing or not finite is refused in words, not met with a panic.
+/// Missing or non-finite values are rejected with a message, not with a panic.
 #[test]
 fn broken_states_are_refused() {
     let setup = &all()[0];
@@ -221,7 +221,7 @@ fn a_turn_that_was_lost_is_found() {
     assert!(all_pass(&findings_for(&setup, &states)));
 }
 
-/// Nothing hangs on where the mechanism stands: the producer's rounding at a kilometre, in plain
+/// The position of the mechanism has no influence: the producer's rounding at a kilometre, in plain
 /// coordinates, is 1e-13 m.
 #[test]
 fn val_mechanisms_far_away_pass() {

@@ -9,7 +9,7 @@ use dwell_verify::{
     Pose, Subject, SubjectError,
 };
 
-/// A mechanism, where it starts, what loads it, and how it is moved.
+/// A mechanism with its assembly, its loads and its motion.
 pub(crate) struct Setup {
     pub(crate) name: &'static str,
     pub(crate) mechanism: Mechanism,
@@ -21,7 +21,7 @@ pub(crate) struct Setup {
 }
 
 impl Setup {
-    /// What a check of its assembled mechanism finds.
+    /// The findings of a check of its assembled mechanism.
     pub(crate) fn check(
         &self,
         check: impl Fn(&AssembledMechanism<'_>) -> Vec<Finding>,
@@ -63,7 +63,7 @@ impl Setup {
         )
     }
 
-    /// The same standing elsewhere.
+    /// The mechanism at another position.
     pub(crate) fn moved(mut self, by: Vec2) -> Self {
         let ground = BodyId(self.mechanism.ground);
         let shift = |bodies: [BodyId; 2], points: &mut [Vec2; 2]| {

@@ -1,5 +1,5 @@
 //! A plain kinetostatic solution in dense rows, in the frames as they are described and with its
-//! own elimination: what the plan computes, by other means than the checks use.
+//! own elimination: the results of the plan, by a method that the checks do not use.
 //!
 //! ```text
 //! J ẋ = [0; q̇],  J ẍ = [0; q̈] − Φ̇ₓẋ,  Jᵀ [λ; τ] = M ẍ + h

@@ -38,8 +38,7 @@ impl Setup {
         )
     }
 
-    /// The same mechanism standing elsewhere in the plane, with every moving body's frame shifted
-    /// and turned.
+    /// The mechanism at another position in the plane, with every moving body's frame shifted and turned.
     pub(crate) fn reframed(mut self, ground: Vec2, shift: Vec2, angle: f64) -> Self {
         let by = Vec2::from_angle(angle);
         let fixed = self.mechanism.ground;
@@ -253,7 +252,7 @@ pub(crate) fn flywheel() -> Setup {
 }
 
 /// The crank-rocker driven between crank and coupler, over part of a turn: an actuator between two
-/// moving bodies, which the ground never feels. The coupler is named first.
+/// moving bodies, which exerts nothing on the ground. The coupler is named first.
 pub(crate) fn relative_drive() -> Setup {
     let mut setup = crank_rocker();
     setup.mechanism.actuators = vec![Actuator::angle("beta", [2, 1])];

@@ -1,4 +1,4 @@
-//! The source: a template for any machine, and what is its own: the operations, the loads and the self-test.
+//! The source: a template for any machine, filled with the operations, the loads and the self-test.
 
 use crate::c::{ACCESS, CWriter};
 use crate::part::Precision;

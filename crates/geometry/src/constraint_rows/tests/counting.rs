@@ -71,7 +71,7 @@ fn a_planet_is_counted_with_its_arm() {
     assert!(open[4].abs() < 1e-15);
 }
 
-/// Without a body that holds both centres, the turn of their line is told by the planet.
+/// Without a body that holds both centres, the planet determines the revolutions of the line of centres.
 #[test]
 fn without_an_arm_the_teeth_are_taken_to_the_nearest_turn() {
     let mut rows = ConstraintRows::new(&epicyclic(false)).unwrap();

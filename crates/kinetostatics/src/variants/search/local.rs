@@ -44,23 +44,23 @@ const WEIGHTS: [[f64; REACH]; REACH] = [
         1.0 / 3_628_800.0,
     ],
 ];
-/// What the polynomial leaves out of its second and third derivative next to the middle, as a multiple of its last even and odd
-/// coefficients (one of each times x): half of what these two say of the second, all that they say of the third, by which
-/// most curves are judged.
+/// Truncation error of the second and third derivative of the polynomial next to the middle, as a multiple of its last even and
+/// odd coefficients (one of each times x): half of the estimate from these two for the second derivative, the whole estimate
+/// for the third, by which most curves are judged.
 const LEFT_OUT: [[f64; 2]; 2] = [[576.0, 2460.0], [19680.0, 4920.0]];
-/// Distance of the positions about a peak, in steps of the rule, and what rounding leaves of a second derivative by their
-/// differences, as a part of the curve's size.
+/// Distance of the positions about a peak, in steps of the rule, and rounding error of a second derivative by their
+/// differences, relative to the curve's size.
 const SPACING: f64 = 1e-3;
 const SECOND_ROUNDING: f64 = 1e-9;
-/// A peak is found where what is not known of its derivatives changes its value by less, as a part of the curve's size, or where
-/// its slope in a step is smaller.
+/// A peak has converged if the error of its derivatives changes its value by less, relative to the curve's size, or if its slope
+/// in a step is smaller.
 const ACCURACY: f64 = 2e-14;
 const FLAT: f64 = 1e-12;
 /// Longest step towards a peak, in steps of the rule.
 const MAX_STEP: f64 = 0.03;
 /// Peaks that the interpolation puts below the highest by more than this part of the curve's size are left out.
 const CANDIDATE: f64 = 1e-3;
-/// How many times a peak is looked for anew.
+/// Largest number of rounds of the search for a peak.
 const MAX_ROUNDS: usize = 8;
 /// Newton's steps on the interpolant: the error of the last one is squared twice.
 const INTERPOLANT_STEPS: usize = 3;
@@ -109,7 +109,7 @@ impl Interpolant {
         self.padded.copy_within(REACH..2 * REACH, REACH + count);
     }
 
-    /// The values at a position and beside it.
+    /// The values at a position and at its neighbours.
     #[inline(always)]
     fn about(&self, i: usize) -> &[f64] {
         &self.padded[i..=i + 2 * REACH]
@@ -150,8 +150,8 @@ fn derivatives<S: LaneScalar>(of: &[S; 2 * REACH + 1], x: S) -> [S; 4] {
     [value, first, two * half_second, six * sixth_third]
 }
 
-/// By lane, the place of a peak next to the middle of eleven values, the value there, second and third derivative, and what each of
-/// these leaves out.
+/// By lane: the place of a peak next to the middle of eleven values, the value there, the second and third derivative, and their
+/// truncation errors.
 #[inline(always)]
 fn derivatives_at_peak<S: LaneScalar>(about: [S; 2 * REACH + 1]) -> [S; 6] {
     let (zero, one) = (S::from_f64(0.0), S::from_f64(1.0));
@@ -172,19 +172,19 @@ fn derivatives_at_peak<S: LaneScalar>(about: [S; 2 * REACH + 1]) -> [S; 6] {
     [x, value, second, second_error, third, third_error]
 }
 
-/// A position that is higher than those beside it, or with the sign −1 lower.
+/// A position that is higher than its neighbours, or, with the sign −1, lower.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Candidate {
     pub(super) curve: usize,
     pub(super) sign: f64,
     position: usize,
-    /// What an extreme beside it does not exceed, times the sign.
+    /// An upper bound of the extreme near it, times the sign.
     bound: f64,
 }
 
 impl Candidate {
-    /// Of a curve, those that may be next to its highest peak, or with the sign −1 to its lowest trough, are appended to
-    /// `candidates`. By bit, `at` says which positions are higher than those beside them.
+    /// Appends the positions of a curve that may be next to its highest peak (or, with the sign −1, to its lowest
+    /// trough) to `candidates`. The bits of `at` mark positions that are higher than their neighbours.
     pub(super) fn find(
         (curve, sign): (usize, f64),
         of: &Interpolant,
@@ -235,7 +235,7 @@ pub(super) struct Peak {
     size: f64,
     /// The step of the rule, rad.
     pub(super) step: f64,
-    /// Second and third derivative, and what each may err by.
+    /// Second and third derivative, and their error bounds.
     second: f64,
     second_error: f64,
     third: f64,
@@ -301,8 +301,8 @@ impl Peak {
         }
     }
 
-    /// Of the peaks and troughs of a curve leaves those that may be the highest and the lowest; of a force, those that may have
-    /// the largest magnitude.
+    /// Keeps the peaks and troughs of a curve that may be the highest and the lowest; for a force, those that may have the
+    /// largest magnitude.
     pub(super) fn keep_highest(curve: usize, is_force: bool, peaks: &mut Vec<Self>) {
         let height = |peak: &Self| match is_force {
             true => peak.value.abs(),
@@ -324,7 +324,7 @@ impl Peak {
         [-1.0, 0.0, 1.0].map(|side| self.q + side * SPACING * self.step)
     }
 
-    /// Moves it by its values at the three positions; whether they are wanted anew.
+    /// Moves it by its values at the three positions; returns whether it needs new values.
     pub(super) fn take_triple(&mut self, [low, middle, high]: [f64; 3]) -> bool {
         let h = SPACING;
         // The difference of the outer values errs by the third derivative.
@@ -334,7 +334,7 @@ impl Peak {
         self.take(middle, slope, self.third_error * h * h / 6.0)
     }
 
-    /// Moves it by its value and its slope; whether they are wanted anew.
+    /// Moves it by its value and its slope; returns whether it needs new ones.
     pub(super) fn take_slope(&mut self, value: f64, slope: f64) -> bool {
         if let Some((slope_before, moved)) = self.before {
             // The change of the slope over the last move gives the second derivative midway.

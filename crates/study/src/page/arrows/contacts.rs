@@ -1,4 +1,4 @@
-//! Arrows of forces that act at contacts: teeth at their pitch point, wheels on their track, and what follows a coupling.
+//! Arrows of forces that act at contacts: teeth at their pitch point, wheels on their track, and followers of couplings.
 
 use super::{JointForces, along_body, force_arrow, pushing_apart};
 use crate::symbols::{anchor, anchors, point};
@@ -67,8 +67,8 @@ pub(super) fn rolling_arrows(of: &JointForces<'_>, axis: Vec2, radius: f64) -> V
     pair(of, &contact, parts, &of.joint.name, what)
 }
 
-/// The force of a coupling on what follows: along a travel at the slide's second point, or between the two points of a length. A
-/// coupled angle follows by a couple, which has no arrow.
+/// The force of a coupling on its follower: along a travel at the slide's second point, or between the two points of a length.
+/// On a coupled angle a couple acts, which has no arrow.
 pub(super) fn coupling_arrow(of: &JointForces<'_>, coupling: usize) -> Option<ForceArrow> {
     let mechanism = &of.scene.mechanism;
     let column = of.component(Component::Force)?;
@@ -93,7 +93,7 @@ pub(super) fn coupling_arrow(of: &JointForces<'_>, coupling: usize) -> Option<Fo
     Some(force_arrow("Reactions", name, title, force))
 }
 
-/// Where the pitch point is, and the axes of the tangential and of the separating force on the second body.
+/// The pitch point, and the axes of the tangential and of the separating force on the second body.
 ///
 /// The line of centres goes from the second centre to the first, or the other way where the first gear is a ring around the
 /// second: across it a positive tooth force rotates the second gear counter-clockwise. Teeth push outer gears apart, and a gear
@@ -131,7 +131,7 @@ pub(super) fn axes_of(mesh: Mesh) -> (Direction, [Vec2; 2]) {
     }
 }
 
-/// The column of the separating force of a joint's teeth, where they have a pressure angle.
+/// The column of the separating force of a joint's teeth, if they have a pressure angle.
 fn separating_column(of: &JointForces<'_>) -> Option<usize> {
     let mut loads = of.scene.loads.iter();
     let k = loads.position(|load| match (&load.kind, &load.magnitude) {

@@ -32,7 +32,7 @@ pub struct RoundingErrors {
     pub(crate) rows: Vec<f64>,
     /// Over all positions: of m, of ½m′, of every a and b.
     pub max_errors: [f64; 3],
-    /// Of m, of ½m′, of every a, of every b: whether it is zero everywhere but for rounding.
+    /// For m, ½m′, every a and every b: whether it is zero everywhere within rounding.
     pub is_rounding: Vec<bool>,
 }
 
@@ -101,7 +101,7 @@ impl ReducedCurves {
         Ok(Self { q, coefficients })
     }
 
-    /// Of m, of ½m′, of every a, of every b: the largest value, and what it would come to by m and the other reactions.
+    /// For m, ½m′, every a and every b: the largest value, and the size expected from m and the other reactions.
     pub(crate) fn scales(&self, prepared: &dyn ReducedScene) -> [Vec<f64>; 2] {
         let reactions = prepared.reaction_units();
         let mut sizes = vec![0.0_f64; 2 + 2 * reactions.len()];
@@ -127,7 +127,7 @@ impl ReducedCurves {
         [sizes, references]
     }
 
-    /// Of m, of ½m′, of every a, of every b: whether it is zero everywhere but for rounding.
+    /// For m, ½m′, every a and every b: whether it is zero everywhere within rounding.
     pub fn rounding(&self, prepared: &dyn ReducedScene) -> Vec<bool> {
         let [sizes, references] = self.scales(prepared);
         let both = sizes.into_iter().zip(references);

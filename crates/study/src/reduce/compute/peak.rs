@@ -12,7 +12,7 @@ const HALVINGS: usize = 60;
 /// A body that turns by so much more between two rows than its angular velocities there explain (rad) turns fast between them.
 const UNEXPLAINED_TURN: f64 = 0.05;
 
-/// The same on both sides of a place is near the peak of a fast turn.
+/// A position with a larger unexplained turn (rad) on both sides is near the peak of a fast turn.
 const FAST_TURN: f64 = 0.5;
 
 /// The largest m between two rows.
@@ -26,7 +26,7 @@ pub(crate) struct Peak {
     pub(crate) error: f64,
 }
 
-/// Where m is largest between two rows; none where a row shows it to a thousandth.
+/// The coordinate at which m is largest between two rows; `None` if a row has this value to a thousandth.
 pub(crate) fn peak_between_rows(
     prepared: &dyn ReducedScene,
     curves: &ReducedCurves,
@@ -53,7 +53,7 @@ pub(crate) fn peak_between_rows(
     Some(Peak { q, m, error })
 }
 
-/// The highest m between a place where it rises and one where it falls, and where.
+/// The largest m between a position where it rises and one where it falls, and its coordinate.
 fn highest(inertia: &mut InertiaAt<'_>, [mut low, mut high]: [f64; 2]) -> Option<[f64; 2]> {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
@@ -79,7 +79,7 @@ pub(crate) fn fast_turns(prepared: &PreparedScene<'_>, rows: &[f64]) -> Vec<[f64
 /// The orientation of a body, and its angular velocity over that of the coordinate.
 type Turning = (Vec2, f64);
 
-/// A model with what its evaluations need.
+/// A model with the memory of its evaluations.
 struct PeakSearch<'a> {
     prepared: &'a PreparedScene<'a>,
     inertia: ExactWorkspace,
@@ -201,7 +201,7 @@ mod tests {
         )
     }
 
-    /// Nothing but the turn of the rocker between two rows tells of it.
+    /// Only the rotation of the rocker between two rows reveals the peak.
     #[test]
     fn a_peak_that_no_row_shows_is_found() {
         let gap = 1e-5;

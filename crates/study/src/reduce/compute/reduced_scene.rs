@@ -1,4 +1,4 @@
-//! What tables, figures and sentences of reduced parameters need of a scene with its model, in the plane or in space.
+//! The trait of a scene with its model for tables, figures and texts of reduced parameters, in the plane or in space.
 
 use super::UnitLoadCurves;
 use crate::explain::{StudyError, explain_motion, explain_position};
@@ -19,7 +19,7 @@ use dwell_kinetostatics::{
 };
 use dwell_scene::SceneFile;
 
-/// m and ½m′ at a coordinate (rad or m); none where there is no pose.
+/// m and ½m′ at a coordinate (rad or m); `None` if there is no pose.
 pub type InertiaAt<'a> = Box<dyn FnMut(f64) -> Option<(f64, f64)> + 'a>;
 
 /// A scene with a reduced model, in the plane or in space.
@@ -54,22 +54,22 @@ pub trait ReducedScene: Sync {
     /// The coefficients at coordinates.
     ///
     /// # Errors
-    /// [`StudyError::Scene`] where one of them cannot be reached.
+    /// [`StudyError::Scene`] if one of them cannot be reached.
     fn coefficients(&self, q: &[f64]) -> Result<Vec<Coefficients>, StudyError>;
 
     /// The rounding errors of coefficients at a coordinate.
     ///
     /// # Errors
-    /// [`StudyError::Scene`] where it cannot be reached in 32 digits.
+    /// [`StudyError::Scene`] if it cannot be reached in 32 digits.
     fn rounding_errors(&self, q: f64, at: &Coefficients) -> Result<Coefficients, StudyError>;
 
     /// The function of m and ½m′, with its memory.
     fn inertia(&self) -> InertiaAt<'_>;
 
-    /// The response to a unit of each load at coordinates; none without loads.
+    /// The response to a unit of each load at coordinates; `None` without loads.
     ///
     /// # Errors
-    /// [`StudyError::Scene`] where one of them cannot be reached.
+    /// [`StudyError::Scene`] if one of them cannot be reached.
     fn unit_loads(&self, q: &[f64]) -> Result<Option<UnitLoadCurves>, StudyError>;
 
     /// The names of the loads.
@@ -83,7 +83,8 @@ pub trait ReducedScene: Sync {
         Vec::new()
     }
 
-    /// Where a body turns so fast between two rows that m may be largest there: from where it rises to where it falls.
+    /// Intervals between two rows in which a body turns so fast that m may be largest there, each from a rise to a fall
+    /// of m.
     fn fast_turns(&self, _rows: &[f64]) -> Vec<[f64; 2]> {
         Vec::new()
     }
@@ -92,17 +93,18 @@ pub trait ReducedScene: Sync {
     #[cfg(feature = "output")]
     fn coordinate_label(&self) -> String;
 
-    /// The last lines of a summary: what is not in the tables, and why.
+    /// The last lines of a summary: quantities that are not in the tables, with the reasons.
     #[cfg(feature = "output")]
     fn notes(&self) -> String;
 }
 
-/// A scene whose reduced model can become a table. It is by itself, so that a program without tables is without their code.
+/// A scene whose reduced model can become a table. It is a separate trait, so that a program without tables does not
+/// contain their code.
 pub trait TabulatedScene: ReducedScene {
-    /// The reduced model as a table, with w and c of the loads; and if there is none, why.
+    /// The reduced model as a table, with w and c of the loads; or the reason why there is none.
     ///
     /// # Errors
-    /// [`StudyError::Scene`] where a load does not fit the mechanism.
+    /// [`StudyError::Scene`] if a load does not fit the mechanism.
     fn tabulated(
         &self,
         accuracy: f64,

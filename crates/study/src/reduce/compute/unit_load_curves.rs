@@ -4,9 +4,9 @@
 //! m q̈ + ½m′ q̇² = Σ w_ℓ F_ℓ,    R_k = a_k q̈ + b_k q̇² + Σ c_kℓ F_ℓ
 //! ```
 //!
-//! F is the magnitude that the scene gives, of a drag times |q̇| q̇; for a damper, friction or a separating force, the force or moment itself. A
-//! separating force is |tooth force| tan α of the sum itself, so that it belongs to one state: its column c is the
-//! response to one newton of it. Its w is zero and has no column.
+//! F is the magnitude in the scene, for a drag times |q̇| q̇; for a damper, friction or a separating force, F is the force or moment
+//! itself. A separating force is |tooth force| tan α of the whole sum, so that it belongs to one state: its column c is the response to one
+//! newton of it. Its w is zero and has no column.
 
 use crate::explain::{StudyError, explain_motion};
 use crate::models::{PreparedScene, loaded_determinate_model};
@@ -24,7 +24,7 @@ pub struct UnitLoadCurves {
     pub(crate) conservative: bool,
 }
 
-/// A load, by what its columns say of it.
+/// A load, with the texts of its columns.
 pub(crate) struct ReducedLoad {
     pub(crate) name: String,
     /// Units of w, and of c of a force and of a moment.

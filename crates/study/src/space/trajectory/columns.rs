@@ -1,4 +1,4 @@
-//! The columns of scenes in space that differ from those in the plane: of actuators, joints and loads.
+//! The columns of scenes in space that differ from those in the plane: those of actuators, joints and loads.
 
 use super::load_forces::LoadForce;
 use super::reactions::SpaceRows;

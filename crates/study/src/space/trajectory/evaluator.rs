@@ -53,7 +53,7 @@ impl<'a> SpaceEvaluator<'a> {
         }
     }
 
-    /// Where the bodies are.
+    /// The placements of the bodies.
     pub(super) fn placements(&self) -> Vec<Placement> {
         self.bodies
             .0
@@ -62,7 +62,7 @@ impl<'a> SpaceEvaluator<'a> {
             .collect()
     }
 
-    /// Actuator forces, reactions and what they come to.
+    /// Evaluates actuator forces, reactions and their sums.
     fn evaluate_forces(
         &mut self,
         (t, [q, q_dot, q_ddot]): (f64, [&[f64]; 3]),
@@ -160,7 +160,7 @@ impl RowEvaluator for SpaceEvaluator<'_> {
         }
     }
 
-    /// Those that are requested.
+    /// The number of requested reactions.
     fn result_reactions(&self) -> usize {
         self.rows.requested.len()
     }

@@ -7,13 +7,13 @@ use dwell_geometry::BodyId;
 use dwell_report::{Chart, Figure};
 use dwell_scene::SpaceScene;
 
-/// Largest distance of two columns that are one but for rounding, in units of the larger.
+/// Largest difference of two columns that are equal within rounding, relative to the larger.
 const SAME: f64 = 1e-9;
 
-/// The figures of a trajectory but that of the mechanism.
+/// The figures of a trajectory, except that of the mechanism.
 ///
 /// # Errors
-/// [`StudyError::Scene`] where the span of the curves is not within the trajectory.
+/// [`StudyError::Scene`] if the span of the curves is not within the trajectory.
 pub(crate) fn figures(
     scene: &SpaceScene,
     swept: Option<(&str, bool)>,
@@ -45,7 +45,7 @@ struct SpaceFigures<'a> {
 }
 
 impl SpaceFigures<'_> {
-    /// A vector, its velocity and its acceleration, each with three curves, by the order of a column; none where it does not move.
+    /// A vector, its velocity and its acceleration, each with three curves, by the order of a column; empty if it does not move.
     fn charts(&self, labels: [&str; 3], order_of: impl Fn(&Column) -> Option<usize>) -> Vec<Chart> {
         let chart = |order: usize| {
             let is_of_order = |c: &Column| order_of(c) == Some(order);
@@ -59,7 +59,7 @@ impl SpaceFigures<'_> {
         vector.into_iter().chain(rates).collect()
     }
 
-    /// Of each body that turns: its rotation, its angular velocity and its angular acceleration.
+    /// Figures of each body that turns: its rotation, its angular velocity and its angular acceleration.
     fn rotations(&self) -> Vec<Figure> {
         let bodies = 0..self.scene.mechanism.bodies.len();
         let one = |b: usize| {
@@ -79,7 +79,8 @@ impl SpaceFigures<'_> {
         bodies.filter_map(one).collect()
     }
 
-    /// Of each point that moves: its position, velocity and acceleration. A point under several names is drawn once.
+    /// Figures of each point that moves: its position, velocity and acceleration. A point under several names is drawn
+    /// once.
     fn points(&self) -> Vec<Figure> {
         let mut drawn: Vec<Vec<usize>> = Vec::new();
         let mut figures = Vec::new();

@@ -1,4 +1,4 @@
-//! The forces of loads in the tables: what a load exerts, of a spring and a damper by their length or angle and its rate.
+//! The forces of loads in the tables; those of springs and dampers follow from their length or angle and its rate.
 
 use dwell_geometry::BodyId;
 use dwell_geometry::space::{CoordinateFunction, Plan, Pose, Vec3};
@@ -9,7 +9,7 @@ use dwell_scene::SpaceScene;
 /// How the force or the moment of a load follows from its magnitude.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum LoadForce {
-    /// It is the magnitude.
+    /// The force is the magnitude.
     Magnitude,
     /// By a law, from a coordinate and its rate.
     Along(CoordinateFunction, Strength),
@@ -18,7 +18,7 @@ pub(super) enum LoadForce {
 }
 
 impl LoadForce {
-    /// Of every load, then of every drive; none of weights.
+    /// The force of every load, then of every drive; `None` for weights.
     pub(super) fn of_all(scene: &SpaceScene, plan: &Plan) -> Vec<Option<Self>> {
         let loads = scene.loads.iter().map(|load| Self::of(scene, plan, load));
         let drives = scene.drives.iter().map(|_| Some(Self::Magnitude));

@@ -1,4 +1,4 @@
-//! `dwell kinematics`, `dwell statics` and `dwell kinetostatics` of scenes in space: what differs from the plane.
+//! `dwell kinematics`, `dwell statics` and `dwell kinetostatics` of scenes in space: the differences from the plane.
 
 mod columns;
 #[cfg(feature = "output")]

@@ -10,7 +10,7 @@ use dwell_kinetostatics::space::{Axes, Component};
 use dwell_page::{Direction, ForceArrow, Page};
 use dwell_scene::SpaceScene;
 
-/// What evaluates the rows of a trajectory, by chart.
+/// The evaluators of the rows of a trajectory, by chart.
 pub(super) fn evaluators_of<'e>(
     source: &'e RowSource<'_, '_, SpaceScene>,
     computed: &ComputedTrajectory<'_>,

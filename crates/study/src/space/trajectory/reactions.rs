@@ -18,7 +18,7 @@ const COMPONENTS: [Component; 6] = [
     Component::Moment(Axes::Ground, 2),
 ];
 
-/// All of them, of so many joints.
+/// All components of the reactions of all joints.
 fn components_of_all(joints: usize) -> Vec<Reaction> {
     let whole = (0..joints).flat_map(|j| {
         let reaction = move |component| Reaction {
@@ -43,7 +43,7 @@ pub struct SpaceRows {
 }
 
 impl SpaceRows {
-    /// Those of a scene.
+    /// The reactions of a scene.
     ///
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be assembled.
@@ -71,7 +71,7 @@ impl SpaceRows {
         })
     }
 
-    /// The same reactions of a scene that is driven at another joint.
+    /// The reactions, for the scene driven at another joint.
     ///
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be assembled.

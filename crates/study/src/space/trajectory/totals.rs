@@ -1,4 +1,4 @@
-//! What the loads and the inertia of all bodies come to: shaking force and power balance.
+//! Sums of the loads and the inertia of all bodies: shaking force and power balance.
 //!
 //! With the momentum p and the angular momentum L of the moving bodies about the ground's origin, and the loads from outside
 //! (weights and forces in space) F at points r,
@@ -7,7 +7,8 @@
 //! force on the ground   Σ F − ṗ         moment on the ground   Σ r × F − L̇
 //! ```
 //!
-//! Actions between bodies, and of the joints and actuators, are in pairs: what is not left over for the moving bodies is on the ground.
+//! Actions between bodies, and of the joints and actuators, are in pairs: the remainder of the balance of the moving bodies acts on the
+//! ground.
 
 use crate::trajectory::compute::StopCause;
 use dwell_geometry::space::{BodyMotion, Placement, Vec3};

@@ -1,4 +1,5 @@
-//! Where the bodies and joints of a mechanism in space are drawn, in the frames of the bodies: for pictures and for pages.
+//! Positions at which bodies and joints of a mechanism in space are drawn, in the frames of the bodies, for pictures and
+//! for pages.
 
 use super::points::placed;
 use dwell_geometry::BodyId;
@@ -8,18 +9,19 @@ use dwell_scene::SpaceScene;
 /// Half the length of a hinge, in sizes of the picture; less where joints are closer, but no less than the second.
 pub(super) const SYMBOL: f64 = 0.032;
 const MIN_SYMBOL: f64 = 0.02;
-/// The same in distances of joints on one body.
+/// Size of symbols, relative to distances of joints on one body.
 const SYMBOL_OF_DISTANCE: f64 = 0.28;
 /// Points of a body nearer than this, in sizes, are one.
 const SAME: f64 = 1e-6;
-/// How far a joint is drawn beside another at the same point, along its axis; in half lengths of a hinge.
+/// Distance, along its axis, at which a joint is drawn beside another joint at the same point, in half lengths of a
+/// hinge.
 const SHIFT: f64 = 2.6;
 /// Length of a fork's arm, in the same.
 pub(super) const ARM: f64 = 1.4;
-/// How far a guide goes on beyond the travel, in the same.
+/// Length of a guide beyond the travel, in half lengths of a hinge.
 pub(super) const GUIDE_MARGIN: f64 = 2.6;
 
-/// A scene with what its pictures share.
+/// A scene with the common data of its pictures.
 pub(super) struct SpaceDrawing<'a> {
     pub(super) scene: &'a SpaceScene,
     /// Half the length of a hinge, m.
@@ -104,7 +106,7 @@ impl<'a> SpaceDrawing<'a> {
         self.sides(body).map(|(j, k)| joints[j].sides[k].point)
     }
 
-    /// Where the bar of a joint's `k`th body ends at the joint: at the fork of a universal joint, or where its symbol is.
+    /// The end of the bar of a joint's `k`th body at the joint: at the fork of a universal joint, or at its symbol.
     fn bar_end(&self, joint: usize, k: usize) -> Vec3 {
         let of = &self.scene.mechanism.joints[joint];
         match of.kind {
@@ -130,8 +132,8 @@ impl<'a> SpaceDrawing<'a> {
         flat.unit().filter(|_| is_long).unwrap_or(side.normal)
     }
 
-    /// By joint: how far it is drawn beside its point along its axis, as another joint of its body is there: hinges whose axes
-    /// cross, and slides; away from what comes to the other joint.
+    /// By joint: the distance along its axis at which it is drawn, because another joint of its body is at the same point.
+    /// This applies to hinges whose axes cross, and to slides. The direction is away from the parts at the other joint.
     fn shifted_joints(&self, placements: &[Placement]) -> Vec<f64> {
         let joints = &self.scene.mechanism.joints;
         let mut shifts = vec![0.0; joints.len()];
@@ -200,7 +202,7 @@ impl<'a> SpaceDrawing<'a> {
         sum.scaled(1.0 / points.len().max(1) as f64)
     }
 
-    /// Where the symbol of a joint is on its `k`th body, in its frame, m.
+    /// The position of the symbol of a joint on its `k`th body, in the frame of the body, m.
     pub(super) fn anchor(&self, joint: usize, k: usize) -> Vec3 {
         let side = self.scene.mechanism.joints[joint].sides[k];
         side.point + side.axis.scaled(self.shifts[joint])

@@ -9,7 +9,7 @@ const ELEVATIONS: [f64; 2] = [24.0, 33.0];
 /// An orthographic view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct View {
-    /// What points to the right and upwards in the picture: unit vectors at right angles.
+    /// Unit vectors to the right and upwards in the picture, at right angles.
     right: Vec3,
     up: Vec3,
 }
@@ -33,7 +33,7 @@ impl View {
         up: Vec3::AXES[2],
     };
 
-    /// From this azimuth about the z axis and elevation, rad.
+    /// The view from this azimuth about the z axis and this elevation, rad.
     pub(super) fn axonometric(azimuth: f64, elevation: f64) -> Self {
         let ((sin, cos), (rise, level)) = (azimuth.sin_cos(), elevation.sin_cos());
         let toward = vec3(level * cos, level * sin, rise);
@@ -50,7 +50,7 @@ impl View {
     }
 
     #[cfg(feature = "output")]
-    /// What points upwards in the picture.
+    /// The unit vector upwards in the picture.
     pub(super) fn up(&self) -> Vec3 {
         self.up
     }
@@ -66,7 +66,7 @@ impl View {
         self.toward().dot(p)
     }
 
-    /// How long a direction is in the picture: of a unit vector 1 where it is seen from the side, and 0 from its end.
+    /// The length of a direction in the picture: for a unit vector, 1 if seen from the side, 0 if seen from its end.
     pub(super) fn length(&self, direction: Vec3) -> f64 {
         let [x, y] = self.place(direction);
         x.hypot(y)

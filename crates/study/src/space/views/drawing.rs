@@ -1,4 +1,4 @@
-//! A mechanism in one position, as it is seen from one side: its parts by the symbols of spatial kinematics.
+//! A mechanism in one position, seen from one side: its parts as symbols of spatial kinematics.
 
 use super::arrangement::{GUIDE_MARGIN, SpaceDrawing};
 use super::direction::View;
@@ -14,7 +14,7 @@ use dwell_report::{Paint, Pen, Shape, TextPlacement};
 
 /// Parts of a bar that are sorted by their distance.
 const PARTS: usize = 12;
-/// Width of bars, of guides and massless rods, and of the white rim that interrupts what is behind them, pixels.
+/// Width of bars, of guides and massless rods, and of the white rim that interrupts lines behind them, pixels.
 const BAR: f64 = 6.0;
 const ROD: f64 = 3.5;
 const RIM: f64 = 4.0;
@@ -23,7 +23,7 @@ const SPRING: f64 = 0.6;
 /// How far joints are drawn before the bars that they connect, in lengths of a hinge.
 pub(super) const BEFORE: f64 = 2.0;
 
-/// What is drawn beside the bodies.
+/// Details that are drawn in addition to the bodies.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Detail {
     /// Whether bodies have names, for the legend.
@@ -38,7 +38,7 @@ impl SpaceDrawing<'_> {
         body_color(self.scene.mechanism.ground, BodyId(body))
     }
 
-    /// The parts of the mechanism seen from one side; without words where it moves.
+    /// The parts of the mechanism seen from one side; without labels in animations.
     pub(super) fn drawn_from(
         &self,
         parts: &[Part],
@@ -102,7 +102,7 @@ impl<'a> Scenery<'a> {
         Shape::line(ends.map(|end| self.picture.view.place(end)).to_vec(), pen)
     }
 
-    /// A bar, which interrupts what it passes in front of.
+    /// A bar, which interrupts the lines behind it.
     fn bar(&mut self, ends: [Vec3; 2], (color, width): (Paint, f64), name: Option<&str>) {
         let view = self.picture.view;
         let between = |part: f64| ends[0] + (ends[1] - ends[0]).scaled(part);
@@ -159,7 +159,7 @@ impl<'a> Scenery<'a> {
         }
     }
 
-    /// A rod, or what drives or loads a distance.
+    /// A rod, or the symbol of a drive or load along a distance.
     fn link(&mut self, look: LinkLook, ends: &[Anchor; 2], (axis, body): (&[f64], Option<usize>)) {
         let (view, unit) = (self.picture.view, self.drawing.unit);
         let in_space = [0, 1].map(|k| self.place(&ends[k]));

@@ -115,7 +115,7 @@ impl Scenery<'_> {
         self.picture.add(self.picture.view.nearness(at), vec![line]);
     }
 
-    /// The ground beside a block that slides on it.
+    /// Draws the ground beside a block that slides on it.
     fn rail(&mut self, mark: &Mark, at: Vec3) {
         let (unit, view) = (self.drawing.unit, self.picture.view);
         let [from, to] = &mark.ground[..] else {

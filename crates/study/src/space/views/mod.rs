@@ -1,4 +1,4 @@
-//! A mechanism in space as it is drawn: by pictures from several sides, and by the parts of a page, which can be turned.
+//! Drawings of a mechanism in space: pictures from several sides, and the parts of a page, on which it can be turned.
 
 mod arrangement;
 mod direction;

@@ -49,7 +49,7 @@ pub(crate) fn page_drawing(
     }
 }
 
-/// Position and the first two columns of the rotation, by row; nothing of the ground.
+/// Position and the first two columns of the rotation, by row; empty for the ground.
 fn placements(
     scene: &SpaceScene,
     positions: &[(Vec<Placement>, String)],

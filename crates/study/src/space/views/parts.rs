@@ -1,4 +1,4 @@
-//! What is drawn of a mechanism in space, as parts that are fixed to its bodies: pictures draw it from some sides, and a page turns it.
+//! The drawn parts of a mechanism in space, fixed to its bodies: pictures show them from several sides, and a page turns them.
 
 use super::arrangement::{GUIDE_MARGIN, SpaceDrawing};
 use super::segments::{line_of, nearest_of_segment};
@@ -8,7 +8,7 @@ use dwell_geometry::{BodyId, JointId};
 use dwell_page::{Anchor, LinkLook, Mark, MarkLook, OutlineLook, Part};
 
 impl SpaceDrawing<'_> {
-    /// The bodies, the joints, what drives and loads them, then the centres of mass.
+    /// The parts in their order: bodies, joints, drives and loads, centres of mass.
     pub(super) fn parts(&self) -> Vec<Part> {
         let scene = self.scene;
         let mut drawn = SpaceParts {
@@ -88,7 +88,7 @@ impl SpaceParts<'_> {
         }
     }
 
-    /// The mark of a centre of mass, with a line to the body where it is beside it.
+    /// The mark of a centre of mass, with a line to the body if it is off the body.
     fn center_of_mass(&mut self, body: BodyId) {
         let mass = &self.drawing.scene.masses[body.0];
         if mass.mass == 0.0 {
@@ -136,7 +136,7 @@ impl SpaceParts<'_> {
         }
     }
 
-    /// A mark without a label, behind those that follow.
+    /// Adds a mark without a label, drawn under the later ones.
     fn add(&mut self, mark: Mark) {
         self.parts.push(Part::Mark(Mark {
             label: String::new(),
@@ -149,7 +149,7 @@ impl SpaceParts<'_> {
         anchor(joint.side_body(k), self.drawing.anchor(j, k))
     }
 
-    /// Of a joint on the ground the middle of its moving body.
+    /// For a joint on the ground, the middle of its moving body.
     fn ground(&self, joint: &Joint) -> Vec<Anchor> {
         let on = (0..2).find(|k| self.drawing.is_ground(joint.bodies[*k]));
         on.map(|k| self.middle(joint.bodies[1 - k]))

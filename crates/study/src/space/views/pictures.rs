@@ -1,7 +1,7 @@
 //! Pictures of a mechanism in space: from above, from the front and from the right, one axonometric view, and its animation.
 //!
-//! The views are those of the third angle: what is seen from above stands above the front view, and what is seen from the
-//! right on its right, all to one scale.
+//! The views are in third-angle projection: the top view is above the front view, and the right side view to its right, all
+//! to one scale.
 
 use super::arrangement::{SYMBOL, SpaceDrawing};
 use super::direction::View;
@@ -31,10 +31,10 @@ const AXES: f64 = 0.1;
 const CAPTION: &str = "Top view (x–y) above the front view (x–z), next to it the side view from the right (y–z), and an axonometric view, all \
                        to one scale. Cylinders are hinges, long ones sleeves on rods, blocks slides, balls spherical joints, forks with a cross universal joints; \
                        hatching is the ground, an arrow the driven joint, a quartered disc a centre of mass. Light lines are paths of points.";
-/// What is added where the scene has them.
+/// The note for scenes with springs or dampers.
 const SPRINGS: &str = " Zigzag lines are springs, dashed ones dampers.";
 
-/// The symbols of the kinds of joints that few scenes have, each of those that are there.
+/// Explanations of the symbols of rare kinds of joints, for those in the scene.
 fn rare_joints(scene: &SpaceScene) -> String {
     let symbols = scene.mechanism.joints.iter().filter_map(|joint| {
         Some(match joint.kind {
@@ -62,21 +62,21 @@ pub(crate) struct SpacePositions<'a> {
     pub(crate) scene: &'a SpaceScene,
     /// The placements of all bodies in the position that is drawn.
     pub(crate) drawn: Vec<Placement>,
-    /// What that position is, such as `q = 12°`.
+    /// A description of this position, such as `q = 12°`.
     pub(crate) drawn_at: String,
-    /// The placements in all positions, from which paths are drawn, and what each of them is.
+    /// The placements in all positions, through which paths are drawn, each with its description.
     pub(crate) all: Vec<(Vec<Placement>, String)>,
     /// The method that computed the positions.
     pub(crate) provenance: String,
 }
 
-/// What all views share.
+/// The common data of all views.
 struct Views<'a> {
     positions: &'a SpacePositions<'a>,
     drawing: SpaceDrawing<'a>,
     parts: Vec<Part>,
     axonometric: View,
-    /// What is seen there of the points: for all of its pictures.
+    /// The bounds of the points in the axonometric view, for all of its pictures.
     axonometric_bounds: [[f64; 2]; 2],
     /// Everything that must be in view.
     points: Vec<Vec3>,
@@ -267,7 +267,7 @@ impl<'a> Views<'a> {
         shapes
     }
 
-    /// What a view with these bounds of the points shows: as wide as the others.
+    /// The shown ranges of a view with these bounds of the points, as wide as those of the others.
     fn ranges(&self, [[x0, x1], [y0, y1]]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
         let about = |a: f64, b: f64, width: f64| {
             let middle = 0.5 * (a + b);

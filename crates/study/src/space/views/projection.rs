@@ -1,4 +1,4 @@
-//! What is drawn in a direction of view: the far parts first.
+//! The shapes in a direction of view, the far parts first.
 
 use super::direction::View;
 use dwell_report::Shape;

@@ -1,4 +1,4 @@
-//! Small bodies as they are seen: cylinders, boxes, balls, and the line of a thread.
+//! Projections of small solids: cylinders, boxes, balls, and the line of a thread.
 
 use super::direction::View;
 use dwell_geometry::space::Vec3;
@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 const CORNERS: usize = 32;
 /// Width of the edges of symbols, pixels.
 const EDGE: f64 = 1.4;
-/// Shades of what is seen from the side and of what faces the reader.
+/// Shades of surfaces seen from the side, and of surfaces that face the viewer.
 const SIDE: f64 = 0.72;
 const FACE: f64 = 0.9;
 
@@ -73,7 +73,7 @@ fn rim(view: &View, at: Vec3, axes: &Axes, radius: f64) -> Vec<[f64; 2]> {
     (0..CORNERS).map(corner).collect()
 }
 
-/// A cylinder about the axis, with a pin in the end that is seen.
+/// A cylinder about the axis, with a pin in the visible end.
 pub(super) fn cylinder(
     view: &View,
     at: Vec3,
@@ -99,7 +99,7 @@ pub(super) fn cylinder(
     shapes
 }
 
-/// The part of a thread on a cylinder that is seen.
+/// The visible part of a thread on a cylinder.
 pub(super) fn thread(
     view: &View,
     at: Vec3,

@@ -12,7 +12,7 @@ pub(crate) type IndexedReaction = (usize, String, &'static str);
 #[derive(Debug, Default)]
 pub(super) struct Available {
     pub(crate) quantities: Vec<SweepQuantity>,
-    /// What is said of the scene's assembly.
+    /// Notes on the scene's assembly.
     pub(crate) notes: String,
 }
 

@@ -94,7 +94,7 @@ impl Axis {
         }
     }
 
-    /// Its value: the one at `index`, or if it is random that of a `sample` of axis `number`.
+    /// Its value: the one at `index`, or, if it is random, that of a `sample` of axis `number`.
     pub(crate) fn value(&self, index: u64, (seed, number, sample): (u64, u32, u64)) -> f64 {
         match &self.kind {
             // Exact at the end.
@@ -117,7 +117,7 @@ impl Axis {
     }
 }
 
-/// What is wrong with an axis, and what to try.
+/// The fault of an axis, and a suggestion.
 struct Fault(String, String);
 
 fn fault(reason: impl Into<String>, help: &str) -> Fault {

@@ -13,7 +13,7 @@ const MAX_POINTS: u64 = 1_000_000_000;
 #[derive(Debug)]
 pub struct Design {
     pub(crate) axes: Vec<Axis>,
-    /// 1 if nothing is random.
+    /// Number of random samples; 1 without random axes.
     pub(crate) samples: u64,
     pub(crate) seed: u64,
     pub(crate) points: u64,

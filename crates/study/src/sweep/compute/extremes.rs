@@ -4,8 +4,8 @@ use crate::trajectory::compute::{Point, highest_between};
 use dwell_geometry::PositionError;
 use dwell_kinetostatics::{Coefficients, ExactModel, ReducedModel as _, ReducibleModel};
 
-/// Intervals of the range at which the curves are evaluated, those of `dwell reduce`; and the local extrema of them about
-/// which the largest and smallest values are looked for between these positions.
+/// Number of intervals of the range at whose ends the curves are evaluated, as in `dwell reduce`; and number of local
+/// extrema around which the largest and smallest values are searched for between these positions.
 const INTERVALS: usize = 720;
 const REFINED: usize = 2;
 
@@ -94,7 +94,7 @@ impl<M: ReducibleModel> RangeCurves<M> {
         highest_between(&curve, REFINED, &mut value).unwrap_or([f64::NAN; 2])
     }
 
-    /// Of each curve the smallest and the largest value.
+    /// The smallest and the largest value of each curve.
     pub(crate) fn extremes(&self) -> ExtremeValues {
         let of_curve = |k: usize| {
             let [at, value] = self.highest(k, |v| -v);
@@ -103,7 +103,7 @@ impl<M: ReducibleModel> RangeCurves<M> {
         (0..self.curves.len()).flat_map(of_curve).collect()
     }
 
-    /// Of each curve the largest magnitude, at an index of its own; between them there is nothing.
+    /// The largest magnitude of each curve, each at its own index, without a search between positions.
     pub(crate) fn largest(&self, indices: &[usize]) -> ExtremeValues {
         let count = indices.iter().max().map_or(0, |last| last + 1);
         let mut all = vec![[f64::NAN; 2]; count];

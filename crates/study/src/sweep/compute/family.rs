@@ -1,8 +1,8 @@
 //! Variants of a scene that share one structure: it is compiled once, and the numbers of each variant are filled in.
 //!
-//! Points, centres, masses, moments of inertia, the numbers of loads and the start of the motion are affine functions of the
-//! varied numbers as long as no direction varies. The function is found by differences of variants that are read as scenes, and verified at
-//! another one. The structure is that of a variant whose numbers coincide by identity only, not by chance.
+//! Points, centres, masses, moments of inertia, the numbers of loads and the start of the motion are affine functions of the varied numbers
+//! as long as no direction varies. The function is determined from differences of variants that are read as scenes, and verified with
+//! another variant. The structure is that of a variant whose numbers coincide by identity only, not by chance.
 
 use crate::models::{compile_model, initial_reduced_state};
 use crate::sweep::compute::family_forces::FamilyForces;
@@ -18,7 +18,7 @@ use std::cell::Cell;
 /// golden ratio by the axis keep the places of several axes apart.
 const PLACES: [f64; 3] = [0.0, 0.29, -0.23];
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
-/// Where typical variants are looked for, as a part of the way from the scene's own numbers: farther away they may not
+/// Positions of typical variants, as fractions of the way from the scene's own numbers; farther away they may not
 /// rotate.
 const PARTS: [f64; 5] = [1.0, 1.0, 0.3, 0.1, 0.03];
 /// Rounding of an affine function, in roundings of its largest terms.
@@ -33,7 +33,7 @@ pub struct VariantFamily {
     numbers: AffineNumbers,
     /// The reactions of the free rotation, by their index among those of the mechanism.
     reactions: Vec<usize>,
-    /// The forces along the scene's trajectory, where they are wanted.
+    /// The forces along the scene's trajectory, if they are requested.
     forces: Option<FamilyForces>,
 }
 
@@ -48,8 +48,8 @@ struct AffineNumbers {
 }
 
 impl AffineNumbers {
-    /// The function through its values at the reference and where one varied number after another is displaced; none where it
-    /// is another one `elsewhere`.
+    /// The affine function through the values at the reference and at displacements of each varied number; `None` if its
+    /// value `elsewhere` is wrong.
     fn find(
         reference: Vec<f64>,
         displaced: &[f64],
@@ -123,8 +123,8 @@ fn scene_at(scene: &PlaneScene, design: &Design, values: &[f64]) -> Option<Plane
     scene.with_values(&design.assigned(values)).ok()
 }
 
-/// Whether two variants differ in numbers of the mechanism, of the masses and of the start alone, and besides in their loads
-/// where the model [has](VariantModel::numbers) these.
+/// Whether two variants differ in numbers of the mechanism, of the masses and of the start alone, and, if the model
+/// [has](VariantModel::numbers) loads, in the numbers of their loads.
 fn differ_in_numbers_only(one: &PlaneScene, other: &PlaneScene, has_loads: bool) -> bool {
     one.assembly == other.assembly
         && one.varying_inertias == other.varying_inertias
@@ -137,7 +137,7 @@ fn differ_in_numbers_only(one: &PlaneScene, other: &PlaneScene, has_loads: bool)
 }
 
 impl VariantFamily {
-    /// The family of a sweep; none where its variants need a compilation each: for motions, cycles and periods under
+    /// The family of a sweep; `None` if its variants need a compilation each: for motions, cycles and periods under
     /// loads, under friction, or where a varied number is a direction, say.
     pub(crate) fn new(
         scene: &PlaneScene,
@@ -212,8 +212,8 @@ impl VariantFamily {
         })
     }
 
-    /// Evaluates variants with these inputs. `done` takes the values of the quantities, or none where the variant has
-    /// to be compiled: because it does not rotate, say.
+    /// Evaluates variants with these inputs. `done` takes the values of the quantities, or `None` if the variant must
+    /// be compiled, for example because it does not rotate.
     pub(crate) fn evaluate(
         &self,
         inputs: &[Vec<f64>],

@@ -16,19 +16,19 @@ const WHOLE_REVOLUTION: f64 = 1e-12;
 /// Which forces are wanted of every variant.
 #[derive(Debug)]
 pub(crate) struct FamilyForces {
-    /// A variant, for what all have in common.
+    /// A variant, for the data that all share.
     scene: PlaneScene,
     analysis: Analysis,
     /// By index among the reactions of the mechanism, in ascending order.
     pub(crate) reactions: Vec<usize>,
     /// By index.
     actuators: Vec<usize>,
-    /// Where the trajectory covers a revolution at constant velocity: that velocity, rad/s; zero of statics.
+    /// If the trajectory covers a revolution at constant velocity: this velocity, rad/s; zero for statics.
     revolution: Option<f64>,
 }
 
 impl FamilyForces {
-    /// The forces among the requested quantities, of variants of which `typical` is one; none where a table depends on
+    /// The forces among the requested quantities, of variants of which `typical` is one; `None` if a table depends on
     /// points.
     pub(crate) fn new(typical: &PlaneScene, requested: &RequestedQuantities) -> Option<Self> {
         if typical.loads.iter().any(has_table_of_points) {
@@ -58,7 +58,7 @@ impl FamilyForces {
         add(self.revolution).or_else(|| add(None))
     }
 
-    /// The largest magnitudes of a variant; none where a compilation has to say why.
+    /// The largest magnitudes of a variant; `None` if it must be compiled, so that errors are explained.
     pub(crate) fn peaks(&self, variant: TurningVariant<'_>) -> Option<InverseDynamics<f64>> {
         let loaded = variant.loaded?;
         if let [tau, reactions @ ..] = &variant.turn.loaded_forces[..] {
@@ -86,7 +86,7 @@ fn has_table_of_points(load: &Load) -> bool {
     })
 }
 
-/// The constant velocity of the scene's trajectory, rad/s, where it covers a revolution of an actuator that turns fully.
+/// The constant velocity of the scene's trajectory, rad/s, if it covers a revolution of an actuator that turns fully.
 fn revolution_velocity(scene: &PlaneScene, analysis: Analysis) -> Option<f64> {
     if let Some(prescribed) = &scene.prescribed {
         let [Law::Polynomial(law)] = &prescribed.laws[..] else {

@@ -1,4 +1,4 @@
-//! What scenes in the plane are swept for.
+//! Quantities that sweeps compute from scenes in the plane.
 
 use crate::branch_note::branch_note;
 use crate::explain::{StudyError, explain_machine, explain_model, explain_position};
@@ -21,7 +21,7 @@ impl SweptScene for PlaneScene {
         Ok(branch_note(self, model.plan()))
     }
 
-    /// With their index in the model: not those that are statically indeterminate.
+    /// The statically determinate reactions, with their index in the model.
     fn swept_reactions(&self, model: &Model) -> Vec<IndexedReaction> {
         let all = model.reactions().iter().enumerate();
         let determinate = all.filter(|&(k, reaction)| {

@@ -14,7 +14,7 @@ use dwell_scene::SceneError;
 /// A result by its name and unit.
 pub(crate) type NamedUnit = (String, String);
 
-/// What is computed of a column of a motion.
+/// The statistics of a column of a motion.
 const STATISTICS: [&str; 4] = ["end", "max_abs", "mean", "rms"];
 
 /// The columns of a free motion whose results can be swept.
@@ -47,7 +47,7 @@ pub(crate) fn motion_quantities<S: SweptScene>(scene: &S, compiled: &S::Rows) ->
 /// The values of [`motion_quantities`], with their names.
 ///
 /// # Errors
-/// [`StudyError`] where there is no motion, or it ends early.
+/// [`StudyError`] if there is no motion, or it ends early.
 pub(crate) fn motion_values<S: SweptScene>(
     scene: &S,
     compiled: &S::Rows,
@@ -144,7 +144,7 @@ pub(crate) fn cycle_quantities<S: MachineScene>(scene: &S) -> Vec<NamedUnit> {
 /// The values of [`cycle_quantities`].
 ///
 /// # Errors
-/// [`StudyError`] where there is no steady cycle.
+/// [`StudyError`] if there is no steady cycle.
 pub(crate) fn cycle_values(scene: &impl MachineScene) -> Result<Vec<f64>, StudyError> {
     let settings = SolverSettings::default();
     let found = match compute_cycle(scene, &settings, None)? {
@@ -169,8 +169,8 @@ pub(crate) fn cycle_values(scene: &impl MachineScene) -> Result<Vec<f64>, StudyE
     Ok(values)
 }
 
-/// The largest magnitude of the force of each drive on the bodies, without what accelerates its rotor, at the samples of a cycle: of the column
-/// `<drive>.load_moment` or `<drive>.load_force` of `simulate`.
+/// The largest magnitude of the force of each drive on the bodies, without the part that accelerates its rotor, at the samples of a cycle:
+/// that of the column `<drive>.load_moment` or `<drive>.load_force` of `simulate`.
 fn peak_forces(found: &CycleResults<'_, impl MachineScene>) -> Result<Vec<f64>, StudyError> {
     let machine = &found.prepared.machine;
     let mut workspace = machine.workspace();

@@ -8,7 +8,7 @@ use crate::sweep::compute::scene_results::{available_quantities, compute_results
 use crate::trajectory::compute::is_prefix_of;
 use std::collections::BTreeSet;
 
-/// What a result is computed with.
+/// The computation that yields a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ResultKind {
     /// Smallest and largest m, smallest and largest ½m′.
@@ -44,7 +44,7 @@ pub(crate) struct SweepQuantity {
 }
 
 impl ResultKind {
-    /// Whether a result is computed only if a request names it, and by what word.
+    /// The word by which a request must name a result that is not computed by default.
     fn on_request(self) -> Option<&'static str> {
         match self {
             Self::Motion => Some("motion"),
@@ -130,7 +130,8 @@ impl RequestedQuantities {
         Ok(Self { quantities, notes })
     }
 
-    /// Computes them with some numbers of the scene replaced. What fails has no value, but a message.
+    /// Computes the results with some numbers of the scene replaced. A result that fails has a message instead of a
+    /// value.
     pub(crate) fn evaluate(&self, scene: &impl SweptScene, values: &[(&str, f64)]) -> PointResult {
         let mut result = PointResult {
             values: vec![f64::NAN; self.quantities.len()],
@@ -161,7 +162,7 @@ impl RequestedQuantities {
     }
 }
 
-/// The results of a point as they are computed, and the first error.
+/// The results of a point during the computation, and the first error.
 pub struct Results<'a> {
     quantities: &'a [SweepQuantity],
     cells: &'a mut [f64],
@@ -169,7 +170,7 @@ pub struct Results<'a> {
 }
 
 impl Results<'_> {
-    /// Fills the cells of a kind of quantities with what is computed of each, or notes why there is nothing.
+    /// Fills the cells of a kind of quantities with their values, or records the error.
     fn fill<T>(
         &mut self,
         kind: ResultKind,

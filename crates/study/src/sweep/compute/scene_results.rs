@@ -1,4 +1,4 @@
-//! What a scene is swept for, in the plane or in space.
+//! The results that a sweep computes from a scene, in the plane or in space.
 
 use crate::explain::StudyError;
 use crate::sweep::compute::available::Available;
@@ -13,7 +13,7 @@ use dwell_kinetostatics::ReducibleModel as _;
 /// Every quantity that the sections of a scene allow.
 ///
 /// # Errors
-/// [`StudyError`] where it cannot be assembled.
+/// [`StudyError`] if it cannot be assembled.
 pub(super) fn available_quantities(scene: &impl SweptScene) -> Result<Available, StudyError> {
     let compiled = scene.unloaded_rows()?;
     let mut all = Available {
@@ -41,7 +41,7 @@ pub(super) fn available_quantities(scene: &impl SweptScene) -> Result<Available,
 /// Computes the requested quantities of a scene, which is compiled once for all of them.
 ///
 /// # Errors
-/// [`StudyError`] where nothing can be computed; what fails by itself is recorded in the results.
+/// [`StudyError`] if nothing can be computed; single failures are recorded in the results.
 pub(super) fn compute_results<S: SweptScene>(
     scene: &S,
     requested: &RequestedQuantities,
@@ -86,7 +86,7 @@ pub(super) fn compute_results<S: SweptScene>(
     }
 }
 
-/// The start of the motion of the only coordinate; none where a law prescribes it, or something drives it.
+/// The start of the motion of the only coordinate; `None` if a law prescribes it, or a drive acts on it.
 fn start_of_free_motion(scene: &impl SweptScene) -> Option<ReducedState> {
     let start = scene.motion_start();
     let is_free = start.laws.iter().all(Option::is_none) && scene.drives().is_empty();

@@ -1,4 +1,4 @@
-//! A scene whose numbers are varied, for sweeps that know it by what it computes.
+//! The trait of a scene for sweeps, which vary its numbers.
 
 use crate::explain::StudyError;
 use crate::free_motion::compute::SimulatedScene;
@@ -12,10 +12,10 @@ use dwell_scene::SceneError;
 
 /// A scene in the plane or in space whose numbers are varied.
 pub trait SweptScene: SimulatedScene {
-    /// What is said of its assembly.
+    /// Notes on its assembly.
     ///
     /// # Errors
-    /// [`StudyError`] where it requests what there is not.
+    /// [`StudyError`] if it requests something that does not exist.
     fn notes(&self, _: &Self::Rows) -> Result<String, StudyError> {
         Ok(String::new())
     }
@@ -28,15 +28,15 @@ pub trait SweptScene: SimulatedScene {
         peak_analysis(self)
     }
 
-    /// Columns of a free motion whose results can be swept, beside coordinates, their speeds, and reactions.
+    /// Columns of a free motion whose results can be swept, in addition to coordinates, their speeds, and reactions.
     fn further_motion_columns(&self) -> Vec<NamedUnit> {
         Vec::new()
     }
 
-    /// Its machine, where all coordinates are free.
+    /// Its machine with all coordinates free.
     ///
     /// # Errors
-    /// [`StudyError`] where a load or a drive does not fit it.
+    /// [`StudyError`] if a load or a drive does not fit it.
     fn free_machine(&self, _: &Self::Rows) -> Result<Machine<Self::Model>, StudyError> {
         self.machine(&[])
     }
@@ -67,7 +67,7 @@ pub trait SweptScene: SimulatedScene {
     /// Computes the requested peak forces.
     ///
     /// # Errors
-    /// [`StudyError`] where loads do not fit it; what fails later is recorded in the results.
+    /// [`StudyError`] if loads do not fit it; later failures are recorded in the results.
     fn compute_peaks(
         &self,
         compiled: Self::Rows,
@@ -76,12 +76,12 @@ pub trait SweptScene: SimulatedScene {
         results: &mut Results<'_>,
     ) -> Result<(), StudyError>;
 
-    /// The same scene with some numbers replaced, in its own units.
+    /// The scene with some numbers replaced, in its own units.
     ///
     /// # Errors
-    /// [`SceneError`] where a number is not there, or the scene makes no sense with it.
+    /// [`SceneError`] if a number does not exist, or the scene is invalid with it.
     fn varied(&self, values: &[(&str, f64)]) -> Result<Self, SceneError>;
 
-    /// The structure that all variants share; none where each is compiled by itself.
+    /// The structure that all variants share; `None` if each is compiled separately.
     fn family(&self, design: &Design, requested: &RequestedQuantities) -> Option<VariantFamily>;
 }

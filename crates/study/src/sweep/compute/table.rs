@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// The points of a sweep.
 #[derive(Debug)]
 pub struct ComputedSweep {
-    /// A row for each point: the varied numbers, then the results; NaN where there is none.
+    /// A row for each point: the varied numbers, then the results; NaN if there is none.
     pub table: Table,
     /// By point: why not all results could be computed.
     pub messages: Vec<Option<String>>,
@@ -23,7 +23,7 @@ pub struct ComputedSweep {
 /// `dwell sweep`, `samples` the number of random samples. Every computed block of points is a step of progress.
 ///
 /// # Errors
-/// [`StudyError`] where the sweep is invalid or the unchanged scene cannot be assembled. A point that cannot be
+/// [`StudyError`] if the sweep is invalid or the unchanged scene cannot be assembled. A point that cannot be
 /// computed is no error: it has a message.
 pub fn compute_sweep(
     scene: &impl SweptScene,
@@ -89,8 +89,8 @@ impl RequestedQuantities {
         }
     }
 
-    /// Computes the points of some indices, one after another: in the structure of their family, or each by a
-    /// compilation of its own where there is none or a point does not fit it.
+    /// Computes the points of some indices, one after another: in the structure of their family, or by separate
+    /// compilations if there is no family or a point does not fit it.
     pub(crate) fn points(
         &self,
         (scene, design, family): (&impl SweptScene, &Design, Option<&VariantFamily>),

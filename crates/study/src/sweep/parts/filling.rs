@@ -1,4 +1,4 @@
-//! Fills the folder of a study: computes the missing points of its parts, and stores on the way what there is of each.
+//! Fills the folder of a study: computes the missing points of its parts, and stores intermediate results of each.
 
 use crate::explain::SweepError;
 use crate::sweep::compute::Row;
@@ -15,7 +15,8 @@ use std::time::{Duration, Instant};
 
 /// Shortest and longest time between two storings: with the writing, no row waits for 30 s.
 const WAIT: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(15)];
-/// The time until rows are stored again, by that of the last storing: it takes 2 % of a thread.
+/// Time until rows are stored again, as a multiple of the time of the last storing, which therefore takes 2 % of a
+/// thread.
 const TIMES_STORING: u32 = 50;
 
 /// Takes rows that are computed.
@@ -40,7 +41,7 @@ struct OpenRows {
 }
 
 impl<'a> PartFolder<'a> {
-    /// Computes what is missing of parts, by a function of the missing points of one of them, and hands out all rows of
+    /// Computes the missing points of parts, by a function of the missing points of one part, and returns all rows of
     /// this run.
     ///
     /// # Errors
@@ -74,7 +75,7 @@ impl<'a> PartFolder<'a> {
 }
 
 impl Filling<'_, '_> {
-    /// Computes and stores what is missing of a part.
+    /// Computes and stores the missing points of a part.
     fn fill_part(
         &self,
         part: &Part,
@@ -179,14 +180,14 @@ fn sort(rows: &mut [Row]) {
     rows.sort_unstable_by_key(|row| row.index);
 }
 
-/// Removes files whose rows are in another one. Those that cannot be removed are left to the next run.
+/// Removes files whose rows are in another file. If a file cannot be removed, the next run tries again.
 fn remove(pieces: &[PathBuf]) {
     for piece in pieces {
         let _ = fs::remove_file(piece);
     }
 }
 
-/// The error of a part whose other files are no longer what they were when the run began.
+/// The error of a part whose other files have changed during the run.
 fn changed(file: &Path) -> SweepError {
     let fault =
         "another process changes the files of this part: wait for it, and run the command again";

@@ -37,7 +37,7 @@ pub(super) struct PartFormat {
     study_hash: String,
 }
 
-/// A column's cells as they are hashed and written.
+/// A column's cells, as hashed and written.
 type Cells = Vec<Option<f64>>;
 
 impl PartFormat {
@@ -118,7 +118,7 @@ impl PartFormat {
         Ok(())
     }
 
-    /// Opens a file that says that it is one of this study; `expected` is how many rows it may have.
+    /// Opens a file that declares to belong to this study; `expected` is its largest number of rows.
     pub(super) fn open(
         &self,
         path: &Path,
@@ -243,7 +243,7 @@ impl PartFile {
     }
 }
 
-/// A number without the sign of a zero, which says nothing of a result.
+/// A number without the sign of zero, which is meaningless in a result.
 pub(super) fn unsigned(value: f64) -> f64 {
     value + 0.0
 }

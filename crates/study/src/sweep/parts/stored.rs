@@ -1,4 +1,5 @@
-//! What a sweep has stored, by result instead of by row: a study of 10⁸ points is reported with one column in memory.
+//! The stored results of a sweep, by result instead of by row, so that a study of 10⁸ points is reported with one
+//! column in memory.
 
 use crate::explain::SweepError;
 use crate::sweep::compute::Row;
@@ -12,7 +13,7 @@ use std::ops::Range;
 pub(super) enum Held {
     /// All, in the file of the part.
     Whole(Range<u64>),
-    /// Those of a shard.
+    /// The rows of a shard.
     Rows(Vec<Row>),
 }
 
@@ -34,7 +35,7 @@ pub(crate) struct FailedPoints {
 const MAX_LISTED: usize = 3;
 
 impl FailedPoints {
-    /// Of points and their messages, where they have one.
+    /// The counts for points and their messages, if they have one.
     fn of(points: impl Iterator<Item = (u64, Option<String>)>) -> Self {
         let mut failed = Self::default();
         for (index, message) in points.filter_map(|(k, message)| Some((k, message?))) {
@@ -48,7 +49,7 @@ impl FailedPoints {
 }
 
 impl<'a> StoredRows<'a> {
-    /// Of parts in the order of their points.
+    /// The stored rows of parts, in the order of their points.
     pub(super) fn new(folder: PartFolder<'a>, held: Vec<Held>) -> Self {
         Self { folder, held }
     }

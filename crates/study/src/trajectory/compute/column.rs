@@ -18,8 +18,8 @@ pub enum Quantity {
     ActuatorForce(usize),
     /// By its number among the [measured](super::RowScene::measured) coordinates.
     Measured(usize, usize),
-    /// Of a body, by order and axis: its angle about the third axis, or in space the components of its rotation as a vector; then those of
-    /// its angular velocity and acceleration.
+    /// The rotation of a body, by order and axis: its angle about the third axis, or in space the components of its rotation vector; then
+    /// those of its angular velocity and acceleration.
     Rotation(BodyId, usize, usize),
     /// dθ/dq of a body.
     VelocityRatio(BodyId),
@@ -27,7 +27,7 @@ pub enum Quantity {
     MechanicalAdvantage(BodyId, Option<Vec2>),
     /// x and y of where a body has no velocity (order 1) or no acceleration (order 2).
     Pole(BodyId, usize, usize),
-    /// Of a point of a body, by order and axis.
+    /// Position, velocity and acceleration of a point of a body, by order and axis.
     Point(BodyId, [f64; 3], usize, usize),
     TransmissionAngle(Dyad),
     Reaction(usize),
@@ -37,11 +37,11 @@ pub enum Quantity {
     BodyFrameForce(JointId, BodyId, usize),
     ForceMagnitude(JointId),
     ForceDirection(JointId),
-    /// Of a joint in space.
+    /// The magnitude of the moment of a joint in space.
     MomentMagnitude(JointId),
     /// Force x, y and moment on the frame; in space three components of each.
     ShakingForce(usize),
-    /// Of the power balance: actuators, loads, rate of the kinetic energy, residual; and the kinetic energy.
+    /// A term of the power balance: actuators, loads, rate of the kinetic energy, residual; and the kinetic energy.
     Power(usize),
     LoadForce(usize),
     LoadPower(usize),
@@ -55,7 +55,7 @@ pub struct Column {
     pub(crate) name: String,
     pub(crate) unit: &'static str,
     pub(crate) quantity: Quantity,
-    /// Its meaning, where the name alone does not say.
+    /// Its meaning, if the name does not state it.
     pub(crate) meaning: String,
     /// Whether it is an angle that is unwrapped along the trajectory.
     pub(crate) unwraps: bool,
@@ -123,7 +123,7 @@ pub(crate) fn units(is_angle: bool) -> [&'static str; 3] {
 pub struct ColumnList(pub(crate) Vec<Column>);
 
 impl ColumnList {
-    /// With the time if `timed`.
+    /// The columns, starting with the time if `timed`.
     pub(crate) fn new(timed: bool) -> Self {
         let mut list = Self::default();
         if timed {
@@ -176,7 +176,7 @@ impl ColumnList {
         self.add(name, unit, Quantity::ActuatorForce(i), force);
     }
 
-    /// The force of the `k`th load, by its unit and meaning, where it has one, and its power.
+    /// The force of the `k`th load, with its unit and meaning, if it has one, and its power.
     pub(crate) fn add_load(
         &mut self,
         k: usize,
@@ -220,7 +220,7 @@ impl ColumnList {
     }
 }
 
-/// Of the power balance, by the number of its [`Quantity`]: names, units and meanings.
+/// Names, units and meanings of the power balance, by the number of its [`Quantity`].
 const POWER_COLUMNS: [(&str, &str, &str); 5] = [
     ("power.actuators", "W", "power of the actuators"),
     ("power.loads", "W", "power of the loads"),

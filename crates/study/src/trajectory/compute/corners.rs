@@ -1,13 +1,13 @@
-//! Maxima at which a function is not smooth, between two of its points: at a corner, as the magnitude of a force that passes through zero has
-//! one, and at a jump, as where friction changes its sign. Three points about such a place do not show it; the straight lines through
-//! the points before it and behind it do.
+//! Maxima between two points at which a function is not smooth: at a corner, as of the magnitude of a force that passes through zero, and
+//! at a jump, as when friction changes its sign. Three points about such a place do not show it; the straight lines through the points
+//! before and after it do.
 
 use super::maximum::{Bracket, Point};
 
-/// A slope changes so many times more between two points than next to them where it has a corner there, and a value where it jumps. A smooth
-/// function's slope changes about twice as much.
+/// Ratio of the change of a slope between two points to that next to them which indicates a corner; for values, a jump. The slope of a
+/// smooth function changes about twice as much.
 const SHARP: f64 = 8.0;
-/// A gain of less than this part of the largest value is not looked for.
+/// A gain of less than this fraction of the largest value is not searched for.
 const MIN_GAIN: f64 = 1e-6;
 /// Halvings of the interval in which a jump is.
 const MAX_HALVINGS: usize = 40;
@@ -21,8 +21,8 @@ pub(super) enum Sharp {
     Jump([Point; 2]),
 }
 
-/// Of `sign` times the values in parts between events the corner and the jump at which it may be highest, each with a value next to it, where it may be higher there than
-/// what is the largest so far. `scale` is the largest size of a value.
+/// The corner and the jump at which `sign` times the values, in parts between events, may be highest, each with a value next to it, if they
+/// may exceed the largest value so far. `scale` is the largest size of a value.
 pub(super) fn sharp_maxima(
     parts: &[&[Point]],
     sign: f64,
@@ -78,7 +78,7 @@ pub(super) fn sharp_maxima(
     found.map(|(_, value, sharp)| (value, sharp)).collect()
 }
 
-/// The one that may be higher, if that is above what is wanted.
+/// Keeps the higher of two candidates, if it is above the required value.
 fn take(best: &mut Option<(f64, f64, Sharp)>, found: (f64, f64, Sharp), wanted: f64) {
     if found.0 > wanted && best.is_none_or(|best| found.0 > best.0) {
         *best = Some(found);

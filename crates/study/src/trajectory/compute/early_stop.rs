@@ -53,7 +53,7 @@ pub struct EarlyStop<'a> {
     pub(crate) fractions: [f64; 2],
     /// Why.
     pub(crate) cause: StopCause,
-    /// The last position that was reached; none where not even the first was.
+    /// The last position that was reached; `None` if not even the first was.
     pub(crate) last: Option<TrajectorySample>,
     pub(crate) failed: TrajectorySample,
 }

@@ -15,7 +15,7 @@ use dwell_kinetostatics::{
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_scene::PlaneScene;
 
-/// What the forces at one position are computed into.
+/// The memory for the forces at one position.
 #[derive(Clone)]
 pub(crate) struct PositionForces<'a> {
     scene: &'a PlaneScene,
@@ -105,7 +105,7 @@ fn is_quotient(quantity: Quantity) -> bool {
     matches!(quantity, Quantity::VelocityRatio(_)) || has_scale(quantity)
 }
 
-/// Whether a quantity is one where its divisor is not too small beside the speeds of all bodies.
+/// Whether a quantity is undefined if its divisor is too small relative to the speeds of all bodies.
 fn has_scale(quantity: Quantity) -> bool {
     matches!(
         quantity,
@@ -149,7 +149,7 @@ pub struct PositionEvaluator<'a> {
     scene: &'a PlaneScene,
     pub(crate) forces: ForceEvaluator<'a>,
     pub(crate) position: PositionForces<'a>,
-    /// With several actuators, the unpruned mechanism: the trajectory ends where any of its groups cannot be assembled.
+    /// With several actuators, the unpruned mechanism: the trajectory ends if any of its groups cannot be assembled.
     whole_mechanism: Option<(&'a Plan, Pose<f64>)>,
     /// Whether a requested quantity is a quotient of velocities; whether one is compared with the speeds of all bodies.
     has_quotients: bool,
@@ -193,7 +193,7 @@ impl<'a> PositionEvaluator<'a> {
         })
     }
 
-    /// The k-th reaction within the mechanism that the i-th body of varying inertia stands for.
+    /// The k-th reaction within the mechanism that the i-th body of varying inertia represents.
     fn known_reaction(&self, i: usize, k: usize) -> f64 {
         let varying = &self.scene.varying_inertias[i];
         let body = self.forces.body_states.body(varying.body);

@@ -28,7 +28,7 @@ pub(crate) fn extra_columns<S: MachineScene>(
     columns_of_integration(works, states.chain(motor_columns(scene.drives())))
 }
 
-/// The columns of energies, of works by the names of what does them, of the balance, and of further values such as states of drives, each
+/// The columns of energies, of works by the names of their sources, of the balance, and of further values such as states of drives, each
 /// with its meaning.
 fn columns_of_integration<'a>(
     works: impl IntoIterator<Item = (&'a str, &'static str)>,

@@ -1,8 +1,8 @@
-//! The smallest and the largest value of each column along a trajectory, also where they are between two rows.
+//! The smallest and the largest value of each column along a trajectory, also between two rows.
 //!
-//! A column is looked at in the rows and at further positions between them: of a free motion at its steps, which follow
-//! whatever the motion does. About a local extremum there, three positions enclose one of the column. It is found by
-//! parabolas and golden sections, each of whose points is evaluated like a row.
+//! A column is evaluated in the rows and at further positions between them: for a free motion at its steps, which adapt
+//! to the motion. About a local extremum there, three positions enclose one of the column. It is found by parabolas and
+//! golden sections, each of whose points is evaluated like a row.
 
 use crate::trajectory::compute::corners::{Sharp, sharp_maxima, side_of_jump};
 use crate::trajectory::compute::maximum::{NO_GAIN, between_events, promising, refine_maximum};
@@ -14,19 +14,19 @@ use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::io;
 
-/// Positions that a trajectory is looked at in at least.
+/// Least number of positions at which a trajectory is examined.
 const MIN_POSITIONS: usize = 720;
 /// Highest number of local extrema of a column that are found exactly; of all columns together.
 const MAX_REFINED: usize = 3;
 const MAX_REFINED_OF_ALL: usize = 1500;
-/// Columns that are searched between the rows, times all columns: what one position costs grows with the columns, so that without a bound a
-/// mechanism with thousands of loads would cost their square. At least so many are searched.
+/// Columns that are searched between the rows, times all columns: the cost of a position grows with the columns, so that without this bound
+/// the cost of thousands of loads would be quadratic. A minimum of columns is always searched.
 const MAX_SEARCHED_TIMES_ALL: usize = 600_000;
 const MIN_SEARCHED: usize = 100;
 /// Extrema that differ relatively by less than this are the same: the first one counts.
 const SAME: f64 = 1e-12;
 
-/// A value of a column, and the abscissa where it is.
+/// A value of a column, and its abscissa.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Extremum {
     pub(crate) value: f64,
@@ -38,14 +38,14 @@ pub(crate) struct Extremum {
 pub(crate) struct Extrema {
     /// By column: the smallest and the largest value, if it has any.
     pub(crate) of_columns: Vec<Option<[Extremum; 2]>>,
-    /// By column: whether they are those of the rows, between which there may be larger ones.
+    /// By column: whether they are the extrema of the rows only; larger ones may lie between the rows.
     pub(crate) of_rows: Vec<bool>,
-    /// By column, of an integrated motion: where it turns in the rows and at the steps between them.
+    /// By column of an integrated motion: its local extrema in the rows and at the steps between them.
     turns: Vec<Vec<Extremum>>,
 }
 
 impl Extrema {
-    /// What a curve of a column is drawn through besides its rows: without it the highest of several peaks would be that with the nearest row.
+    /// Further points of the drawn curve of a column. Without them, the peak nearest to a row would appear as the highest of several.
     #[cfg(feature = "output")]
     pub(crate) fn of_curve(&self, k: usize) -> impl Iterator<Item = Extremum> {
         let ends = self.of_columns.get(k).copied().flatten();
@@ -53,7 +53,7 @@ impl Extrema {
         ends.into_iter().flatten().chain(turns.copied())
     }
 
-    /// Whether extrema are those of the trajectory, but for some columns.
+    /// Whether extrema are those of the trajectory, except for some columns.
     pub(crate) fn are_between_rows(&self) -> bool {
         self.of_rows.contains(&false)
     }
@@ -68,7 +68,7 @@ pub(crate) enum SamplePrecision {
     Exact,
 }
 
-/// The position at a parameter; none where it cannot be computed.
+/// The position at a parameter; `None` if it cannot be computed.
 pub(crate) type Sampler<'s> = Box<dyn FnMut(f64, SamplePrecision) -> Option<TrajectorySample> + 's>;
 
 /// A trajectory at any position.
@@ -82,8 +82,8 @@ pub(crate) struct BetweenRows<'s> {
 }
 
 impl<'s> BetweenRows<'s> {
-    /// Of a trajectory that is known at some further positions; others are added where these and the rows are far
-    /// apart.
+    /// The search along a trajectory that is known at some further positions; others are added if these and the rows
+    /// are far apart.
     pub(crate) fn new(
         parameters: Vec<f64>,
         further: Vec<(f64, TrajectorySample)>,
@@ -114,7 +114,7 @@ impl<'s> BetweenRows<'s> {
     }
 }
 
-/// What is searched.
+/// The search for extrema.
 pub(crate) struct ExtremaSearch<'a, E> {
     pub(crate) trajectory: &'a Trajectory<'a>,
     pub(crate) columns: &'a [Column],
@@ -209,8 +209,7 @@ impl<E: RowEvaluator> ExtremaSearch<'_, E> {
         Ok(extrema)
     }
 
-    /// Of the wanted columns those that are searched between the rows, and those that are too many for it: the forces and powers of loads are
-    /// the last.
+    /// The requested columns that are searched between the rows, and those beyond the bound; forces and powers of loads are the last.
     fn searched(&self, wanted: &[usize]) -> [Vec<usize>; 2] {
         let is_searched = |&k: &usize| is_continuous(&self.columns[k]);
         let mut searched: Vec<usize> = wanted.iter().copied().filter(is_searched).collect();
@@ -270,7 +269,7 @@ impl<'b> KnownPoints<'b> {
         }
     }
 
-    /// The values of the `i`th searched column, of which those in the rows are given.
+    /// The values of the `i`th searched column; its values in the rows are given.
     fn of_column(&self, i: usize, rows: Vec<f64>, unwraps: bool) -> Vec<Point> {
         // An angle's revolutions are counted from row to row.
         if unwraps {
@@ -408,8 +407,8 @@ fn evaluated<'e, E: RowEvaluator>(
     Some(evaluator)
 }
 
-/// Whether a column has its extrema between rows: not the error of the integration, and nothing that is infinite in
-/// some positions or counts revolutions from row to row.
+/// Whether a column can have extrema between rows. The error of the integration cannot, nor can columns that are
+/// infinite in some positions or count revolutions from row to row.
 fn is_continuous(column: &Column) -> bool {
     use Quantity::{MechanicalAdvantage, Pole, Power, Rotation, Time};
     match column.quantity {
@@ -419,7 +418,7 @@ fn is_continuous(column: &Column) -> bool {
     }
 }
 
-/// Whether a column is of one load.
+/// Whether a column belongs to one load.
 fn is_of_load(column: &Column) -> bool {
     matches!(
         column.quantity,

@@ -1,4 +1,4 @@
-//! What gives the coordinates that an analysis follows, of a scene in the plane or in space.
+//! The source of the coordinates along which an analysis is evaluated, for a scene in the plane or in space.
 
 use crate::explain::{StudyError, labels, missing_section_label, scene_error};
 use crate::number_format::count;
@@ -6,7 +6,7 @@ use crate::trajectory::compute::{Analysis, SweepLimits};
 use dwell_geometry::ActuatorId;
 use dwell_scene::{CoordinateSweep, PrescribedMotion, SceneFile, SceneLocation};
 
-/// What gives the coordinates that an analysis follows.
+/// The source of the coordinates along which an analysis is evaluated.
 pub struct FollowedScene<'a> {
     pub(crate) file: &'a SceneFile,
     pub(crate) prescribed: Option<&'a PrescribedMotion>,
@@ -17,7 +17,7 @@ pub struct FollowedScene<'a> {
     pub(crate) start: Vec<f64>,
     /// Period of the pose in the coordinate of the only actuator, rad.
     pub(crate) period: Option<f64>,
-    /// The range of the only actuator, as it is followed.
+    /// The followed range of the only actuator.
     pub(crate) default_limits: Option<SweepLimits>,
 }
 

@@ -36,7 +36,7 @@ impl RowScene for PlaneScene {
         draws_paths: true,
     };
 
-    /// With every reaction.
+    /// The model with every reaction.
     type Rows = Model;
 
     type Evaluator<'a> = PositionEvaluator<'a>;

@@ -1,4 +1,4 @@
-//! The rows of a long trajectory: all of them in a temporary file, and every so many-th in memory, for pictures.
+//! The rows of a long trajectory: all rows in a temporary file, and every n-th row in memory, for pictures.
 
 use crate::bodies::BodyPose;
 use crate::explain::StudyError;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// Values in memory at most: 32 MB.
 const MAX_VALUES: usize = 4 << 20;
 
-/// Where the rows of a trajectory are kept.
+/// The storage of the rows of a trajectory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum RowStorage {
     /// All in memory.
@@ -27,7 +27,7 @@ type RowAndPoses = (Vec<f64>, Vec<BodyPose>);
 pub(crate) struct LongRows {
     /// The rows of the columns that are kept.
     pub(crate) table: Arc<LongTable>,
-    /// Every so many-th row is in memory, too.
+    /// Every `stride`-th row is also in memory.
     stride: usize,
     /// The row and the poses that were added last, if they are not in memory otherwise.
     last: Option<RowAndPoses>,
@@ -36,7 +36,7 @@ pub(crate) struct LongRows {
 }
 
 impl LongRows {
-    /// Of so many positions; none where they fit into memory.
+    /// The storage for this number of positions; `None` if they fit into memory.
     pub(crate) fn new(columns: &[Column], points: usize) -> Result<Option<Self>, StudyError> {
         let stride = (points * columns.len()).div_ceil(MAX_VALUES);
         if stride <= 1 {
@@ -54,12 +54,12 @@ impl LongRows {
         }))
     }
 
-    /// The number of the `k`th row in memory: every so many-th, and the last one.
+    /// The number of the `k`th row in memory: every n-th row, and the last one.
     pub(crate) fn row_number(&self, k: usize) -> usize {
         (k * self.stride).min(self.table.len().saturating_sub(1))
     }
 
-    /// Adds a row and its poses; gives them back where they belong in memory, too.
+    /// Adds a row and its poses; returns them if they are also kept in memory.
     pub(crate) fn add(&mut self, row: Vec<f64>, poses: Vec<BodyPose>) -> Option<RowAndPoses> {
         let is_kept = self.table.len().is_multiple_of(self.stride);
         // While rows are added, nobody else has the table.

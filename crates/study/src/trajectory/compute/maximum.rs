@@ -6,7 +6,7 @@ const MAX_EVALUATIONS: usize = 40;
 /// Width of the interval, relative to the first, at which an extremum is found, and the relative gain that is none.
 const WIDTH: f64 = 1e-7;
 pub(super) const NO_GAIN: f64 = 1e-13;
-/// Part of the first or last interval at which a value tells whether the extremum is the end itself.
+/// Fraction of the first or last interval; the value there shows whether the extremum is the end itself.
 const NEXT_TO_END: f64 = 1e-3;
 /// The part of an interval that a golden section cuts off.
 const GOLDEN: f64 = 0.381_966_011_250_105;
@@ -15,7 +15,7 @@ const GOLDEN: f64 = 0.381_966_011_250_105;
 pub(crate) type Point = [f64; 2];
 
 /// The highest point of a function that is known at some points, also between them: it is evaluated about its local
-/// maxima there, about those `count` whose parabolas are highest. None where no point has a value.
+/// maxima there, about those `count` whose parabolas are highest. `None` if no point has a value.
 pub(crate) fn highest_between(
     points: &[Point],
     count: usize,

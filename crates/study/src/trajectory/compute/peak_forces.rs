@@ -1,5 +1,5 @@
-//! The largest actuator forces and reactions along a trajectory, and nothing else: what a parameter sweep
-//! needs of thousands of scenes.
+//! The largest actuator forces and reactions along a trajectory, without other results, for parameter sweeps with
+//! thousands of scenes.
 
 use crate::explain::StudyError;
 use crate::trajectory::compute::{
@@ -8,7 +8,7 @@ use crate::trajectory::compute::{
 use dwell_kinetostatics::{InverseDynamics, Model};
 use dwell_scene::PlaneScene;
 
-/// Local maxima of a force about which its largest value is looked for between the positions.
+/// Number of local maxima of a force around which its largest value is searched for between the positions.
 const REFINED: usize = 2;
 
 /// The forces whose largest values are wanted, by their indices.

@@ -1,4 +1,4 @@
-//! The columns of scenes in the plane that differ from those in space: of bodies, joints and loads.
+//! The columns of scenes in the plane that differ from those in space: those of bodies, joints and loads.
 
 use crate::trajectory::compute::{ColumnList, Quantity, dyads};
 use dwell_geometry::{ActuatorKind, BodyId, Component, JointId, JointKind, Plan, Reaction};
@@ -34,7 +34,7 @@ pub(super) struct PlaneColumns<'a> {
 }
 
 impl PlaneColumns<'_> {
-    /// Of a body: its velocity ratio, and on request its mechanical advantages and its poles.
+    /// Adds the velocity ratio of a body, and, on request, its mechanical advantages and its poles.
     pub(super) fn body(&mut self, id: BodyId) {
         let mechanism = &self.scene.mechanism;
         if self.plan.actuators() == 1 {
@@ -170,7 +170,7 @@ impl PlaneColumns<'_> {
         }
     }
 
-    /// The separating force of teeth, beside their tooth force.
+    /// Adds the separating force of teeth.
     fn separating_force(&mut self, joint: JointId) {
         let mut loads = self.scene.loads.iter();
         let is_of_joint = |load: &Load| load.pressure_angle().is_some_and(|p| p.joint == joint);

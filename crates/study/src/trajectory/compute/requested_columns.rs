@@ -1,9 +1,9 @@
-//! Which columns of an analysis a scene requests: what it does not is neither kept, searched for extrema, written nor
+//! The columns of an analysis that a scene requests. Other columns are not stored, searched for extrema, written or
 //! drawn.
 //!
 //! A scene that lists `variables` requests these, and the reactions that it lists. One that lists only `reactions`
 //! requests, of an analysis of forces, these, the coordinates and forces of its actuators, its paths and its dwell; and
-//! of a free motion what only its integration yields. Every other scene requests everything.
+//! of a free motion the columns that only its integration yields. Every other scene requests everything.
 
 use crate::trajectory::compute::{Analysis, Column, ColumnRequests, Quantity, RowScene};
 

@@ -1,4 +1,4 @@
-//! Evaluation along a trajectory: the table, and what sections and drawings need of each position.
+//! Evaluation along a trajectory: the table, and the data of each position for sections and drawings.
 
 use crate::bodies::BodyPose;
 use crate::estimate::{error_scale, relative};
@@ -12,23 +12,23 @@ use dwell_findings::{self as findings, Table};
 use std::f64::consts::TAU;
 use std::io;
 
-/// What is evaluated at the positions of a trajectory.
+/// The values at the positions of a trajectory.
 #[derive(Default)]
 pub struct TrajectoryResults {
     /// The columns of the analysis that the scene requests, and those that its pictures need.
     pub(crate) columns: Vec<Column>,
-    /// The indices of those in the tables.
+    /// The indices of the columns in the tables.
     pub(crate) written: Vec<usize>,
     /// Whether the scene requests less than everything.
     #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for summaries"))]
     pub(crate) is_limited: bool,
-    /// What all columns of the analysis come to.
+    /// The reference sizes of all columns of the analysis.
     pub(crate) references: UnitReferences,
     /// By position: a value for each column. Of a long trajectory only of some positions.
     pub(crate) rows: Vec<Vec<f64>>,
     /// All rows of a long trajectory.
     pub(crate) long_rows: Option<LongRows>,
-    /// By column, of those that unwrap: the last angle, its rate and its time.
+    /// By column, for those that unwrap: the last angle, its rate and its time.
     last_angles: Vec<Option<[f64; 3]>>,
     /// By position: the residual of the power balance, and the sum of its absolute terms, W.
     power_terms: Vec<[f64; 2]>,
@@ -44,18 +44,18 @@ pub struct TrajectoryResults {
     pub indeterminate: Vec<String>,
     /// By body: whether it is modelled; without `variables` all bodies are.
     pub modelled: Vec<bool>,
-    /// By column: whether it is zero in every row but for rounding.
+    /// By column: whether it is zero in every row within rounding.
     pub(crate) is_rounding: Vec<bool>,
-    /// Those of them whose rows do not look like it.
+    /// The columns among them whose rows do not look like rounding.
     pub(crate) noted_zeros: Vec<String>,
     /// The extrema of the columns.
     pub(crate) extrema: Extrema,
-    /// By column: the estimated error of its values, in its unit; empty where nothing is known of it.
+    /// By column: the estimated error of its values, in its unit; empty if unknown.
     pub(crate) errors: Vec<f64>,
 }
 
 impl TrajectoryResults {
-    /// Without rows: of all columns of an analysis those that the scene requests.
+    /// Results without rows, for those of all columns of an analysis that the scene requests.
     pub(super) fn new<S: RowScene>(
         scene: &S,
         rows: &S::Rows,
@@ -96,7 +96,7 @@ impl TrajectoryResults {
         }
     }
 
-    /// Prepares the memory for the rows of so many positions.
+    /// Prepares the memory for the rows of this number of positions.
     pub(super) fn keep_rows_in(
         &mut self,
         storage: RowStorage,
@@ -139,7 +139,7 @@ impl TrajectoryResults {
         }
     }
 
-    /// The value of a column at the `k`th position; NaN where it cannot be read.
+    /// The value of a column at the `k`th position; NaN if it cannot be read.
     #[cfg(feature = "output")]
     pub(crate) fn value_at(&self, k: usize, column: usize) -> f64 {
         match &self.long_rows {
@@ -148,7 +148,7 @@ impl TrajectoryResults {
         }
     }
 
-    /// Adds what has been evaluated at the `k`th position.
+    /// Adds the values at the `k`th position.
     pub(super) fn add_position(
         &mut self,
         k: usize,
@@ -214,7 +214,8 @@ pub(crate) struct MotionBetweenRows<'s> {
 }
 
 impl TrajectoryResults {
-    /// Finds which columns are zero but for rounding, in a mechanism of this size (m), and the residual of the power balance.
+    /// Finds the columns that are zero within rounding, in a mechanism of this size (m), and the residual of the power
+    /// balance.
     fn find_rounding(&mut self, size: f64) {
         let scales = self.references.scales(size);
         self.is_rounding = self.references.is_rounding(&scales, self.columns.len());
@@ -226,11 +227,11 @@ impl TrajectoryResults {
         self.power_residual = residuals.fold(0.0, f64::max);
     }
 
-    /// Ends the rows of a trajectory that ended early, if it did, and finds what can be said of their columns by the evaluators of a
-    /// mechanism of this size, m.
+    /// Ends the rows of a trajectory that ended early, and finds extrema, rounding and errors of their columns, by the evaluators of
+    /// a mechanism of this size, m.
     ///
     /// # Errors
-    /// [`StudyError`] where there is no row, or they cannot be stored.
+    /// [`StudyError`] if there is no row, or the rows cannot be stored.
     pub(super) fn finish(
         &mut self,
         trajectory: &Trajectory<'_>,
@@ -264,7 +265,7 @@ impl TrajectoryResults {
         self.column_index(quantity).unwrap_or(0)
     }
 
-    /// Finds the extrema of the columns in the tables that are not zero but for rounding, in a mechanism of this size (m).
+    /// Finds the extrema of the columns in the tables that are not zero within rounding, in a mechanism of this size (m).
     fn find_extrema(
         &mut self,
         size: f64,
@@ -310,7 +311,7 @@ impl TrajectoryResults {
 pub struct ComputedTrajectory<'a> {
     /// The coordinates that it followed.
     pub trajectory: Trajectory<'a>,
-    /// What was evaluated at each position.
+    /// The values at each position.
     pub results: TrajectoryResults,
     /// A row for each position: time, actuator coordinates and the requested columns. Without rows where a command keeps
     /// them in a temporary file.
@@ -322,7 +323,7 @@ pub struct ComputedTrajectory<'a> {
 }
 
 impl ComputedTrajectory<'_> {
-    /// The time (s) of the last row of a free motion that the rows have ended early; none where they have not.
+    /// The time (s) of the last row of a free motion that the rows have ended early; `None` if they have not.
     pub(crate) fn end_of_rows(&self) -> Option<f64> {
         let motion = self.trajectory.free_motion()?;
         let last = self.results.len().checked_sub(1)?;

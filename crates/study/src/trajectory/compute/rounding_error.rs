@@ -12,8 +12,8 @@ const POSITIONS: usize = 48;
 /// Numbers of a body: position, orientation, velocity, angular velocity, acceleration, angular acceleration.
 pub(crate) type BodyNumbers<T> = [Vec<T>; 6];
 
-/// The largest errors along a trajectory in the plane or in space, by kind of number: of positions, velocities and accelerations where
-/// no forces are computed, else of actuator forces and reactions.
+/// The largest errors along a trajectory in the plane or in space, by kind of number: of positions, velocities and accelerations if no
+/// forces are computed, otherwise of actuator forces and reactions.
 pub struct LargestErrors {
     pub(crate) analysis: Analysis,
     stride: usize,
@@ -21,14 +21,15 @@ pub struct LargestErrors {
     size: f64,
     /// By kind of the numbers of a body: the largest error and the largest value.
     motion: [[f64; 2]; 6],
-    /// The same of moments and of forces.
+    /// The errors of moments and of forces.
     forces: [[f64; 2]; 2],
     /// By actuator and by reaction: whether it is a force.
     is_force: [Vec<bool>; 2],
 }
 
 impl LargestErrors {
-    /// For a trajectory of so many positions; none of a free motion, whose error is that of its integration.
+    /// The estimate for a trajectory of this number of positions; `None` for a free motion, whose error is that of its
+    /// integration.
     fn new(
         (analysis, points): (Analysis, usize),
         size: f64,
@@ -72,7 +73,8 @@ impl LargestErrors {
         }
     }
 
-    /// The largest error, relative to the largest value of its unit. What does not move has the error of what does.
+    /// The largest error, relative to the largest value of its unit. A part that does not move has the error of those
+    /// that do.
     fn max_relative(&self) -> f64 {
         let pair =
             |[error, value]: [f64; 2], [other_error, other]: [f64; 2], references: [f64; 2]| {
@@ -110,7 +112,7 @@ pub(crate) struct RoundingError<M: MachineModel> {
 }
 
 impl<M: TableModel> RoundingError<M> {
-    /// For a trajectory of so many positions; none of a free motion.
+    /// The estimate for a trajectory of this number of positions; `None` for a free motion.
     pub(super) fn new(
         evaluator: &impl RowEvaluator<Model = M>,
         of: (Analysis, usize),

@@ -1,4 +1,4 @@
-//! What evaluates the columns of a trajectory, in the plane or in space.
+//! The evaluator of the columns of a trajectory, in the plane or in space.
 
 use crate::assembled::BodyStates;
 use crate::bodies::BodyPose;
@@ -18,7 +18,7 @@ pub trait RowEvaluator: Clone + Send + Sync {
     /// Its model.
     fn model(&self) -> &Self::Model;
 
-    /// From now on only some quantities are asked for: what they do not need may be left out.
+    /// Limits further evaluations to some quantities; parts that these do not need may be omitted.
     fn limit_to(&mut self, _: impl Iterator<Item = Quantity>) {}
 
     /// Goes on where the evaluator of another chart was last.

@@ -1,5 +1,4 @@
-//! What the analyses along a trajectory need of a scene, in the plane or in space: from what columns there are to what is evaluated in
-//! a row.
+//! The trait of a scene for the analyses along a trajectory, in the plane or in space: its columns, and the evaluation of a row.
 
 use crate::assembled::AskedScene;
 use crate::explain::StudyError;
@@ -13,7 +12,7 @@ use dwell_kinetostatics::{MachineModel, ReducibleModel as _};
 use dwell_scene::{CoordinateSweep, NamedCoordinate, PrescribedMotion};
 use std::borrow::Cow;
 
-/// Which components vectors have, and what they are called.
+/// The components of vectors, and their names.
 #[derive(Clone, Copy)]
 pub struct Layout {
     /// The axes of points.
@@ -30,14 +29,14 @@ pub struct Layout {
     pub(crate) draws_paths: bool,
 }
 
-/// What the columns of a scene depend on.
+/// The requests of a scene that determine its columns.
 pub struct ColumnRequests<'a> {
-    /// The requested names; all where there is no list.
+    /// The requested names; `None` for all.
     pub(crate) variables: Option<&'a [String]>,
     pub(crate) lists_reactions: bool,
     /// The points whose paths are drawn.
     pub(crate) paths: Vec<(BodyId, [f64; 3])>,
-    /// The body whose dwell is asked for.
+    /// The body whose dwell is requested.
     pub(crate) dwell: Option<BodyId>,
 }
 
@@ -46,19 +45,19 @@ pub struct Measured<M: MachineModel> {
     pub(crate) name: String,
     pub(crate) is_angle: bool,
     pub(crate) meaning: String,
-    /// None where the mechanism does not have it.
+    /// `None` if the mechanism does not have it.
     pub(crate) function: Option<M::CoordinateFunction>,
 }
 
-/// A scene of which rows are evaluated.
+/// A scene whose rows can be evaluated.
 pub trait RowScene: AskedScene {
     /// The components of its vectors.
     const LAYOUT: Layout;
 
-    /// Its model under all loads, with what is known of the reactions.
+    /// Its model under all loads, with the determinacy of its reactions.
     type Rows: Clone + Sync;
 
-    /// What evaluates its rows.
+    /// The evaluator of its rows.
     type Evaluator<'a>: RowEvaluator<Model = Self::Model>;
 
     /// The model of all rows.
@@ -67,7 +66,7 @@ pub trait RowScene: AskedScene {
     /// [`StudyError::Scene`] when the mechanism cannot be assembled or a load does not fit it.
     fn rows(&self) -> Result<Self::Rows, StudyError>;
 
-    /// The same without loads, if these may not fit.
+    /// The rows without loads, which may not fit.
     ///
     /// # Errors
     /// As of [`rows`](Self::rows).
@@ -78,7 +77,7 @@ pub trait RowScene: AskedScene {
     /// The model among that.
     fn model_of(rows: &Self::Rows) -> &Self::Model;
 
-    /// The same without what no requested column needs.
+    /// The rows without the parts that no requested column needs.
     fn pruned<'r>(&self, rows: &'r Self::Rows) -> Cow<'r, Self::Rows> {
         Cow::Borrowed(rows)
     }
@@ -116,10 +115,10 @@ pub trait RowScene: AskedScene {
     /// The prescribed motion and the sweep.
     fn prescribed(&self) -> (Option<&PrescribedMotion>, Option<&CoordinateSweep>);
 
-    /// The range of the only actuator, as it is followed.
+    /// The followed range of the only actuator.
     fn default_limits(&self, model: &Self::Model) -> SweepLimits;
 
-    /// What gives the coordinates that an analysis follows.
+    /// The source of the coordinates along which an analysis is evaluated.
     fn followed(&self, model: &Self::Model) -> FollowedScene<'_> {
         let start = self.assembly_coordinates();
         let (prescribed, sweep) = self.prescribed();
@@ -134,7 +133,7 @@ pub trait RowScene: AskedScene {
         }
     }
 
-    /// What the columns depend on.
+    /// The requests that determine the columns.
     fn requests(&self) -> ColumnRequests<'_>;
 
     /// The scene with its drives among the loads, if these have columns there.
@@ -145,7 +144,7 @@ pub trait RowScene: AskedScene {
         Ok(Cow::Borrowed(self))
     }
 
-    /// What makes an open reaction determinate.
+    /// Advice on how to make an undetermined reaction determinate.
     const TO_DETERMINE: &'static str;
 
     /// The names of the reactions that redundant constraints leave open.

@@ -9,11 +9,11 @@ use crate::trajectory::compute::{
 };
 use dwell_kinetostatics::MachineModel as _;
 
-/// Analyses a scene along its prescribed motion, its sweep, or the range of its only actuator, with the rows in memory, or where they
-/// are bounded.
+/// Analyses a scene along its prescribed motion, its sweep, or the range of its only actuator, with the rows in memory, or, by
+/// `storage`, in a file.
 ///
 /// # Errors
-/// [`StudyError`] where not even the first position can be reached.
+/// [`StudyError`] if the first position cannot be reached.
 pub(crate) fn compute_trajectory_in<'a, S: RowScene>(
     storage: RowStorage,
     scene: &'a S,
@@ -29,14 +29,14 @@ pub(crate) fn compute_trajectory_in<'a, S: RowScene>(
     source.analysed(analysis, points, progress)
 }
 
-/// What rows are evaluated of.
+/// The scene and model of which rows are evaluated.
 pub struct RowSource<'s, 'r, S: RowScene> {
     pub(crate) scene: &'s S,
     pub(crate) rows: &'r S::Rows,
-    /// Of a motion in other coordinates than the scene's, by chart: the scene and its model there.
+    /// For a motion in other coordinates than the scene's, by chart: the scene and its model there.
     pub(crate) charts: Vec<(&'r S, &'r S::Rows)>,
     pub(crate) storage: RowStorage,
-    /// The columns of which those that are requested are computed.
+    /// The columns that are computed if requested.
     pub(crate) is_wanted: fn(Quantity) -> bool,
 }
 
@@ -55,7 +55,7 @@ impl<'s: 'r, 'r, S: RowScene> RowSource<'s, 'r, S> {
     /// The rows along the scene's own trajectory.
     ///
     /// # Errors
-    /// [`StudyError`] where not even the first position can be reached.
+    /// [`StudyError`] if the first position cannot be reached.
     pub(crate) fn analysed(
         &self,
         analysis: Analysis,
@@ -72,10 +72,10 @@ impl<'s: 'r, 'r, S: RowScene> RowSource<'s, 'r, S> {
         })
     }
 
-    /// The rows along a trajectory; of a free motion also with what is known between them.
+    /// The rows along a trajectory; for a free motion, also with the positions known between them.
     ///
     /// # Errors
-    /// [`StudyError`] where not even the first position can be reached.
+    /// [`StudyError`] if the first position cannot be reached.
     pub(crate) fn along<'a>(
         &self,
         trajectory: Trajectory<'a>,
@@ -110,7 +110,7 @@ impl<'s: 'r, 'r, S: RowScene> RowSource<'s, 'r, S> {
         })
     }
 
-    /// The rows of a second computation of a motion, up to where it can be evaluated, and nothing else. None where a column cannot be
+    /// The rows of a second computation of a motion, up to where it can be evaluated, and nothing else. `None` if a column cannot be
     /// evaluated.
     pub(super) fn only_rows(&self, trajectory: &Trajectory<'_>) -> Option<Vec<Vec<f64>>> {
         let rows = &*self.scene.pruned(self.rows);
@@ -149,7 +149,7 @@ impl<'s: 'r, 'r, S: RowScene> RowSource<'s, 'r, S> {
         })
     }
 
-    /// Of a model, the columns of an analysis along a trajectory that the scene requests.
+    /// The empty results of a model: the requested columns of an analysis along a trajectory.
     fn results(&self, rows: &S::Rows, trajectory: &Trajectory<'_>) -> TrajectoryResults {
         let (scene, analysis) = (self.scene, trajectory.analysis);
         let (modelled, requests) = (S::modelled(rows), scene.requests());
@@ -175,7 +175,7 @@ impl<'s: 'r, 'r, S: RowScene> RowSource<'s, 'r, S> {
         TrajectoryResults::new(scene, rows, all, analysis)
     }
 
-    /// What evaluates some columns along a trajectory, by chart.
+    /// The evaluators of some columns along a trajectory, by chart.
     fn evaluators<'e>(
         &'e self,
         rows: &'e S::Rows,

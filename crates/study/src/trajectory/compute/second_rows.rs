@@ -10,7 +10,7 @@ pub(crate) struct SecondRows {
 }
 
 impl SecondRows {
-    /// Along a motion, up to where it can be evaluated. None where a column cannot be evaluated.
+    /// The rows along a motion, up to where it can be evaluated. `None` if a column cannot be evaluated.
     pub(crate) fn new<S: RowScene>(
         source: &RowSource<'_, '_, S>,
         trajectory: &Trajectory<'_>,
@@ -29,8 +29,8 @@ fn times_of(trajectory: &Trajectory<'_>) -> Vec<f64> {
 }
 
 impl ComputedTrajectory<'_> {
-    /// Sets the errors of a motion's columns from their differences in a second computation at the same times; where there
-    /// is none, or a column never has values in both, nothing is known.
+    /// Sets the errors of a motion's columns from their differences in a second computation at the same times; without
+    /// one, or if a column never has values in both, the error is unknown.
     pub(crate) fn set_errors(&mut self, other: Option<&SecondRows>) {
         let Some(other) = other else { return };
         let own = times_of(&self.trajectory);

@@ -4,8 +4,8 @@ use crate::explain::{StudyError, scene_error};
 use crate::trajectory::compute::{Column, RowScene, all_columns, extra_columns, is_prefix_of};
 use dwell_scene::{SceneLocation, choices};
 
-/// Rejects requested names that select no column: for analyses that write none of them, so that a scene is right for all
-/// or for none.
+/// Rejects requested names that select no column: for analyses that write none of them, so that a scene is valid for all
+/// analyses or for none.
 ///
 /// # Errors
 /// [`StudyError::Scene`] at the first of them.

@@ -28,13 +28,13 @@ pub struct TrajectorySample {
     pub(crate) q: Vec<f64>,
     pub(crate) q_dot: Vec<f64>,
     pub(crate) q_ddot: Vec<f64>,
-    /// Of a free motion: its chart; and where the chart uses another coordinate, that of the only actuator
-    /// with its first and second derivatives.
+    /// For a free motion: its chart, and, if the chart uses another coordinate, that of the only actuator with its
+    /// first and second derivatives.
     pub(crate) chart: usize,
     pub(crate) actuator_coordinate: Option<[f64; 3]>,
-    /// Of a free motion: (load, magnitude) of each drive.
+    /// For a free motion: (load, magnitude) of each drive.
     pub(crate) drive_magnitudes: Vec<(usize, f64)>,
-    /// Of a free motion: the values that only its integration yields, such as energies.
+    /// For a free motion: the values that only its integration yields, such as energies.
     pub(crate) extra_values: Vec<f64>,
 }
 
@@ -73,7 +73,7 @@ pub struct Trajectory<'a> {
     pub period: Option<f64>,
 }
 
-/// At which fractions of its duration a prescribed motion is evaluated.
+/// The fractions of its duration at which a prescribed motion is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Spacing {
     /// At equal intervals of time.
@@ -111,7 +111,7 @@ pub(crate) struct FreeTrajectory {
     pub(crate) in_charts: bool,
 }
 
-/// The limits of a sweep: from where to where, whether these are next to a limit position, and what it sweeps.
+/// The limits of a sweep: first and last coordinate, whether these are next to a limit position, and a description.
 pub(crate) type SweepLimits = ([f64; 2], [bool; 2], &'static str);
 
 impl<'a> Trajectory<'a> {
@@ -239,7 +239,7 @@ impl<'a> Trajectory<'a> {
         }
     }
 
-    /// Where the scene defines it.
+    /// The place of its definition in the scene.
     pub(crate) fn location(&self, scene: &PlaneScene) -> SceneLocation {
         match &self.kind {
             TrajectoryKind::Prescribed(..) => SceneLocation::Prescribed,

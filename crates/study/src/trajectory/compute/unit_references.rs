@@ -1,5 +1,5 @@
-//! What all columns of an analysis come to, requested or not: beside it, those of a unit are zero but for rounding, in
-//! whatever company they are requested.
+//! Reference sizes from all columns of an analysis, requested or not. Relative to them, columns of a unit are zero
+//! within rounding, independent of the other requested columns.
 
 use crate::trajectory::compute::{Column, Quantity, UnitScales};
 
@@ -16,12 +16,12 @@ struct Reference {
     column: Column,
     /// Its index among the requested columns.
     kept: Option<usize>,
-    /// Of its finite values.
+    /// The largest of its finite values.
     largest: f64,
 }
 
 impl UnitReferences {
-    /// Of all columns of an analysis, among which the `kept` ones are in the rows.
+    /// The references of all columns of an analysis, of which the `kept` ones are in the rows.
     pub(crate) fn new(all: Vec<Column>, kept: &[Column]) -> Self {
         let reference = |column: Column| Reference {
             kept: kept
@@ -50,14 +50,14 @@ impl UnitReferences {
         }
     }
 
-    /// What each unit comes to, in a mechanism of this size (m).
+    /// The reference size of each unit, in a mechanism of this size (m).
     pub(crate) fn scales(&self, size: f64) -> UnitScales {
         let columns = self.columns.iter();
         let largest: Vec<(&Column, f64)> = columns.map(|of| (&of.column, of.largest)).collect();
         UnitScales::new(&largest, size)
     }
 
-    /// By requested column: whether it is zero in every row but for rounding.
+    /// By requested column: whether it is zero in every row within rounding.
     pub(crate) fn is_rounding(&self, scales: &UnitScales, requested: usize) -> Vec<bool> {
         let is_small = |of: &Reference| scales.is_rounding(of.column.unit, of.largest);
         let mut is_rounding = vec![false; requested];
@@ -79,7 +79,7 @@ impl UnitReferences {
     }
 
     /// The requested columns that count as zero although their rows do not look like rounding, each with its largest
-    /// magnitude and that of its unit: what exceeds it so far need not be requested.
+    /// magnitude and that of its unit: the column of the largest magnitude need not be requested.
     pub(crate) fn noted_zeros(&self, scales: &UnitScales, is_rounding: &[bool]) -> Vec<String> {
         let requested = || self.columns.iter().filter(|of| of.kept.is_some());
         let largest = requested().fold(1.0, |largest: f64, of| largest.max(of.largest));
@@ -96,7 +96,7 @@ impl UnitReferences {
         conspicuous.map(note).collect()
     }
 
-    /// The largest magnitude of a unit, but for rounding.
+    /// The largest magnitude of a unit, apart from rounding.
     pub(crate) fn largest_of(&self, unit: &str, size: f64) -> f64 {
         let scales = self.scales(size);
         let alike = self.columns.iter().filter(|of| of.column.unit == unit);

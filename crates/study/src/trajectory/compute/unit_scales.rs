@@ -1,14 +1,15 @@
-//! What the quantities of each unit come to along a trajectory: beside it, some of them are zero but for rounding.
+//! Reference sizes of the quantities of each unit along a trajectory. Relative to them, some quantities are zero within
+//! rounding.
 //!
-//! A unit may have no other quantity than one that is zero but for rounding, such as the only moment of a mechanism.
-//! So each unit is also given what the others come to over the size of the mechanism: a moment of 3e-16 N m is
-//! nothing beside forces of 10 N at 0.5 m.
+//! All quantities of a unit may be zero within rounding, such as the only moment of a mechanism. Therefore the
+//! reference of a unit also includes the others, converted by the size of the mechanism: a moment of 3e-16 N m is
+//! negligible relative to forces of 10 N at 0.5 m.
 
 use crate::estimate::is_rounding;
 use crate::trajectory::compute::{Column, Quantity};
 use std::collections::BTreeMap;
 
-/// By unit: the reference beside which a quantity is zero but for rounding.
+/// By unit: the reference relative to which a quantity is zero within rounding.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct UnitScales(BTreeMap<&'static str, f64>);
 
@@ -42,7 +43,8 @@ impl UnitScales {
         )
     }
 
-    /// From the columns of a trajectory, each with its largest magnitude; `size` is that of the mechanism, m.
+    /// The scales from the columns of a trajectory, each with its largest magnitude; `size` is that of the mechanism,
+    /// m.
     pub(crate) fn new(columns: &[(&Column, f64)], size: f64) -> Self {
         let of_unit = |unit: &str| {
             let alike = columns.iter().filter(|(column, _)| column.unit == unit);
@@ -72,12 +74,12 @@ impl UnitScales {
         ]))
     }
 
-    /// Whether a quantity whose largest magnitude is `size` is zero but for rounding.
+    /// Whether a quantity whose largest magnitude is `size` is zero within rounding.
     pub(crate) fn is_rounding(&self, unit: &str, size: f64) -> bool {
         size == 0.0 || is_rounding(size, self.of(unit))
     }
 
-    /// The reference of a unit; zero where there is none.
+    /// The reference of a unit; zero if there is none.
     pub(crate) fn of(&self, unit: &str) -> f64 {
         self.0.get(unit).copied().unwrap_or(0.0)
     }

@@ -27,7 +27,7 @@ pub(crate) fn describe_abscissa(scene: &SceneFile, label: &str, unit: &str, at: 
     format!("{label} = {} {unit}", digits(at, 4))
 }
 
-/// What the charts of a trajectory share, in the plane or in space.
+/// The common data of the charts of a trajectory, in the plane or in space.
 pub(crate) struct ChartContext<'a> {
     pub(super) scene: &'a SceneFile,
     pub(super) results: &'a TrajectoryResults,
@@ -40,17 +40,18 @@ pub(crate) struct ChartContext<'a> {
     pub(super) abscissa_values: Vec<f64>,
     /// The part of the rows that curves show.
     pub(super) drawn: DrawnRows,
-    /// The first row of the last revolution of many, which is drawn once more.
+    /// The first row of the last of many revolutions, which is drawn again separately.
     pub(super) last_revolution: Option<usize>,
     /// Whether the trajectory starts and ends next to a limit position.
     pub(super) limits: [bool; 2],
 }
 
 impl<'a> ChartContext<'a> {
-    /// Of a scene in the plane or in space; `swept` is the name of the swept coordinate, and whether it is an angle.
+    /// The context for a scene in the plane or in space; `swept` is the name of the swept coordinate, and whether it is
+    /// an angle.
     ///
     /// # Errors
-    /// [`StudyError::Scene`] where the span of the curves is not within the trajectory.
+    /// [`StudyError::Scene`] if the span of the curves is not within the trajectory.
     pub(crate) fn new(
         scene: &'a SceneFile,
         swept: Option<(&str, bool)>,
@@ -210,8 +211,8 @@ impl<'a> ChartContext<'a> {
             .then(|| self.chart(title, label, curves))
     }
 
-    /// Charts of those of some columns that are more than rounding, evenly distributed, so that none has a single curve left over;
-    /// of several the title says which.
+    /// Charts of the columns that are not zero within rounding, distributed evenly, so that no chart has a single leftover curve.
+    /// Titles number several charts.
     pub(crate) fn even_charts(
         &self,
         (title, label): (&str, &str),
@@ -249,7 +250,7 @@ impl<'a> ChartContext<'a> {
         columns.filter(|(_, c)| holds(c)).map(|(k, _)| k).collect()
     }
 
-    /// Whether a column is zero at every position, but for rounding.
+    /// Whether a column is zero at every position within rounding.
     pub(crate) fn is_zero(&self, k: usize) -> bool {
         self.results.is_rounding[k]
     }

@@ -23,7 +23,7 @@ pub(super) fn last_revolution(results: &TrajectoryResults) -> Option<usize> {
 }
 
 impl ChartContext<'_> {
-    /// Shows the last revolution beside the whole motion, in panels over the abscissa.
+    /// Shows the last revolution in addition to the whole motion, in panels over the abscissa.
     pub(super) fn with_last_revolution(&self, mut figure: Figure) -> Figure {
         let first = self.last_revolution.unwrap_or(usize::MAX);
         let places = self.abscissa_values.get(first..);

@@ -29,7 +29,7 @@ const MAX_FRAMES: usize = 60;
 const DELAY_MS: u32 = 60;
 const WIDTH_PX: u32 = 640;
 
-/// What the figures of a trajectory of a scene in the plane share.
+/// The common data of the figures of a trajectory of a scene in the plane.
 pub(crate) struct FigureContext<'a> {
     scene: &'a PlaneScene,
     charts: ChartContext<'a>,
@@ -97,7 +97,8 @@ pub(crate) fn animation(
     Ok(animated(drawn.len(), is_closed(drawn), frame, provenance))
 }
 
-/// The animation of a mechanism in so many positions, of which the last equals the first if `is_closed`: over a whole period.
+/// The animation of a mechanism in `count` positions, of which the last equals the first if `is_closed`, that is, over a
+/// whole period.
 pub(crate) fn animated(
     positions: usize,
     is_closed: bool,

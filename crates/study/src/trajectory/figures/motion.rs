@@ -7,7 +7,7 @@ use dwell_geometry::BodyId;
 use dwell_report::{Chart, Figure, Mark, Paint};
 use std::f64::consts::TAU;
 
-/// Bodies that turn more often have a chart of their own beside those that do not.
+/// Bodies that turn more often have a separate chart.
 const MAX_SHARED_TURNS: f64 = 1.25;
 
 impl FigureContext<'_> {
@@ -61,7 +61,7 @@ impl FigureContext<'_> {
         (!charts.is_empty()).then(|| self.figure("angles", "Angles", &text, vec![charts.into()]))
     }
 
-    /// Curves of many turns would flatten those within one: they have a chart of their own.
+    /// Curves of many turns have a separate chart, because they would flatten those within one turn.
     fn angle_charts(&self, curves: &[(String, usize)]) -> Vec<Chart> {
         let turns_often = |k: usize| {
             let [low, high] = extent(self.drawn_rows().map(|row| row[k]));
@@ -87,7 +87,7 @@ impl FigureContext<'_> {
         [true, false].into_iter().filter_map(of).collect()
     }
 
-    /// So many of some bodies, in their order: those with a requested path are no less asked for than others.
+    /// At most `count` of some bodies, in their order; those with a requested path come first.
     fn of_interest_first(&self, bodies: &[BodyId], count: usize) -> Vec<BodyId> {
         let paths = &self.scene.requests.paths;
         let mut chosen = bodies.to_vec();

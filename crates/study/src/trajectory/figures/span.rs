@@ -5,12 +5,13 @@ use crate::number_format::digits;
 use dwell_scene::SceneFile;
 use std::ops::Range;
 
-/// From where to where curves are drawn: times in s, or the swept coordinate in the scene's unit. Files keep all rows.
+/// The interval in which curves are drawn: times in s, or the swept coordinate in the scene's unit. Files keep all
+/// rows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PictureSpan {
-    /// Where they begin; at the beginning of the trajectory if absent.
+    /// Start of the curves; the start of the trajectory if absent.
     pub from: Option<f64>,
-    /// Where they end; at the end of the trajectory if absent.
+    /// End of the curves; the end of the trajectory if absent.
     pub to: Option<f64>,
 }
 
@@ -18,7 +19,7 @@ pub struct PictureSpan {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct DrawnRows {
     pub(super) rows: Range<usize>,
-    /// None if all are shown.
+    /// The ends of the interval; `None` if all rows are shown.
     pub(super) ends: Option<[f64; 2]>,
 }
 
@@ -26,7 +27,7 @@ impl DrawnRows {
     /// The rows within a span, with one more at either side; `values` are the abscissae of all rows in the unit of the span.
     ///
     /// # Errors
-    /// [`StudyError::Scene`] where the span is reversed, empty, no number, or outside the trajectory.
+    /// [`StudyError::Scene`] if the span is reversed, empty, NaN, or outside the trajectory.
     pub(super) fn new(
         scene: &SceneFile,
         span: PictureSpan,

@@ -14,13 +14,12 @@ use toml::Table;
 
 /// The fluctuation for which a flywheel is wanted.
 const FLUCTUATION: f64 = 0.02;
-/// What a motion from another state may still differ from the cycle, by its multipliers.
+/// Allowed difference from the cycle of a motion from another state, by its multipliers.
 const SETTLED: f64 = 1e-10;
 /// Cycles of the long motion at most: a cycle that settles more slowly is not compared.
 const MAX_CYCLES: f64 = 24.0;
 
-/// Runs `cycle` on a scene with drives and a motion and compares what it writes. Where there is no steady cycle, nothing is
-/// compared.
+/// Runs `cycle` on a scene with drives and a motion and compares its files. Without a steady cycle, nothing is compared.
 pub(crate) fn compare(
     compared: &mut Compared,
     program: &Program,

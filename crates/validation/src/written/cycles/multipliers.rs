@@ -1,4 +1,5 @@
-//! The largest Floquet multiplier of a cycle, by the revolutions of a motion that settles: what is left of a deviation after a cycle.
+//! The largest Floquet multiplier of a cycle, from the revolutions of a settling motion: the remaining fraction of a deviation after
+//! a cycle.
 
 use crate::written::poses::difference::Differences;
 
@@ -9,7 +10,7 @@ const DEVIATIONS: [f64; 2] = [1e-8, 1e-4];
 /// A multiplier, real and imaginary part.
 pub(super) type Multiplier = [f64; 2];
 
-/// Speeds at successive revolutions against the multipliers of the summary; nothing where the largest is not real, or where no two
+/// Speeds at successive revolutions against the multipliers of the summary; empty if the largest is not real, or if no two
 /// deviations can be compared.
 pub(super) fn multiplier_differences(speeds: &[f64], multipliers: &[Multiplier]) -> Differences {
     let mut all = Differences::default();

@@ -4,8 +4,8 @@ use crate::written::poses::difference::Differences;
 use crate::written::poses::rows::{Rows, extent};
 use std::f64::consts::TAU;
 
-/// Every change point that `check` prints and that the rows come to is one that `simulate` says it crosses, or why not: that the fit across it
-/// is poor is no reason.
+/// Checks that `simulate` reports every change point that `check` prints and the rows reach as crossed, or states a reason. A poor fit
+/// across it is no reason.
 pub(super) fn change_points(checked: &str, simulated: &str, rows: &Rows) -> Differences {
     let mut found = Differences::default();
     let named = checked.lines().filter_map(|line| {

@@ -1,4 +1,4 @@
-//! The motions of `simulate`, by several methods and in other rows, and what is printed of them.
+//! The motions of `simulate`, by several methods and with other rows, and their printed text.
 
 mod change_points;
 mod motion_files;

@@ -22,7 +22,8 @@ const DURATION: f64 = 0.3;
 /// Intervals between the rows of another.
 const OTHER_ROWS: f64 = 131.7;
 
-/// Runs `simulate` on a scene and compares its files; nothing of a scene without a motion, but in space with one actuator.
+/// Runs `simulate` on a scene and compares its files. Scenes without a motion are skipped, except those in space with one
+/// actuator.
 pub(crate) fn compare(
     compared: &mut Compared,
     program: &Program,
@@ -99,7 +100,7 @@ fn with_motion(scene: &Scene) -> Option<Table> {
     Some(table)
 }
 
-/// The motion once more by another method, with rows at other times, which do not meet those of the first.
+/// The motion by another method, with rows at other times than those of the first.
 fn other_rows(
     run: impl Fn(&str, &[&str]) -> Result<Run, String>,
     rows: &Rows,

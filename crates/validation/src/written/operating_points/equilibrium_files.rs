@@ -1,5 +1,5 @@
-//! What `equilibria` and `linearise` say of equilibria: what was searched, neutral directions, the words for their stability, and the extent of
-//! the static force, which `statics` gives row by row.
+//! The texts of `equilibria` and `linearise` on equilibria: the searched range, neutral directions, stability, and the extent of the static
+//! force, compared with the rows of `statics`.
 
 use super::eigenvalues::{Complex, eigenvalues};
 use super::starts::{FreeCoordinate, Start};
@@ -44,8 +44,7 @@ pub(super) fn compare(
     static_force(compared, program, start, &summary)
 }
 
-/// A direction in which an equilibrium goes on has 1 as its largest part, and the positions that are one all around it begin before it and end
-/// behind.
+/// Checks that a neutral direction has 1 as its largest component, and that an interval of equilibria contains its equilibrium.
 fn add_neutral(to: &mut Differences, start: &Start, summary: &Json, name: &str) {
     for k in 1..=start.free.len() {
         let part = |free: &FreeCoordinate, of: &str| {
@@ -72,7 +71,7 @@ fn add_neutral(to: &mut Differences, start: &Start, summary: &Json, name: &str) 
     }
 }
 
-/// Of an angle not more than a revolution is searched, and the start is within.
+/// Checks that at most a revolution of an angle is searched, and that the start is within.
 fn add_searched(to: &mut Differences, start: &Start, summary: &Json) {
     for (free, from) in start.free.iter().zip(start.values()) {
         let end = |end: &str| result(summary, &format!("searched.{}.{end}", free.name));
@@ -93,7 +92,7 @@ fn add_searched(to: &mut Differences, start: &Start, summary: &Json) {
     }
 }
 
-/// The words for the stability of eigenvalues whose error is known; none where zero is within it.
+/// The words for the stability of eigenvalues whose error is known; `None` if zero is within it.
 fn word(values: &[Complex], error: f64) -> Option<&'static str> {
     let parts = values.iter().map(|[re, _]| *re);
     let largest = parts.fold(f64::NEG_INFINITY, f64::max);
@@ -200,7 +199,8 @@ fn holds(scene: &Table) -> bool {
     })
 }
 
-/// Coordinates, and what the loads do there; none where the loads are refused, as those in time.
+/// Coordinates, and the static forces of the loads there; `None` if the loads are rejected, as loads that depend on
+/// time.
 fn static_rows(
     program: &Program,
     start: &Start,
@@ -252,7 +252,7 @@ fn add_balanced(
     }
 }
 
-/// Between two rows with forces of different sign is an equilibrium.
+/// Checks that there is an equilibrium between two rows with forces of different sign.
 fn add_sign_changes(to: &mut Differences, known: &[f64], [places, forces]: [&[f64]; 2]) {
     let [low, high] = extent(forces);
     let clear = 1e-9 * low.abs().max(high.abs());

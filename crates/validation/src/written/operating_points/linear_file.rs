@@ -1,4 +1,4 @@
-//! The matrices of `linearise` as they are written, by the names of their rows and columns.
+//! The written matrices of `linearise`, by the names of their rows and columns.
 
 use crate::written::poses::rows::Rows;
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ pub(super) struct LinearFile {
 }
 
 impl LinearFile {
-    /// Reads the file; none where it has no such table.
+    /// Reads the file; `None` if it has no such table.
     pub(super) fn read(text: &str) -> Option<Self> {
         let mut file = Self::default();
         let mut columns: Vec<String> = Vec::new();

@@ -11,8 +11,8 @@ use crate::written::poses::program::{Program, Run};
 use crate::written::poses::scene_text::{Scene, text_of};
 use crate::written::poses::stated::result;
 
-/// Runs `linearise` about the initial state and `equilibria` on a scene with a motion, and compares what they write. A run
-/// that is refused leaves nothing to compare.
+/// Runs `linearise` about the initial state and `equilibria` on a scene with a motion, and compares their files. A
+/// rejected run leaves nothing to compare.
 pub(crate) fn compare(
     compared: &mut Compared,
     program: &Program,
@@ -49,7 +49,8 @@ pub(crate) fn compare(
     }
 }
 
-/// A, B, C and D with differences, what is written of equilibria, and the motion from them; nothing of a motion that cannot be linearised.
+/// Compares A, B, C and D with differences, the texts on equilibria, and the motion from them. A motion that cannot be linearised is
+/// skipped.
 fn other_starts(
     compared: &mut Compared,
     program: &Program,

@@ -43,7 +43,7 @@ impl Rest<'_> {
         self.start.free.iter().map(of).collect()
     }
 
-    /// The scene at rest in an equilibrium, and what the state of a drive adds there.
+    /// The scene at rest in an equilibrium, and the contribution of the state of a drive there.
     fn place(&self, row: usize) -> Option<(Start, Changed, f64)> {
         let start = self.start.at_rest_in(&self.coordinates(row)?);
         let state = self
@@ -87,7 +87,7 @@ impl Rest<'_> {
         Ok(())
     }
 
-    /// Where an equilibrium of one freedom oscillates without damping: a damper c gives it ζ = c/(2 m ω), and leaves ω.
+    /// For an undamped equilibrium of one freedom: checks that a damper c adds ζ = c/(2 m ω) and does not change ω.
     fn compare_damped(&self, compared: &mut Compared) -> Result<(), String> {
         let [free] = self.start.free.as_slice() else {
             return Ok(());
@@ -148,7 +148,7 @@ fn with_damper(start: &Start, free: &FreeCoordinate, damping: f64) -> Result<Str
     start.text_of_scene(scene)
 }
 
-/// Columns of a row with what they must be, each with its scale.
+/// Compares columns of a row with their expected values, each with its scale.
 fn add_row(to: &mut Differences, table: &Rows, row: usize, expected: &[(&str, f64, f64)]) {
     for (column, expected, scale) in expected {
         let place = || format!("equilibrium {} with a damper, {column}", row + 1);

@@ -1,4 +1,4 @@
-//! The commands that tell how a motion starts, and what is linear about its start.
+//! Runs of the commands for the start of a motion and the linearisation about it.
 
 use super::starts::DURATION;
 use crate::written::poses::program::{Program, Run};

@@ -1,4 +1,4 @@
-//! The matrices of `linearise` against differences of what the program writes about neighbouring starts: rows of `simulate`, and the rates and
+//! The matrices of `linearise` against differences of written results for neighbouring starts: rows of `simulate`, and the rates and
 //! outputs of `linearise` itself.
 
 use super::linear_file::LinearFile;

@@ -10,7 +10,7 @@ const INPUT_STEP: f64 = 1e-2;
 /// How long the motion is, s: only its first row is used.
 pub(super) const DURATION: f64 = 1e-6;
 
-/// What is changed of a start.
+/// The changed quantity of a start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Changed {
     /// By its number among the free coordinates.
@@ -18,7 +18,7 @@ pub(super) enum Changed {
     Velocity(usize),
     /// The input of a drive.
     Input(usize),
-    /// What adds to the force of a drive: its state, or the share of its full voltage.
+    /// A contribution to the force of a drive: its state, or the share of its full voltage.
     Force(usize),
 }
 
@@ -29,7 +29,7 @@ pub(super) struct FreeCoordinate {
     /// The unit of the scene's text, in SI units.
     pub(super) unit: f64,
     pub(super) is_angle: bool,
-    /// Of its changes.
+    /// Size of its changes.
     pub(super) size: f64,
     value: f64,
     velocity: f64,
@@ -43,7 +43,7 @@ pub(super) struct Drive {
     /// The key of its input, with the unit in SI units, and the ends of the columns of its input and state; none of a voltage share.
     input: Option<(&'static str, f64)>,
     columns: [&'static str; 2],
-    /// What an increase of its state, or of the share of the full voltage, adds to the force, and to the state's rate by itself.
+    /// The slopes of the force, and of the state's own rate, with respect to its state or to the share of the full voltage.
     pub(super) state_slopes: [f64; 2],
     /// The rotor's inertia on the coordinate, kg m² or kg.
     pub(super) rotor_inertia: f64,
@@ -87,7 +87,7 @@ impl Drive {
     }
 }
 
-/// The scene of a motion, and where it starts.
+/// The scene of a motion, and its start.
 #[derive(Debug, Clone)]
 pub(super) struct Start {
     pub(super) scene: Table,
@@ -136,7 +136,7 @@ impl Start {
         })
     }
 
-    /// The same at rest in another place, by free coordinate in SI units.
+    /// The start at rest at other free coordinates, in SI units.
     pub(super) fn at_rest_in(&self, values: &[f64]) -> Self {
         let free = self
             .free
@@ -153,7 +153,7 @@ impl Start {
         }
     }
 
-    /// Everything that can be changed, with the column of the matrices that it belongs to.
+    /// All changeable quantities, each with its column of the matrices.
     pub(super) fn changes(&self) -> Vec<(Changed, String)> {
         let coordinates = self.free.iter().enumerate();
         let coordinates = coordinates.map(|(k, c)| (Changed::Coordinate(k), c.name.clone()));
@@ -229,7 +229,7 @@ impl Start {
         Some(())
     }
 
-    /// Adds what a changed state of a drive exerts, as a force of its own.
+    /// Adds the force of a changed state of a drive as a separate force.
     fn add_force(&self, scene: &mut Table, k: usize, by: f64) -> Option<()> {
         let drive = &self.drives[k];
         let drives = scene.get_mut("drives")?.as_table_mut()?;

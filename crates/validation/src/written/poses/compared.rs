@@ -1,4 +1,4 @@
-//! What was found of a case's files: differences by the key of their finding.
+//! The results on a case's files: differences by the key of their finding.
 
 use super::difference::Differences;
 use dwell_findings::{Check, Finding};

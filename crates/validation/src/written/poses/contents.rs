@@ -1,4 +1,4 @@
-//! What `check` prints of a scene, against its summary; and what it says of requests, against the same scene with others.
+//! The printed text of `check`, against its summary; and its text on requests, against the same scene with others.
 
 use super::compared::Compared;
 use super::difference::Differences;
@@ -141,13 +141,13 @@ fn sentences(summary: &Value, scene: &Scene) -> Vec<(String, Vec<Expected>)> {
     lines
 }
 
-/// What `check` prints of the reactions that are requested.
+/// The line of `check` on requested reactions.
 fn requested_in(printed: &str) -> Option<&str> {
     let mut lines = printed.lines();
     lines.find_map(|line| line.trim().strip_prefix("reactions requested: "))
 }
 
-/// How many reactions are not requested: all that there are without requests, less those that are listed.
+/// The number of reactions that are not requested: all reactions minus the listed ones.
 fn add_requests(
     to: &mut Differences,
     program: &Program,
@@ -209,7 +209,7 @@ fn add_single_request(
     Ok(())
 }
 
-/// With one reaction the path of one point is requested: of all points it alone has columns. Nothing where the rows are refused.
+/// Requests the path of one point with one reaction: only this point has columns. Skipped if the rows are rejected.
 fn add_single_path(to: &mut Differences, program: &Program, mut scene: toml::Table) {
     let points = named_points(&scene);
     let Some(asked) = points.iter().rfind(|at| at.body != "ground") else {

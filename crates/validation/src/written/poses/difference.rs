@@ -3,7 +3,8 @@
 use dwell_findings::Finding;
 use dwell_verify::{Comparison, FindingSpec, LargestDifference};
 
-/// The largest difference relative to its scale. What could not be compared fails, and nothing to compare is no finding.
+/// The largest difference relative to its scale. A failed comparison fails the finding; without comparisons there is no
+/// finding.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Differences(LargestDifference);
 
@@ -48,7 +49,7 @@ impl Differences {
         self.0.record_failure(reason.into());
     }
 
-    /// Counts what must hold; where it does not, the finding fails.
+    /// Counts a required condition; if it does not hold, the finding fails.
     pub(crate) fn require(&mut self, holds: bool, reason: impl FnOnce() -> String) {
         self.add(0.0, 1.0, "", || "");
         if !holds {
@@ -78,13 +79,13 @@ impl Differences {
         self.0 = std::mem::take(&mut self.0).merge(other.0);
     }
 
-    /// The finding over a domain, which says how many comparisons there were; none where there was nothing to compare.
+    /// The finding over a domain, which states the number of comparisons; `None` if there was nothing to compare.
     pub(crate) fn counted_finding(self, spec: &FindingSpec<'_>, domain: &str) -> Option<Finding> {
         let domain = format!("{domain}, {} comparisons", self.0.count);
         self.finding(spec, &domain)
     }
 
-    /// The finding over a domain; none where there was nothing to compare.
+    /// The finding over a domain; `None` if there was nothing to compare.
     pub(crate) fn finding(self, spec: &FindingSpec<'_>, domain: &str) -> Option<Finding> {
         let is_any = self.0.count > 0 || self.0.failure.is_some();
         is_any.then(|| spec.finding(domain.to_owned(), self.0))

@@ -10,7 +10,7 @@ pub(crate) enum Expression {
     Call(String, Vec<Expression>),
 }
 
-/// What stands between two operands.
+/// An operator between two operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Operator {
     Plus,
@@ -35,14 +35,14 @@ struct Reader<'a> {
 }
 
 impl Expression {
-    /// Reads a whole text; none where it is not an expression.
+    /// Reads a whole text; `None` if it is not an expression.
     pub(crate) fn read(text: &str) -> Option<Self> {
         let mut reader = Reader { rest: text };
         let expression = reader.operand(0)?;
         reader.rest.trim().is_empty().then_some(expression)
     }
 
-    /// Its value, with those of its names; none where a name or a function is unknown.
+    /// Its value for given values of its names; `None` if a name or a function is unknown.
     pub(crate) fn at(&self, names: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
         Some(match self {
             Self::Number(value) => *value,

@@ -5,8 +5,8 @@ use super::difference::Differences;
 use super::largest_values::scales;
 use serde_json::Value;
 
-/// Columns whose extrema are those of their rows: what jumps, or is zero over zero where it begins, errors, what is infinite in some positions,
-/// and rotations in space.
+/// Columns whose extrema are those of their rows: columns that jump, or are zero over zero at the start, errors, columns that are infinite
+/// in some positions, and rotations in space.
 const OF_ROWS: [&str; 7] = [
     ".direction",
     ".efficiency",

@@ -26,7 +26,8 @@ pub(crate) fn assignments(code: &str) -> Vec<(String, Expression)> {
     code.lines().filter_map(assignment).collect()
 }
 
-/// A term of Rust with functions in place of methods: `a.powi(2)` is `pow(a, 2)`. None where a bracket has no other.
+/// A term of Rust with functions instead of methods: `a.powi(2)` becomes `pow(a, 2)`. `None` if a bracket is not
+/// closed.
 fn functions_of_methods(text: &str) -> Option<String> {
     const METHODS: [(&str, &str); 6] = [
         (".powi(", "pow"),
@@ -56,7 +57,7 @@ fn functions_of_methods(text: &str) -> Option<String> {
     }
 }
 
-/// Where the operand begins that a text ends with: a name, a number, or brackets with the function before them.
+/// The start of the operand at the end of a text: a name, a number, or brackets with the function before them.
 fn operand_start(text: &str) -> Option<usize> {
     let mut start = text.len();
     if text.ends_with(')') {
@@ -91,7 +92,7 @@ fn argument(code: &str) -> String {
     inner.trim_end_matches(": f64").to_owned()
 }
 
-/// m, ½m′, a and b; none of what is not computed.
+/// m, ½m′, a and b; `None` for quantities that are not computed.
 pub(crate) type Quantities = [Option<f64>; 4];
 
 /// m, ½m′, and a and b of a reaction by the code at every row of `reduce`.
@@ -115,7 +116,7 @@ pub(crate) fn code_differences(
     code_differences_of("code", &at, rows, coordinate, reaction)
 }
 
-/// The same of what is computed by `at`, in words.
+/// The differences of the quantities computed by `at`, in words.
 pub(crate) fn code_differences_of(
     what: &str,
     at: &dyn Fn(f64) -> Quantities,

@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 
 /// Values that differ by less than this part of them are the same under another name.
 const SAME: f64 = 1e-9;
-/// The largest rounding error that a case may state of positions and forces, of the largest of a unit; 1e-13 is seen.
+/// The largest rounding error of positions and forces that a case may state, relative to the largest of a unit; the
+/// largest observed is 1e-13.
 const MAX_ROUNDING: f64 = 1e-11;
 
 /// The printed extrema of a run.
@@ -24,7 +25,7 @@ pub(crate) fn printed_extrema(run: &Run, command: &str) -> Result<Differences, S
     Ok(found)
 }
 
-/// By unit: the largest extremum. What is zero but for rounding is compared by others of its unit.
+/// By unit: the largest extremum. Values that are zero within rounding are compared by others of their unit.
 pub(super) fn scales(extrema: &[Value]) -> BTreeMap<&str, f64> {
     let mut all = BTreeMap::new();
     for entry in extrema {
@@ -94,7 +95,8 @@ fn add_rounding(to: &mut Differences, printed: &str) {
     }
 }
 
-/// Of each unit that a command lists, the line of the largest extremum of the summary, or that it is not known.
+/// For each unit that a command lists: checks that the line has the largest extremum of the summary, or states that it
+/// is unknown.
 pub(super) fn add_largest(to: &mut Differences, printed: &str, summary: &Value, command: &str) {
     let units: &[&str] = match command {
         "kinematics" => &["rad/s", "m/s", "rad/s2", "m/s2"],

@@ -1,4 +1,4 @@
-//! What `kinematics` prints of the movement, by how much bodies turn and slides travel, with its summary.
+//! The printed text of `kinematics` on the movement (ranges of body angles and travels), compared with its summary.
 
 use super::difference::Differences;
 use super::program::Run;
@@ -11,7 +11,8 @@ const ROUNDING: f64 = 1e-6;
 /// Extents that differ by less than this part of them are the same, and named once.
 const SAME: f64 = 1e-9;
 
-/// The lines `NAME turns by …` and `NAME travels by …` of a run with the numbers of its summary; what moves most is among them.
+/// The lines `NAME turns by …` and `NAME travels by …` of a run with the numbers of its summary; the largest movements are
+/// among them.
 pub(super) fn movement(run: &Run, scene: &Scene) -> Result<Differences, String> {
     let summary = run.json("-kinematics.json")?;
     let results = summary["results"]
@@ -40,7 +41,7 @@ pub(super) fn movement(run: &Run, scene: &Scene) -> Result<Differences, String> 
     Ok(found)
 }
 
-/// What turns and what travels most is among what is named.
+/// Checks that the body that turns most and the slide that travels most are named.
 fn add_named(to: &mut Differences, summary: &Value, scene: &Scene, named: [f64; 2]) {
     let extrema = summary["extrema"].as_array().map_or(&[][..], Vec::as_slice);
     let kinds = [(".angle", "rad", 1.0), (".travel", "m", scene.size())];

@@ -11,7 +11,7 @@ use toml::{Table, Value};
 /// Systems of units in which each case is written again: as many as there are units of length.
 const SYSTEMS: usize = LENGTHS.len();
 
-/// The same files from the scene in other units.
+/// Compares with the files from the scene in other units.
 pub(super) fn compare_units(
     compared: &mut Compared,
     program: &Program,
@@ -121,7 +121,7 @@ fn tables<'a>(table: &'a mut Table, name: &str) -> impl Iterator<Item = (String,
     entries.filter_map(|(name, value)| Some((name.clone(), value.as_table_mut()?)))
 }
 
-/// Whether a joint is of one of some kinds; that of a pin of three bodies is named after the second.
+/// Whether a joint has one of these kinds. A joint of a pin of three bodies is named after its second body.
 fn has_kind(scene: &Scene, name: &str, kinds: &[&str]) -> bool {
     entries(&scene.table, "joints").any(|(joint, keys)| {
         let rest = name.strip_prefix(joint.as_str());
@@ -142,7 +142,7 @@ impl Factors {
         scene.coordinate(name).map(|coordinate| self.of(coordinate))
     }
 
-    /// Of the coordinate that an entry names under a key.
+    /// The factor of the coordinate that an entry names under a key.
     fn of_named(&self, scene: &Scene, entry: &Table, key: &str) -> f64 {
         let name = entry.get(key).and_then(Value::as_str).unwrap_or("");
         self.of_name(scene, name).unwrap_or(1.0)

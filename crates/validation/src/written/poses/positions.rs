@@ -11,7 +11,7 @@ use super::program::Program;
 use super::reduced_files::compare_reduced;
 use super::scene_text::{Scene, has_motion, number, text_of, value_of};
 
-/// Rows of a motion, and of the one whose extrema are looked for once more.
+/// Number of rows of a motion, and of the motion whose extrema are searched for again.
 const POINTS: &str = "97";
 const OTHER_POINTS: &str = "26";
 /// Amplitudes of a prescribed motion that the scene does not give, rad or parts of the size, and its period, s.

@@ -17,7 +17,7 @@ struct Page<'p> {
 }
 
 impl<'p> Page<'p> {
-    /// Reads a page; none where its coordinate is not named.
+    /// Reads a page; `None` if its coordinate is not named.
     fn read(page: &'p str) -> Option<Self> {
         let (_, rest) = page.split_once("The coordinate is $")?;
         let (coordinate, _) = rest.split_once('$')?;
@@ -39,7 +39,7 @@ impl<'p> Page<'p> {
         })
     }
 
-    /// m, ½m′, a and b at a coordinate; none of what the page does not define.
+    /// m, ½m′, a and b at a coordinate; `None` for quantities that the page does not define.
     fn at(&self, q: f64) -> [Option<f64>; 4] {
         let mut values: HashMap<&str, f64> = self.constants.iter().copied().collect();
         values.insert(self.coordinate, q);
@@ -69,7 +69,7 @@ pub(crate) fn formula_differences(
     code_differences_of("formulas", &at, rows, coordinate, reaction)
 }
 
-/// What is left of a term, and the values of all names so far.
+/// The rest of a term, and the values of all names so far.
 struct Formula<'f> {
     rest: &'f str,
     values: &'f HashMap<&'f str, f64>,
@@ -107,7 +107,7 @@ impl Formula<'_> {
         Some(product)
     }
 
-    /// A sum, and the text behind it.
+    /// Reads a sum that `end` follows.
     fn sum_before(&mut self, end: &str) -> Option<f64> {
         let sum = self.sum()?;
         self.takes(end).then_some(sum)
@@ -121,7 +121,7 @@ impl Formula<'_> {
         }
     }
 
-    /// What has no power behind it.
+    /// Reads an operand without its power.
     fn base(&mut self) -> Option<f64> {
         for (name, function) in [("\\sin", f64::sin as fn(f64) -> f64), ("\\cos", f64::cos)] {
             if self.takes(&format!("{name}^2 ")) {

@@ -6,7 +6,7 @@ use super::stated::last_digit;
 use serde_json::Value;
 use std::f64::consts::PI;
 
-/// What a printed number may be in, by numbers of the summary: SI units, degrees, mm, revolutions in a minute.
+/// Factors from numbers of the summary to printed numbers: SI units, degrees, mm, revolutions per minute.
 const FACTORS: [f64; 4] = [1.0, 180.0 / PI, 1e3, 30.0 / PI];
 
 /// Every printed number with decimals is one of the summary, to its digits.

@@ -1,4 +1,4 @@
-//! Runs the program as a user does: a process, a scene in a folder of its own, and the files that it leaves there.
+//! Runs the program as a user does: as a process, with a scene in its own folder, to which it writes its files.
 
 use super::read_files::{add_parquet_rows, csv_rows, npz_rows};
 use super::rows::Rows;
@@ -13,7 +13,7 @@ pub(crate) struct Program {
     folder: PathBuf,
 }
 
-/// What a process left.
+/// The results of a process.
 #[derive(Debug, Clone)]
 pub(crate) struct Run {
     pub(crate) printed: String,
@@ -80,7 +80,7 @@ impl Drop for Program {
 }
 
 impl Run {
-    /// Where the file or folder `NAME-END` is.
+    /// The path of the file or folder `NAME-END`.
     fn path(&self, end: &str) -> PathBuf {
         self.folder.join(format!("{}{end}", self.name))
     }

@@ -41,7 +41,7 @@ pub(crate) fn csv_rows(text: &str) -> Option<Rows> {
     Some(Rows { columns, count })
 }
 
-/// Adds the columns of numbers of a Parquet file to those of the files before it; what is null is no number.
+/// Adds the columns of numbers of a Parquet file to those of the files before it; null values become NaN.
 pub(crate) fn add_parquet_rows(path: &Path, rows: &mut Rows) -> Result<(), ParquetError> {
     let reader = SerializedFileReader::new(File::open(path)?)?;
     for row in reader.get_row_iter(None)? {
@@ -59,7 +59,7 @@ pub(crate) fn add_parquet_rows(path: &Path, rows: &mut Rows) -> Result<(), Parqu
     Ok(())
 }
 
-/// The heads of the columns; one with a comma stands in quotes.
+/// The headings of the columns; a heading with a comma is quoted.
 fn fields(line: &str) -> Vec<String> {
     let mut all = vec![String::new()];
     let mut in_quotes = false;
@@ -122,7 +122,7 @@ fn array(bytes: &[u8]) -> Option<Vec<f64>> {
     Some(values.iter().map(|b| f64::from_le_bytes(*b)).collect())
 }
 
-/// What a `.npy` array says of itself, and its data.
+/// The header of a `.npy` array, and its data.
 fn described(bytes: &[u8]) -> Option<(&str, &[u8])> {
     let head = if *bytes.get(6)? == 1 {
         10 + number(bytes, 8, 2)?

@@ -1,4 +1,5 @@
-//! The files of `reduce` and what repeats them: `runs`, fewer rows, requested columns, generated code and formulas.
+//! The files of `reduce`, and other outputs with the same numbers: `runs`, fewer rows, requested columns, generated
+//! code and formulas.
 
 use super::compared::Compared;
 use super::difference::Differences;
@@ -14,7 +15,7 @@ use toml::Table;
 /// Rows of `reduce`.
 const POINTS: &str = "261";
 
-/// Runs `reduce` and its like on a scene with one actuator, as it is and with everything requested.
+/// Runs `reduce` and related commands on a scene with one actuator, unchanged and with everything requested.
 pub(super) fn compare_reduced(
     compared: &mut Compared,
     program: &Program,
@@ -86,10 +87,10 @@ fn run_sentences(printed: &str, both: [&Rows; 2]) -> Differences {
 
 /// Positions of a file of `reduce` that miss the largest m.
 const FEW_POINTS: &str = "7";
-/// What many rows may miss of the largest m between them.
+/// Largest fraction of the largest m that may be missing between many rows.
 const BETWEEN_ROWS: f64 = 1e-2;
 
-/// Where few rows miss the largest m, `reduce` says how large it is: no smaller than in many rows, and where these have it.
+/// If few rows miss the largest m, `reduce` states its size: not smaller than in many rows, and at the same position.
 fn compare_peak(
     to: &mut Differences,
     program: &Program,
@@ -134,7 +135,7 @@ fn compare_peak(
 /// Differences of a text of `symbolic` from the rows of `reduce`, in a coordinate, with a reaction.
 type Comparison = fn(&str, &Rows, &str, &str) -> Differences;
 
-/// The reduced model once more: as code in three languages, and as formulas.
+/// The reduced model as code in three languages, and as formulas.
 fn compare_code(
     compared: &mut Compared,
     program: &Program,

@@ -29,7 +29,7 @@ impl Rows {
         self.columns.get(name)?.get(row).copied()
     }
 
-    /// The numbers of a column; none of one that is not there.
+    /// The numbers of a column; empty if there is no such column.
     pub(crate) fn column(&self, name: &str) -> &[f64] {
         self.columns.get(name).map_or(&[], Vec::as_slice)
     }

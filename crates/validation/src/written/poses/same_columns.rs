@@ -1,10 +1,10 @@
-//! The columns of a file against those of another that has them, too.
+//! Compares the columns of a file with those of another file that has them, too.
 
 use super::difference::Differences;
 use super::rows::{Rows, largest};
 use std::collections::BTreeMap;
 
-/// What the columns of a name are compared with: forces in x and y, and along the axes of a body, are of one kind.
+/// The kind of a column, which determines its scale: forces in x and y, and along the axes of a body, are of one kind.
 fn kind_of(name: &str, is_point: bool) -> String {
     if let Some((_, load)) = name.split_once(".c.") {
         return format!("c.{load}");
@@ -38,7 +38,8 @@ fn kind_of(name: &str, is_point: bool) -> String {
     kind.to_owned()
 }
 
-/// The columns of a file against those of another that has them, too, relative to the largest of the same ending.
+/// Compares the columns of a file with those of another file that has them, too, relative to the largest with the same
+/// ending.
 pub(crate) fn same_columns(rows: &Rows, other: &Rows, file: &str) -> Differences {
     let is_point = |name: &str| name.matches('.').count() == 2;
     let ending = |name: &str| kind_of(name, is_point(name));

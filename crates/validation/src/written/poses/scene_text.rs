@@ -15,7 +15,7 @@ pub(crate) struct Coordinate {
 /// A scene of a case, in the plane or in space.
 #[derive(Debug)]
 pub(crate) struct Scene {
-    /// As written.
+    /// The table as written.
     pub(crate) table: Table,
     pub(crate) units: Units,
     pub(crate) actuators: Vec<Coordinate>,

@@ -1,4 +1,4 @@
-//! Numbers of a summary and of printed lines, against those that they should be.
+//! Numbers of a summary and of printed lines, compared with their expected values.
 
 use super::difference::Differences;
 use serde_json::Value;
@@ -56,7 +56,7 @@ fn numbers_in(line: &str) -> Vec<&str> {
     numbers.collect()
 }
 
-/// The value of one in the last printed digit; zeros at the end of a whole number are none.
+/// The value of one in the last printed digit; trailing zeros of a whole number do not count as digits.
 pub(crate) fn last_digit(number: &str) -> f64 {
     let (digits, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
     let decimals = digits

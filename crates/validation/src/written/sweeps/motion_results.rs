@@ -14,7 +14,7 @@ pub(super) struct VariedMass<'a> {
     pub(super) values: [f64; 2],
 }
 
-/// Sweeps the mass and compares the second row; nothing where the scene has no free motion.
+/// Sweeps the mass and compares the second row; skipped if the scene has no free motion.
 pub(super) fn motion_differences(
     program: &Program,
     scene: &Table,
@@ -58,7 +58,7 @@ pub(super) fn motion_differences(
     Ok(all)
 }
 
-/// What the rows make of a result, and the largest size of its column.
+/// The value of a result from the rows, and the largest size of its column.
 fn expected(rows: &Rows, summary: &Value, column: &str, what: &str) -> Option<[f64; 2]> {
     let [values, times] = [column, "t"].map(|name| rows.columns.get(name));
     let (values, times) = (values?, times?);

@@ -1,5 +1,5 @@
-//! The checks of sweeps of a case: masses of its bodies, one drawn of a normal and one of an even distribution, one by a grid; a coordinate of one
-//! of its points; and its motion.
+//! The checks of sweeps of a case: masses of its bodies, one from a normal distribution, one from a uniform distribution, one from a grid;
+//! a coordinate of one of its points; and its motion.
 
 use super::motion_results::{VariedMass, motion_differences};
 use crate::written::poses::compared::Compared;
@@ -12,7 +12,7 @@ use crate::written::poses::stated::{expected, sentence_differences};
 use serde_json::Value as Json;
 use toml::{Table, Value};
 
-/// Runs `sweep` on a scene with one actuator, and compares what it writes.
+/// Runs `sweep` on a scene with one actuator, and compares its files.
 pub(crate) fn compare(
     compared: &mut Compared,
     program: &Program,
@@ -126,7 +126,8 @@ fn add_result(to: &mut Differences, printed: &str, summary: &Json, name: &str, v
     }
 }
 
-/// A coordinate of a point that is not zero, at two values next to that of the scene; a variant that cannot be assembled has no row to compare.
+/// Varies a nonzero coordinate of a point at two values next to that of the scene; a variant that cannot be assembled has no row to
+/// compare.
 fn compare_dimension(
     compared: &mut Compared,
     program: &Program,
