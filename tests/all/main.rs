@@ -40,6 +40,7 @@ mod pictures;
 mod published;
 mod random;
 mod range_limits;
+mod recorded;
 mod refusals;
 mod repeatability;
 mod rounding;

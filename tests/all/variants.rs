@@ -21,15 +21,20 @@ const POSITIONS: usize = 512;
 /// Largest difference, as a part of the curve's largest magnitude.
 const TOLERANCE: f64 = 1e-12;
 
-/// A scene with one reaction; the Watt six-bar without what only loads it.
-fn variant_base(case: &str, reaction: &str) -> (PlaneScene, Reaction) {
+/// A scene without what only loads it.
+pub(crate) fn without_loads(case: &str) -> PlaneScene {
     let scene = fixtures::scene(case);
     let text = scene.source.inner();
     let (before, rest) = match (text.find("[loads]"), text.find("[requests]")) {
         (Some(loads), Some(requests)) => (&text[..loads], &text[requests..]),
         _ => (text.as_str(), ""),
     };
-    let scene = PlaneScene::parse(case, &format!("{before}{rest}")).expect("a scene");
+    PlaneScene::parse(case, &format!("{before}{rest}")).expect("a scene")
+}
+
+/// A scene with one reaction; the Watt six-bar without what only loads it.
+fn variant_base(case: &str, reaction: &str) -> (PlaneScene, Reaction) {
+    let scene = without_loads(case);
     let all = scene.mechanism.reactions();
     let named = |r: &&Reaction| scene.mechanism.reaction_name(**r) == reaction;
     let reaction = *all.iter().find(named).expect("a reaction");
@@ -45,7 +50,7 @@ fn random(counter: u64) -> f64 {
 }
 
 /// All numbers of the bodies changed by up to a part of them; those that are zero, by a part of the reach.
-fn variant(scene: &PlaneScene, deviation: f64, number: u64) -> PlaneScene {
+pub(crate) fn variant(scene: &PlaneScene, deviation: f64, number: u64) -> PlaneScene {
     variant_in(scene, &scene.number_paths(), deviation, number)
 }
 

@@ -58,7 +58,8 @@ pub use model::{
 };
 pub use pass::InverseDynamics;
 pub use reduced::{
-    Batch, Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel, ReducibleModel,
+    Batch, Coefficients, CoefficientsRecordingError, ExactModel, ExactWorkspace, Inertia,
+    RecordedCoefficients, ReducedModel, ReducibleModel,
 };
 pub use results::{
     Distribution, FreeBodyForces, LinkForces, PowerBalance, Section, ShakingForce, Wrench,

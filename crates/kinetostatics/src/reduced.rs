@@ -11,19 +11,21 @@
 
 mod batch;
 mod lane_work;
+mod recorded;
 #[cfg(target_arch = "x86_64")]
 mod registers;
 
 pub use batch::Batch;
 pub(crate) use batch::{LANES, LaneScalar, MAX_LANES};
 pub(crate) use lane_work::{LaneWork, in_lanes};
+pub use recorded::{CoefficientsRecordingError, RecordedCoefficients};
 
 use crate::error::PositionResult;
 use crate::model::{Model, Workspace};
-use crate::pass::UnitMotions;
+use crate::pass::{PassModel, RecursivePass, UnitMotions};
 pub use crate::reducible_model::{Coefficients, ReducibleModel};
-use dwell_geometry::Range;
-use dwell_numerics::{Dual, Scalar};
+use dwell_geometry::{Motion, Pose, Range};
+use dwell_numerics::{Constant, Dual, Lift, Scalar};
 
 /// The generalised inertia and its derivatives at one coordinate, for the equation of motion and its Jacobian.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -183,21 +185,36 @@ impl Model {
             unit_passes: unit,
             ..
         } = workspace;
-        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-        self.plan().positions(&[q], pose)?;
-        self.plan().velocities(pose, &[one], motion);
-        self.plan().accelerations(pose, &[zero], motion);
-        unit.evaluate(&self.pass_model, pose, UnitMotions(motion), None);
-        [out.half_dm, out.m] = unit.tau(&self.pass_model, 0);
-        for (k, (a, b)) in out.a.iter_mut().zip(&mut out.b).enumerate() {
-            [*b, *a] = unit.reaction(&self.pass_model, pose, k);
-        }
-        Ok(())
+        self.pass_model.reduce(q, pose, motion, unit, out)
     }
 
     /// A buffer for the coefficients of this model.
     pub fn coefficient_buffer<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients::buffer(self.reactions().len())
+    }
+}
+
+impl<C: Constant> PassModel<C> {
+    /// The reduced coefficients at `q` (rad or m), by (3) and (4).
+    #[inline(always)]
+    pub(crate) fn reduce<T: Lift<C>>(
+        &self,
+        q: T,
+        pose: &mut Pose<T>,
+        motion: &mut Motion<T>,
+        passes: &mut RecursivePass<T, 2>,
+        out: &mut Coefficients<T>,
+    ) -> PositionResult {
+        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+        self.plan.positions(&[q], pose)?;
+        self.plan.velocities(pose, &[one], motion);
+        self.plan.accelerations(pose, &[zero], motion);
+        passes.evaluate(self, pose, UnitMotions(motion), None);
+        [out.half_dm, out.m] = passes.tau(self, 0);
+        for (k, (a, b)) in out.a.iter_mut().zip(&mut out.b).enumerate() {
+            [*b, *a] = passes.reaction(self, pose, k);
+        }
+        Ok(())
     }
 }
 

@@ -13,12 +13,14 @@ pub use search::{Extremum, Turn};
 use crate::load::Load;
 use crate::mass::Mass;
 use crate::model::{MachineModel as _, Model};
+use crate::pass::PassModel;
 use crate::reduced::in_lanes;
 use dwell_geometry::{Mechanism, ModeGuess, Reaction, vec2};
+use dwell_numerics::{Constant, Lift};
 use turn::Turns;
 
 /// Numbers of the mass properties of a body: mass, centre (x, y) and moment of inertia.
-const PER_BODY: usize = 4;
+pub(crate) const PER_BODY: usize = 4;
 
 /// A model of one structure, for many variants of its numbers.
 #[derive(Debug, Clone)]
@@ -142,21 +144,31 @@ impl VariantModel {
 impl Model {
     /// Sets the numbers of a variant; returns false if they do not fit the structure or are not valid mass properties.
     fn set_numbers(&mut self, numbers: &[f64]) -> bool {
-        let at = numbers.len() - PER_BODY * self.masses.len();
-        let (dimensions, masses) = numbers.split_at(at);
-        self.pass_model.plan.set_dimensions(dimensions);
+        let (dimensions, masses) = numbers.split_at(self.plan().dimension_count());
         for (mass, of) in self.masses.iter_mut().zip(masses.chunks_exact(PER_BODY)) {
-            *mass = Mass {
-                mass: of[0],
-                center: vec2(of[1], of[2]),
-                inertia: of[3],
-            };
+            *mass = mass_of(of);
         }
         self.masses.iter().all(Mass::is_valid)
-            && self.pass_model.set_masses(&self.masses)
-            && self
-                .pass_model
-                .reaction_sources
-                .replace_points(&self.pass_model.plan)
+            && self.pass_model.set_numbers(dimensions, &self.masses)
+    }
+}
+
+/// The mass properties of a body from its numbers.
+pub(crate) fn mass_of<C: Constant>(numbers: &[C]) -> Mass<C> {
+    Mass {
+        mass: numbers[0],
+        center: vec2(numbers[1], numbers[2]),
+        inertia: numbers[3],
+    }
+}
+
+impl<C: Constant + Lift<f64>> PassModel<C> {
+    /// Sets the dimensions, in the order of [`Plan::dimensions`], and the mass properties by body; returns false if they do not
+    /// fit the structure.
+    ///
+    /// [`Plan::dimensions`]: dwell_geometry::Plan::dimensions
+    pub(crate) fn set_numbers(&mut self, dimensions: &[C], masses: &[Mass<C>]) -> bool {
+        self.plan.set_dimensions(dimensions);
+        self.set_masses(masses) && self.reaction_sources.replace_points(&self.plan)
     }
 }

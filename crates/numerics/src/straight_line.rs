@@ -13,6 +13,17 @@ pub enum Operand {
     Result(usize),
 }
 
+impl Operand {
+    /// Its value, from the coordinates and the results of earlier operations.
+    pub(crate) fn value<R: Real>(self, coordinates: &[R], results: &[R]) -> R {
+        match self {
+            Self::Coordinate(k) => coordinates[k],
+            Self::Constant(value) => R::of(value),
+            Self::Result(k) => results[k],
+        }
+    }
+}
+
 /// An operation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Operation {
@@ -107,18 +118,19 @@ impl StraightLine {
 
     /// The outputs at coordinates, rad or m.
     pub fn evaluate<R: Real>(&self, q: &[R]) -> Vec<R> {
-        let mut results: Vec<R> = Vec::with_capacity(self.operations.len());
-        let value = |operand: Operand, results: &[R]| match operand {
-            Operand::Coordinate(k) => q[k],
-            Operand::Constant(value) => R::of(value),
-            Operand::Result(k) => results[k],
-        };
+        let mut results = Vec::with_capacity(self.operations.len());
+        self.evaluate_operations(q, &mut results);
+        let outputs = self.outputs.iter();
+        outputs.map(|output| output.value(q, &results)).collect()
+    }
+
+    /// The results of all operations at coordinates.
+    pub(crate) fn evaluate_operations<R: Real>(&self, q: &[R], results: &mut Vec<R>) {
+        results.clear();
         for Operation { kind, operands } in &self.operations {
-            let result = kind.evaluate(operands.map(|operand| value(operand, &results)));
+            let result = kind.evaluate(operands.map(|operand| operand.value(q, results)));
             results.push(result);
         }
-        let outputs = self.outputs.iter();
-        outputs.map(|&output| value(output, &results)).collect()
     }
 
     /// How many of its operations are square roots, sines, cosines and angles.

@@ -108,15 +108,15 @@ impl Plan {
         let all = all.chain(tree.joint_origins.iter().copied()).chain(points);
         Some(all.flat_map(|v| [v.x, v.y]).collect())
     }
+}
 
+impl<C: Constant + Scalar> Plan<C> {
     /// How many numbers [`Plan::dimensions`] gives.
     pub fn dimension_count(&self) -> usize {
         let vectors = self.frame_vectors.len() + self.loop_closures.len() + self.tree.joints.len();
         2 * (vectors + self.tree.joint_origins.len() + 2 * self.lowered.pairs.len())
     }
-}
 
-impl<C: Constant + Scalar> Plan<C> {
     /// Sets the dimensions of another mechanism of this structure, in the order of [`Plan::dimensions`]. The results of
     /// the compiler on poses of its own mechanism (range, limits, near branches, the assembly and stored poses) are not
     /// changed.
