@@ -89,7 +89,7 @@ const KEYS: [&str; 13] = [
     "confirmed",
 ];
 /// The keys of a sample besides points, such as `P_m`, and angles, such as `theta_guide_rad`.
-const SAMPLE_KEYS: [&str; 5] = ["phi_rad", "phi_deg", "m1_kg_m2", "half_dm1", "reactions"];
+const SAMPLE_KEYS: [&str; 4] = ["q", "m", "half_dm", "reactions"];
 
 impl Reference {
     /// Reads the file of a case; an absent one is an empty reference. A key that is not known
@@ -244,20 +244,15 @@ fn optional(object: &Value, key: &str) -> Result<Option<f64>, String> {
 
 fn sample(value: &Value, scene: &PlaneScene) -> Result<PublishedSample, String> {
     let fields = object(value, "it")?;
-    let q = match (optional(value, "phi_rad")?, optional(value, "phi_deg")?) {
-        (None, None) => return Err("neither `phi_rad` nor `phi_deg` is given".to_owned()),
-        (Some(_), Some(_)) => return Err("both `phi_rad` and `phi_deg` are given".to_owned()),
-        (Some(radians), None) => radians,
-        (None, Some(degrees)) => degrees.to_radians(),
-    };
+    let q = number_of(value, "q")?;
     let is_point = |key: &str| !SAMPLE_KEYS.contains(&key) && !is_angle(key, scene);
     let points = fields.iter().filter(|(key, _)| is_point(key));
     let points = points.map(|(key, at)| point(key, at, scene));
     let points = points.collect::<Result<_, String>>()?;
     let sample = PublishedSample {
         q,
-        m: optional(value, "m1_kg_m2")?,
-        half_dm: optional(value, "half_dm1")?,
+        m: optional(value, "m")?,
+        half_dm: optional(value, "half_dm")?,
         reactions: reactions(&value["reactions"], scene)?,
         points,
     };
