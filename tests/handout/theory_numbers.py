@@ -181,8 +181,8 @@ def of_hooke_joint():
 def of_reference():
     """The reference values of the case at φ = 1."""
     case = tomllib.loads((ROOT / "validation/single-dwell/case.toml").read_text(encoding="utf-8"))
-    sample = next(s for s in case["samples"] if D(s["phi_rad"]) == 1)
-    yield from flat(sample["m1_kg_m2"], sample["half_dm1"])
+    sample = next(s for s in case["samples"] if D(s["q"]) == 1)
+    yield from flat(sample["m"], sample["half_dm"])
     for reaction in sample["reactions"].values():
         yield from flat(reaction["a"], reaction["b"])
 

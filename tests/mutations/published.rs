@@ -23,9 +23,9 @@ pub(super) fn samples(folder: &Path, scene: &PlaneScene) -> Vec<PublishedSample>
             Some((index(name)?, number(&pair["a"])?, number(&pair["b"])?))
         });
         Some(PublishedSample {
-            q: number(&s["phi_rad"])?,
-            m: number(&s["m1_kg_m2"]),
-            half_dm: number(&s["half_dm1"]),
+            q: number(&s["q"])?,
+            m: number(&s["m"]),
+            half_dm: number(&s["half_dm"]),
             reactions: reactions.collect(),
             points: Vec::new(),
         })

@@ -41,8 +41,8 @@ def period_and_energy(case):
     motion = text["free_motion"]
     if "energy_J" in motion:
         return motion["period_s"], motion["energy_J"]
-    at_start = next(s for s in text["samples"] if float(s["phi_rad"]) == float(motion["phi0"]))
-    return motion["period_s"], str(0.5 * float(at_start["m1_kg_m2"]) * float(motion["phidot0"]) ** 2)
+    at_start = next(s for s in text["samples"] if float(s["q"]) == float(motion["phi0"]))
+    return motion["period_s"], str(0.5 * float(at_start["m"]) * float(motion["phidot0"]) ** 2)
 
 
 def main():

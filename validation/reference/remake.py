@@ -75,7 +75,8 @@ def coefficients(case, data, machine):
     """The samples that list m, half of its derivative, a and b of reactions, points and angles."""
     found = Comparison(case, "samples", data.get("kind"))
     for k, sample in enumerate(data["samples"]):
-        q = mpf(str(sample["phi_deg"])) * pi / 180 if "phi_deg" in sample else mpf(str(sample["phi_rad"]))
+        turned, _, parts = str(sample["q"]).partition("*pi/")
+        q = mpf(turned) * pi / mpf(parts) if parts else mpf(turned)
         run_a, run_b = machine.state([q], [mpf(0)], [mpf(1)]), machine.state([q], [mpf(1)], [mpf(0)])
         m, half = run_b.unit_runs()
         if abs(m - run_a.value("phi.actuator_force")) > 1e-40 or abs(half - run_b.value("phi.actuator_force")) > 1e-40:
@@ -86,8 +87,8 @@ def coefficients(case, data, machine):
                 for reaction, pair in printed.items():
                     for run, symbol in ((run_a, "a"), (run_b, "b")):
                         found.add(f"{symbol} of {reaction}{label}", pair[symbol], run.value(reaction), mpf(1))
-            elif name in ("m1_kg_m2", "half_dm1"):
-                found.add(name + label, printed, m if name == "m1_kg_m2" else half, mpf(1))
+            elif name in ("m", "half_dm"):
+                found.add(name + label, printed, m if name == "m" else half, mpf(1))
             elif name.startswith("theta_"):
                 found.add(name + label, printed, run_a.value(name[6:-4] + ".angle"), mpf(1))
             elif name.endswith("_m"):

@@ -16,12 +16,12 @@
 //! ```
 //!
 //! ```text
-//! cases ── checked ── case_report ─┬─ overview      extremes      work_precision
-//! spatial ─────────────────────────┘
+//! cases ── checked ─┬─ case_report ── overview      extremes      work_precision
+//! spatial ──────────┘
 //! ```
 //!
-//! `cases` reads the references of a case in the plane and evaluates its states, `checked` makes all findings, `case_report` writes
-//! them; `spatial` does the same for cases in space, and `overview` is the verdict over all of them.
+//! `cases` reads references and evaluates the states of a case in the plane, of which `checked` makes all findings; `spatial` makes those of
+//! cases in space. `case_report` writes both, and `overview` is the verdict over all of them.
 
 pub mod audit;
 mod case_report;
@@ -45,7 +45,7 @@ pub use checked::multibody::{FreeMotionRun, free_motion_run};
 pub use checked::states::{CheckedStates, check_case};
 pub use error::ValidationError;
 pub use overview::{ValidatedCase, ValidationRun, index};
-pub use spatial::{ClaimedAt, ReferencePoses, SpaceClaims, solved};
+pub use spatial::{ClaimedAt, SpaceClaims, SpaceReference, solved};
 pub use work_precision::work_precision;
 
 use case_report::validate::validate_in_plane;

@@ -13,7 +13,7 @@ use dwell_findings::Finding;
 use dwell_geometry::space::Vec3;
 use dwell_kinetostatics::space::Axes;
 use dwell_scene::SpaceScene;
-use dwell_validation::{ClaimedAt, ReferencePoses, SpaceClaims};
+use dwell_validation::{ClaimedAt, SpaceClaims, SpaceReference};
 use dwell_verify::{ClaimedState, SubjectError, check_branch, check_states};
 use std::collections::BTreeSet;
 
@@ -26,7 +26,7 @@ pub struct TestedSpace<'a> {
     scene: &'a SpaceScene,
     claims: SpaceClaims<'a>,
     /// Values of 25 digits, of a case that has them.
-    reference: Option<ReferencePoses>,
+    reference: Option<SpaceReference>,
     /// Of the states.
     positions: [Vec<f64>; 2],
     /// By component of all reactions in the axes of the ground: whether the loads determine it in all states.
@@ -67,10 +67,10 @@ pub(super) fn positions(claims: &SpaceClaims<'_>, scene: &SpaceScene) -> [Vec<f6
 }
 
 /// The reference of a case, if it has one.
-fn reference(scene: &SpaceScene) -> Option<ReferencePoses> {
+fn reference(scene: &SpaceScene) -> Option<SpaceReference> {
     let file = format!("validation/spatial/{}.json", scene.name);
     let path = repository_root().join(file);
-    let read = path.is_file().then(|| ReferencePoses::read(scene, &path));
+    let read = path.is_file().then(|| SpaceReference::read(&path));
     read.map(|read| read.unwrap_or_else(|e| panic!("{}: {e}", scene.name)))
 }
 

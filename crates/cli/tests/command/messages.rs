@@ -321,25 +321,19 @@ fn validations() {
     for (title, reference) in [
         ("no TOML", "source = \"me\"\nsamples = [ "),
         ("an unknown key", "sample = []"),
-        ("no position", "samples = [{ m1_kg_m2 = 1 }]"),
+        ("no position", "samples = [{ m = 1 }]"),
         (
             "an unknown reaction",
-            "samples = [{ phi_rad = 0, reactions = { \"E.x\" = { a = 1, b = 1 } } }]",
+            "samples = [{ q = 0, reactions = { \"E.x\" = { a = 1, b = 1 } } }]",
         ),
         (
             "half a reaction",
-            "samples = [{ phi_rad = 0, reactions = { \"A.x\" = { a = 1 } } }]",
+            "samples = [{ q = 0, reactions = { \"A.x\" = { a = 1 } } }]",
         ),
-        ("a number in words", "samples = [{ phi_rad = \"one\" }]"),
-        (
-            "a misspelt quantity",
-            "samples = [{ phi_rad = 1, m_kg_m2 = 1 }]",
-        ),
-        ("nothing to compare", "samples = [{ phi_rad = 1 }]"),
-        (
-            "an unknown point",
-            "samples = [{ phi_rad = 1, E_m = [0, 1] }]",
-        ),
+        ("a number in words", "samples = [{ q = \"one\" }]"),
+        ("a misspelt quantity", "samples = [{ q = 1, m_kg_m2 = 1 }]"),
+        ("nothing to compare", "samples = [{ q = 1 }]"),
+        ("an unknown point", "samples = [{ q = 1, E_m = [0, 1] }]"),
         (
             "a motion without its period",
             "free_motion = { period = 1 }",

@@ -1,30 +1,28 @@
-//! The report of a case as a document.
+//! What the report of a case in the plane says.
 
 use super::dwell::Dwell;
 use super::family::Family;
 use super::{dimensions, family_page};
 use crate::cases::reference::Reference;
 use crate::checked::analysis::CaseAnalysis;
-use crate::report_parts::{TextColumn, figure_blocks, result_line, table_of};
+use crate::report_parts::{TextColumn, table_of};
 use dwell_findings::Finding;
-use dwell_report::{Block, Document, Figure};
+use dwell_report::Block;
 use dwell_scene::PlaneScene;
 use dwell_study::CalibrationResult;
 use dwell_study::number_format::count;
-use dwell_study::output::provenance_line;
 use dwell_verify::{CheckedFreeMotion, ToleranceRun};
 
-/// The document with its figures.
-pub(super) fn document(
+/// What precedes the findings.
+pub(super) fn introduction(
     scene: &PlaneScene,
     reference: &Reference,
-    figures: &[Figure],
     analysis: &CaseAnalysis<'_>,
     dwell: Option<&Dwell>,
     family: Option<&Family>,
-) -> Document {
-    let mut blocks = vec![Block::Text(findings_sentence(reference, analysis))];
-    blocks.extend(scene.note.iter().cloned().map(Block::Words));
+) -> Vec<Block> {
+    let note = scene.note.iter().cloned().map(Block::Words);
+    let mut blocks: Vec<Block> = note.collect();
     blocks.push(Block::Text(reference.kinds.sentence()));
     if !reference.source.is_empty() {
         blocks.push(Block::Text(format!("Source: {}.", reference.source)));
@@ -38,12 +36,15 @@ pub(super) fn document(
         blocks.push(Block::Text(calibration_sentence(calibration)));
     }
     blocks.extend(dwell.map(|d| Block::Text(dwell_sentence(scene, d))));
-    let of_family = family.map(|f| family_page::blocks(scene, f));
-    blocks.extend(of_family.unwrap_or_default());
+    blocks.extend(family.map_or_else(Vec::new, |f| family_page::blocks(scene, f)));
     blocks.extend(dimensions::blocks(scene));
-    blocks.push(Block::Heading("Findings".to_owned()));
-    blocks.push(Block::Findings(analysis.findings.clone()));
-    blocks.push(tolerances_block(&analysis.findings));
+    blocks
+}
+
+/// What follows the findings.
+pub(super) fn remarks(analysis: &CaseAnalysis<'_>) -> Vec<Block> {
+    let mut blocks = vec![tolerances_block(&analysis.findings)];
+    let reduced = analysis.reduced.as_ref();
     if let Some(motion) = reduced.and_then(|r| r.motion.as_ref()) {
         blocks.push(Block::Heading("Errors of the integrators".to_owned()));
         blocks.push(Block::Text(
@@ -53,23 +54,17 @@ pub(super) fn document(
         ));
         blocks.push(tolerance_runs_block(motion));
     }
-    blocks.push(Block::Heading("Figures".to_owned()));
-    blocks.extend(figure_blocks(&scene.name, figures, true));
-    blocks.push(Block::Text(provenance_line(scene)));
-    Document {
-        title: scene.title.clone(),
-        blocks,
-    }
+    blocks
 }
 
-fn findings_sentence(reference: &Reference, analysis: &CaseAnalysis<'_>) -> String {
+/// What follows the number of findings that pass.
+pub(super) fn findings_sentence(reference: &Reference, analysis: &CaseAnalysis<'_>) -> String {
     let reference_states = match reference.state_requests().len() {
         0 => String::new(),
         n => format!(" and {n} of the reference"),
     };
     format!(
-        "{} States were checked at {} instants: {}{reference_states}.",
-        result_line(&analysis.findings),
+        " States were checked at {} instants: {}{reference_states}.",
         analysis.states.states.len(),
         analysis.states.motion_text,
     )

@@ -8,5 +8,6 @@ mod family_page;
 mod figures;
 mod numbers;
 mod page;
+pub(crate) mod report;
 pub(crate) mod snapshot;
 pub(crate) mod validate;

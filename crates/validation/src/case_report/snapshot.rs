@@ -1,26 +1,25 @@
-//! The snapshot of a case: values to the digits that every machine reproduces, and which findings pass.
+//! What the snapshot of a case is made of: values to the digits that every machine reproduces, and which findings pass.
 
 use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis};
 use crate::checked::multibody::FreeMotionRun;
 use crate::checked::states::CheckedStates;
 use crate::written::WRITTEN_PREFIX;
 use dwell_findings::Finding;
-use dwell_kinetostatics::ReducedModel;
+use dwell_kinetostatics::{Coefficients, ReducedModel as _};
 use dwell_scene::PlaneScene;
+use dwell_study::reduce::compute::ReducedScene;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 /// States whose values are in the snapshot.
 const PRINTED_STATES: usize = 8;
 
-/// The whole snapshot.
-pub(super) fn snapshot(scene: &PlaneScene, analysis: &CaseAnalysis<'_>) -> String {
-    let values = match &analysis.reduced {
+/// The values of a case in the plane.
+pub(super) fn values(scene: &PlaneScene, analysis: &CaseAnalysis<'_>) -> String {
+    match &analysis.reduced {
         Some(reduced) => reduced_values(reduced),
         None => state_values(scene, &analysis.states, analysis.free_motion.as_ref()),
-    };
-    let verdicts = verdicts(&analysis.findings);
-    format!("{}\n\n{values}\n{verdicts}", scene.title)
+    }
 }
 
 /// Which findings pass.
@@ -35,26 +34,40 @@ pub(crate) fn verdicts(findings: &[Finding]) -> String {
     all.collect()
 }
 
-/// The reduced model at eight positions, the period and the fitted value.
-fn reduced_values(reduced: &ReducedAnalysis<'_>) -> String {
-    let prepared = &reduced.prepared;
-    let mut text = String::new();
-    let (from, to) = prepared.model.range().limits().unwrap_or((0.0, TAU));
-    let mut at = prepared.model.model().coefficient_buffer();
-    let mut workspace = prepared.model.workspace();
-    for k in 0..8 {
-        // Inside the range: next to its ends a machine's own rounding would show.
-        let q = from + (to - from) * (f64::from(k) + 0.5) / 8.0;
-        let Ok(()) = prepared.model.coefficients(q, &mut workspace, &mut at) else {
-            continue;
-        };
-        let [q, m, half_dm] = [q, at.m, at.half_dm].map(to_seven_decimals);
-        text += &format!("q = {q}  m = {m}  half_dm = {half_dm}\n");
-        for ((name, _), (&a, &b)) in prepared.reaction_units().iter().zip(at.a.iter().zip(&at.b)) {
-            let [a, b] = [a, b].map(to_seven_decimals);
-            text += &format!("    {name}  a = {a}  b = {b}\n");
+/// Positions at which the reduced model is printed. They are inside the range: next to its ends a machine's own rounding would show.
+pub(crate) fn printed_positions([from, to]: [f64; 2]) -> [f64; 8] {
+    std::array::from_fn(|k| from + (to - from) * (k as f64 + 0.5) / 8.0)
+}
+
+/// The reduced model at positions, relative to the largest m, force and moment.
+pub(crate) fn reduced_text(
+    prepared: &dyn ReducedScene,
+    rows: impl IntoIterator<Item = (f64, Coefficients)>,
+    [m_max, forces, moments]: [f64; 3],
+) -> String {
+    let (names, mut text) = (prepared.reaction_units(), String::new());
+    // Writing to a string cannot fail.
+    for (q, at) in rows {
+        let q = rounded_to(q, 1.0);
+        let [m, half_dm] = [at.m, at.half_dm].map(|value| rounded_to(value, m_max));
+        let _ = writeln!(text, "q = {q}  m = {m}  half_dm = {half_dm}");
+        for ((name, unit), (&a, &b)) in names.iter().zip(at.a.iter().zip(&at.b)) {
+            let scale = if *unit == "N" { forces } else { moments };
+            let [a, b] = [a, b].map(|value| rounded_to(value, scale));
+            let _ = writeln!(text, "    {name}  a = {a}  b = {b}");
         }
     }
+    text
+}
+
+/// The reduced model to seven decimals, the period and the fitted value.
+fn reduced_values(reduced: &ReducedAnalysis<'_>) -> String {
+    let prepared = &reduced.prepared;
+    let limits = prepared.model.range().limits();
+    let positions = printed_positions(limits.map_or([0.0, TAU], <[f64; 2]>::from));
+    let row = |q| Some((q, prepared.coefficients(&[q]).ok()?.pop()?));
+    let rows = positions.into_iter().filter_map(row);
+    let mut text = reduced_text(prepared, rows, [1.0; 3]);
     if let Some(motion) = &reduced.motion {
         let (period, energy) = (motion.orbit.period, motion.orbit.energy);
         text += &format!("\nperiod {period:.10} s, energy {energy:.9} J\n");
@@ -133,11 +146,6 @@ fn end_of_motion(scene: &PlaneScene, run: &FreeMotionRun) -> String {
     text
 }
 
-/// Seven decimals, without a sign on zero.
-fn to_seven_decimals(value: f64) -> String {
-    without_sign_on_zero(format!("{value:.7}"))
-}
-
 /// To seven digits after the first digit of `max_abs`, without a sign on zero.
 pub(crate) fn rounded_to(value: f64, max_abs: f64) -> String {
     let is_scale = max_abs > 0.0 && max_abs.is_finite();
@@ -147,10 +155,7 @@ pub(crate) fn rounded_to(value: f64, max_abs: f64) -> String {
         0.0
     };
     let decimals = (7.0 - magnitude).clamp(0.0, 30.0) as usize;
-    without_sign_on_zero(format!("{value:.decimals$}"))
-}
-
-fn without_sign_on_zero(text: String) -> String {
+    let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
         Some(digits) if digits.trim_matches(['0', '.']).is_empty() => digits.to_owned(),
         _ => text,

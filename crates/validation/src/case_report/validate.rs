@@ -1,20 +1,20 @@
 //! `dwell validate`: checks a case and makes its report.
 
-use super::document::document;
+use super::document::{findings_sentence, introduction, remarks};
 use super::dwell::Dwell;
 use super::family::Family;
 use super::figures;
 use super::numbers::{numbers, tables};
 use super::page;
-use super::snapshot::snapshot;
+use super::report::CaseReport;
+use super::snapshot::values;
 use crate::cases::reference::{Reference, SourceKinds};
 use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis, analyse};
 use crate::error::ValidationError;
 use crate::report_parts::findings_text;
-use dwell_findings::{Check, Finding, Record};
+use dwell_findings::{Check, Finding};
 use dwell_report::{Figure, Files, TableExport as _};
-use dwell_scene::{PlaneScene, SceneFile};
-use dwell_study::output::Picture;
+use dwell_scene::PlaneScene;
 use dwell_study::{Outcome, Progress, Step, reduce};
 use std::path::Path;
 
@@ -62,48 +62,34 @@ pub(crate) fn validate_in_plane(
     for (file, table) in analysis.reduced.iter().flat_map(tables) {
         files.add(format!("{name}/{file}.csv"), table.csv()?);
     }
-    let snapshot = snapshot(scene, &analysis);
-    let (dwell, family) = (dwell.as_ref(), family.as_ref());
-    let document = document(scene, &reference, &figures, &analysis, dwell, family);
-    files.add(format!("{name}.txt"), snapshot.clone());
-    files.add(format!("{name}.json"), numbers(scene, &analysis)?);
-    files.add(format!("{name}.md"), document.markdown());
     let tables: Vec<String> = files
         .paths()
-        .filter(|path| path.extension().is_some_and(|e| e == "csv"))
         .map(|path| path.display().to_string())
         .collect();
     let html = page::page(scene, &analysis, &figures, &tables)?;
+    let (dwell, family) = (dwell.as_ref(), family.as_ref());
+    let report = CaseReport {
+        findings: analysis.findings.clone(),
+        about: findings_sentence(&reference, &analysis),
+        introduction: introduction(scene, &reference, &analysis, dwell, family),
+        remarks: remarks(&analysis),
+        values: values(scene, &analysis),
+        figures,
+    };
+    files.add(format!("{name}.json"), numbers(scene, &analysis)?);
+    files.add(format!("{name}.md"), report.document(scene).markdown());
     files.add(format!("{name}.html"), html);
     done("report");
-    let mut record = Record::default();
+    let mut validation = report.validation(scene, files);
+    validation.source_kinds = reference.kinds;
+    validation.outcome.summary = summary(scene, &analysis);
     let motion = analysis.reduced.as_ref().and_then(|r| r.motion.as_ref());
     if let Some(motion) = motion {
+        let record = &mut validation.outcome.record;
         record.add("period", "s", motion.orbit.period);
     }
-    Ok(Validation {
-        source_kinds: reference.kinds.clone(),
-        outcome: Outcome {
-            summary: summary(scene, &analysis),
-            files,
-            record,
-            findings: analysis.findings,
-            pictures: pictures(scene, figures),
-            ..Outcome::default()
-        },
-        snapshot,
-        not_applicable: analysis.not_applicable,
-        audited: Vec::new(),
-    })
-}
-
-/// The figures of a case, to be drawn.
-pub(crate) fn pictures(scene: &SceneFile, figures: Vec<Figure>) -> Vec<Picture> {
-    let picture = |figure: Figure| {
-        let path = format!("{}/{}.png", scene.name, figure.name);
-        Picture::figure(scene, path, true, figure)
-    };
-    figures.into_iter().map(picture).collect()
+    validation.not_applicable = analysis.not_applicable;
+    Ok(validation)
 }
 
 /// How many findings pass, those that fail, and the period.

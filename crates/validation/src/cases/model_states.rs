@@ -3,12 +3,12 @@
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{ActuatorId, BodyId, Pose, Vec2};
 use dwell_kinetostatics::{
-    EvaluatedState, InverseDynamics, KinematicState, KinetostaticsError, Model, Workspace,
+    EvaluatedState, InverseDynamics, KinematicState, MachineModel, Model, Workspace,
 };
 use dwell_numerics::Scalar;
 use dwell_scene::{PlaneScene, SceneLocation};
 use dwell_study::StudyError;
-use dwell_study::explain::explain_position;
+use dwell_study::explain::{explain_motion, explain_position};
 use dwell_study::models::loaded_model;
 use dwell_verify::{
     ClaimedState, Pose as BodyPose, Twist, condition_number, load_wrenches, magnitude_by_reactions,
@@ -63,7 +63,7 @@ impl ReachedPose {
         let state = kinematic_state(model, &self.pose, q_dot, &mut self.workspace);
         let loaded = state.apply_loads(*t);
         let evaluated = loaded.and_then(|state| state.evaluate(q_ddot, &mut self.result));
-        evaluated.map_err(|e| explain(scene, model, &e))
+        evaluated.map_err(|e| explain_motion(scene, model.plan(), &e.into()))
     }
 }
 
@@ -170,19 +170,14 @@ impl<'a> ModelStates<'a> {
 
     /// The generalised inertias at the last state, by unit accelerations, row by row.
     pub(crate) fn mass_matrix(&mut self) -> Vec<f64> {
-        let n = self.coordinate_steps.len();
-        let mut run = self.model.result_buffer();
+        let at_rest = vec![0.0; self.coordinate_steps.len()];
         let ReachedPose {
             pose, workspace, ..
         } = &mut self.reached;
-        let mut state = kinematic_state(&self.model, pose, &vec![0.0; n], workspace);
-        let column = |i: usize| {
-            state.mass_matrix_column(i, &mut run);
-            run.tau.clone()
-        };
-        let columns: Vec<Vec<f64>> = (0..n).map(column).collect();
-        let at = |k: usize| columns[k % n][k / n];
-        (0..n * n).map(at).collect()
+        mass_matrix(
+            &self.model,
+            &mut kinematic_state(&self.model, pose, &at_rest, workspace),
+        )
     }
 
     /// Steps to a state and evaluates it.
@@ -275,6 +270,22 @@ impl<'a> ModelStates<'a> {
     }
 }
 
+/// The generalised inertias of a state by unit accelerations, row by row.
+pub(crate) fn mass_matrix<T: Scalar, M: MachineModel>(
+    model: &M,
+    state: &mut KinematicState<'_, T, M>,
+) -> Vec<f64> {
+    let (n, mut run) = (model.actuators(), model.result_buffer());
+    let mut inertias = vec![0.0; n * n];
+    for j in 0..n {
+        state.mass_matrix_column(j, &mut run);
+        for (i, tau) in run.tau.iter().enumerate() {
+            inertias[i * n + j] = tau.value();
+        }
+    }
+    inertias
+}
+
 /// What is claimed of the motion of all bodies in the plane, whose frames are these.
 pub fn claimed_motion<T: Scalar>(frames: &[[f64; 3]], states: &BodyStates<T>) -> ClaimedState {
     let twist = |linear: Vec2<T>, angular: T| {
@@ -292,23 +303,4 @@ pub fn claimed_motion<T: Scalar>(frames: &[[f64; 3]], states: &BodyStates<T>) ->
         accelerations,
         ..ClaimedState::default()
     }
-}
-
-/// The error with the names of the scene.
-fn explain(scene: &PlaneScene, model: &Model, error: &KinetostaticsError) -> StudyError {
-    if let KinetostaticsError::Position(error) = error {
-        return explain_position(scene, model.plan(), error);
-    }
-    let load = error.load().and_then(|l| Some((l, scene.loads.get(l)?)));
-    let (location, name) = load.map_or((SceneLocation::Whole, ""), |(l, load)| {
-        (SceneLocation::Load(l), &load.name)
-    });
-    let message = match error {
-        KinetostaticsError::NoDirection { .. } => {
-            format!("`{name}` has no direction: its two points coincide")
-        }
-        _ => format!("the magnitude of `{name}` is not a finite number"),
-    };
-    let label = (location, "in a state that is checked".to_owned());
-    scene.error(message, None, &[label]).into()
 }

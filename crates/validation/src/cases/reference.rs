@@ -1,5 +1,6 @@
 //! The reference of a case: `case.toml` beside its scene, with reference numbers, their source and tolerances.
 
+mod file;
 mod kinds;
 mod states;
 mod tolerances;
@@ -9,6 +10,7 @@ use dwell_findings::Finding;
 use dwell_geometry::{BodyId, Vec2};
 use dwell_scene::PlaneScene;
 use dwell_verify::checks::{PublishedPoint, PublishedSample};
+pub(crate) use file::{entries, number, numbers, read_file};
 pub(crate) use kinds::{SourceKind, SourceKinds};
 use serde_json::{Map, Value};
 use states::{ReferenceStates, read_states};
@@ -87,7 +89,7 @@ const KEYS: [&str; 13] = [
     "confirmed",
 ];
 /// The keys of a sample besides points, such as `P_m`, and angles, such as `theta_guide_rad`.
-const SAMPLE_KEYS: [&str; 5] = ["phi_rad", "phi_deg", "m1_kg_m2", "half_dm1", "reactions"];
+const SAMPLE_KEYS: [&str; 4] = ["q", "m", "half_dm", "reactions"];
 
 impl Reference {
     /// Reads the file of a case; an absent one is an empty reference. A key that is not known
@@ -97,19 +99,11 @@ impl Reference {
         if !path.exists() {
             return Ok(Self::default());
         }
+        let value: Value = read_file(&path)?;
         let wrong = |reason: String| ValidationError::Reference {
             path: path.display().to_string(),
             reason,
         };
-        let bytes = std::fs::read(&path).map_err(|e| wrong(format!("cannot be read: {e}")))?;
-        let text = String::from_utf8(bytes).map_err(|_| wrong("is not UTF-8 text".to_owned()))?;
-        let text = text.trim_start_matches('\u{feff}');
-        let value: Value = toml::from_str(text).map_err(|e| {
-            let before = e.span().and_then(|span| text.get(..span.start));
-            let line = before.map_or(1, |before| before.lines().count().max(1));
-            let message = e.message().trim_end();
-            wrong(format!("line {line}: not valid TOML: {message}"))
-        })?;
         let read = Self::from_value(&value, scene).map_err(wrong)?;
         Ok(Self {
             path: path.display().to_string(),
@@ -180,9 +174,9 @@ fn free_motion(value: &Value) -> Result<(Option<f64>, Vec<PublishedState>), Stri
     }
     let state = |state: &Value| {
         Ok(PublishedState {
-            t: number(state, "t")?,
+            t: number_of(state, "t")?,
             values: named_values(&state["values"])?,
-            tolerance: number(value, "relative")?,
+            tolerance: number_of(value, "relative")?,
             reason: value["reason"].as_str().unwrap_or("as given").to_owned(),
         })
     };
@@ -191,7 +185,7 @@ fn free_motion(value: &Value) -> Result<(Option<f64>, Vec<PublishedState>), Stri
 
 /// The values of quantities by name.
 fn named_values(value: &Value) -> Result<Vec<(String, f64)>, String> {
-    let read = |(name, value): (&String, &Value)| match parse(value) {
+    let read = |(name, value): (&String, &Value)| match number(value) {
         Some(number) => Ok((name.clone(), number)),
         None => Err(format!("`{name}` is not a number: {value}")),
     };
@@ -234,24 +228,15 @@ fn object<'a>(value: &'a Value, what: &str) -> Result<&'a Map<String, Value>, St
     object.ok_or_else(|| format!("{what} is not an object {{ … }}"))
 }
 
-/// A number, or the text of one (fifty digits do not fit a JSON number).
-fn parse(value: &Value) -> Option<f64> {
-    let parsed = match value {
-        Value::String(text) => text.trim().parse().ok(),
-        other => other.as_f64(),
-    };
-    parsed.filter(|v: &f64| v.is_finite())
-}
-
 /// The number of a key.
-fn number(object: &Value, key: &str) -> Result<f64, String> {
+fn number_of(object: &Value, key: &str) -> Result<f64, String> {
     optional(object, key)?.ok_or_else(|| format!("`{key}` is missing"))
 }
 
 /// The number of a key that may be absent.
 fn optional(object: &Value, key: &str) -> Result<Option<f64>, String> {
     let value = &object[key];
-    match parse(value) {
+    match number(value) {
         None if !value.is_null() => Err(format!("`{key}` is not a number: {value}")),
         number => Ok(number),
     }
@@ -259,20 +244,15 @@ fn optional(object: &Value, key: &str) -> Result<Option<f64>, String> {
 
 fn sample(value: &Value, scene: &PlaneScene) -> Result<PublishedSample, String> {
     let fields = object(value, "it")?;
-    let q = match (optional(value, "phi_rad")?, optional(value, "phi_deg")?) {
-        (None, None) => return Err("neither `phi_rad` nor `phi_deg` is given".to_owned()),
-        (Some(_), Some(_)) => return Err("both `phi_rad` and `phi_deg` are given".to_owned()),
-        (Some(radians), None) => radians,
-        (None, Some(degrees)) => degrees.to_radians(),
-    };
+    let q = number_of(value, "q")?;
     let is_point = |key: &str| !SAMPLE_KEYS.contains(&key) && !is_angle(key, scene);
     let points = fields.iter().filter(|(key, _)| is_point(key));
     let points = points.map(|(key, at)| point(key, at, scene));
     let points = points.collect::<Result<_, String>>()?;
     let sample = PublishedSample {
         q,
-        m: optional(value, "m1_kg_m2")?,
-        half_dm: optional(value, "half_dm1")?,
+        m: optional(value, "m")?,
+        half_dm: optional(value, "half_dm")?,
         reactions: reactions(&value["reactions"], scene)?,
         points,
     };
@@ -300,7 +280,7 @@ fn reactions(value: &Value, scene: &PlaneScene) -> Result<Vec<(usize, f64, f64)>
         let k = names.iter().position(|n| n == name).ok_or_else(none)?;
         let wrong = |e: String| format!("reaction `{name}`: {e}");
         object(pair, "it").map_err(wrong)?;
-        let (a, b) = (number(pair, "a"), number(pair, "b"));
+        let (a, b) = (number_of(pair, "a"), number_of(pair, "b"));
         Ok((k, a.map_err(wrong)?, b.map_err(wrong)?))
     };
     let fields = object(value, "`reactions`")?;
@@ -332,8 +312,8 @@ fn known_samples(
                     angle: sample.q,
                     name: name.to_owned(),
                     is_moment: pair["unit"] == "N m",
-                    a: number(pair, "a")?,
-                    b: number(pair, "b")?,
+                    a: number_of(pair, "a")?,
+                    b: number_of(pair, "b")?,
                 });
             }
         }
@@ -362,7 +342,7 @@ fn point(key: &str, at: &Value, scene: &PlaneScene) -> Result<PublishedPoint, St
         Some((BodyId(body), *local))
     });
     let (body, local) = found.ok_or_else(|| format!("the scene has no point `{name}`"))?;
-    let coordinates = at.as_array().into_iter().flatten().map(parse);
+    let coordinates = at.as_array().into_iter().flatten().map(number);
     match coordinates.collect::<Vec<_>>()[..] {
         [Some(x), Some(y)] => Ok(PublishedPoint {
             body,

@@ -1,6 +1,5 @@
 //! The exact model with every reaction, as the subject of the checks.
 
-use dwell_geometry::PositionError;
 use dwell_kinetostatics::{ExactModel, ReducedModel};
 use dwell_scene::PlaneScene;
 use dwell_study::StudyError;
@@ -30,18 +29,25 @@ impl PlanSubject {
     }
 }
 
-fn subject_error(q: f64) -> impl Fn(PositionError) -> SubjectError {
-    move |e| SubjectError {
-        q,
-        message: e.to_string(),
-    }
+/// Why there is no claim.
+pub(crate) type Refusal = Box<dyn std::error::Error>;
+
+/// What is claimed at coordinates, or why there is nothing.
+pub(crate) fn claimed_at<C>(
+    q: &[f64],
+    claim: impl FnOnce() -> Result<C, Refusal>,
+) -> Result<C, SubjectError> {
+    claim().map_err(|why| SubjectError {
+        q: q.first().copied().unwrap_or(0.0),
+        message: why.to_string(),
+    })
 }
 
 impl Subject for PlanSubject {
     fn poses(&self, q: f64) -> Result<Vec<Pose>, SubjectError> {
         let model = self.exact.model();
         let (plan, mut pose) = (model.plan(), model.plan().pose());
-        plan.positions(&[q], &mut pose).map_err(subject_error(q))?;
+        claimed_at(&[q], || Ok(plan.positions(&[q], &mut pose)?))?;
         Ok(Pose::all_in_plane(
             &plan.body_frames(model.mechanism(), &pose),
         ))
@@ -50,8 +56,9 @@ impl Subject for PlanSubject {
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
         let mut at = self.exact.model().coefficient_buffer();
         let mut workspace = self.exact.workspace();
-        let evaluated = self.exact.coefficients(q, &mut workspace, &mut at);
-        evaluated.map_err(subject_error(q))?;
+        claimed_at(&[q], || {
+            Ok(self.exact.coefficients(q, &mut workspace, &mut at)?)
+        })?;
         Ok(at)
     }
 
@@ -63,8 +70,10 @@ impl Subject for PlanSubject {
     ) -> Result<InverseDynamics, SubjectError> {
         let model = self.exact.model();
         let (mut workspace, mut out) = (model.workspace(), model.result_buffer());
-        let done = model.inverse_dynamics(&[q], &[q_dot], &[q_ddot], &mut workspace, &mut out);
-        done.map_err(subject_error(q))?;
+        claimed_at(&[q], || {
+            let (memory, out) = (&mut workspace, &mut out);
+            Ok(model.inverse_dynamics(&[q], &[q_dot], &[q_ddot], memory, out)?)
+        })?;
         Ok(InverseDynamics {
             tau: out.tau[0],
             reactions: out.reactions,

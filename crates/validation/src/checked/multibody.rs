@@ -4,6 +4,8 @@ use crate::cases::reference::{PublishedState, Reference};
 use crate::checked::free_motion_setup::FreeMotionSetup;
 use crate::checked::states::inertias;
 use crate::error::ValidationError;
+use crate::written::poses::difference::Differences;
+use crate::written::poses::rows::largest;
 use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Method, OdeState, Options, Orbit};
 use dwell_findings::{Check, Finding};
 use dwell_geometry::body_states::CoordinateFunction;
@@ -13,7 +15,7 @@ use dwell_scene::{MotionDuration, PlaneScene};
 use dwell_study::StudyError;
 use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _, SegmentedMotion};
 use dwell_study::models::with_drive_loads;
-use dwell_verify::{MotionSample, MultibodyError, MultibodySystem, check_motion};
+use dwell_verify::{FindingSpec, MotionSample, MultibodyError, MultibodySystem, check_motion};
 use std::f64::consts::TAU;
 
 /// Integrator of the motion, and its relative and absolute tolerance.
@@ -233,20 +235,24 @@ pub(crate) fn check_free_motion(
 
 impl FreeMotionRun {
     /// The values of the last step by name, each with its unit.
-    fn final_values(&self, scene: &PlaneScene) -> Vec<(String, String, f64)> {
+    fn final_values(&self, scene: &PlaneScene) -> Vec<(String, &'static str, f64)> {
         let (Some(step), Some(coordinates)) = (self.steps.last(), self.coordinates.last()) else {
             return Vec::new();
         };
         let actuators = scene.mechanism.actuators.iter().zip(coordinates);
         let values = actuators.flat_map(|(actuator, [q, speed])| {
-            let (name, unit) = (&actuator.name, actuator.coordinate().unit());
-            let velocity = (format!("{name}.velocity"), format!("{unit}/s"), *speed);
-            [(name.clone(), unit.to_owned(), *q), velocity]
+            let units = match actuator.coordinate().is_angle() {
+                true => ["rad", "rad/s"],
+                false => ["m", "m/s"],
+            };
+            let name = &actuator.name;
+            let velocity = (format!("{name}.velocity"), units[1], *speed);
+            [(name.clone(), units[0], *q), velocity]
         });
         let reactions = scene.mechanism.reactions();
         let named = reactions.iter().zip(&step.reactions).map(|(&r, value)| {
             let name = scene.mechanism.reaction_name(r);
-            (name, r.component.unit().to_owned(), *value)
+            (name, r.component.unit(), *value)
         });
         values.chain(named).collect()
     }
@@ -267,33 +273,31 @@ impl FreeMotionRun {
                     reason: format!("`{name}` is no actuator, velocity or reaction"),
                 });
             };
-            found.push((name, unit, *value, *expected));
+            found.push((name, *unit, *value, *expected));
         }
-        let scale = |unit: &str| {
-            let same = found.iter().filter(|(_, of, ..)| *of == unit);
-            same.fold(0.0_f64, |max, (.., expected)| max.max(expected.abs()))
-        };
-        let (mut worst, mut worst_unit, mut worst_at) = ([0.0; 2], "", "none");
+        let mut worst = Differences::default();
         for (name, unit, value, expected) in &found {
-            let absolute = (value - expected).abs();
-            let relative = absolute / scale(unit);
-            // What is not a number is the worst there is.
-            if relative >= worst[1] || relative.is_nan() {
-                (worst, worst_unit, worst_at) = ([absolute, relative], unit, name);
-            }
+            let same = found.iter().filter(|(_, of, ..)| of == unit);
+            let scale = largest(same.map(|(.., expected)| expected));
+            worst.compare([*value, *expected, scale], unit, || name.as_str());
         }
-        let complete = self.stop_reason.is_none() && !found.is_empty();
-        let tolerance = published.tolerance;
+        if found.is_empty() {
+            worst.fail("there are no values");
+        }
+        let spec = FindingSpec {
+            key: "published-motion",
+            check: Check::ReferenceValues,
+            comparison: &format!("the state that is reached with its published values ({source})"),
+            scale: "the largest published value of the unit",
+            tolerance: published.tolerance,
+            tolerance_reason: &published.reason,
+        };
+        let domain = format!("{} values at t = {} s", found.len(), published.t);
+        let finding = worst.finding(&spec, &domain).unwrap_or_default();
         Ok(Finding {
-            comparison: format!("the state that is reached with its published values ({source})"),
-            domain: format!("{} values at t = {} s", found.len(), published.t),
-            unit: worst_unit.to_owned(),
-            scale: "the largest published value of the unit".into(),
-            worst_at: worst_at.to_owned(),
-            tolerance_reason: published.reason.clone(),
             integrated: true,
-            pass: complete && worst[1] <= tolerance,
-            ..Finding::new("published-motion", Check::ReferenceValues, worst, tolerance)
+            pass: finding.pass && self.stop_reason.is_none(),
+            ..finding
         })
     }
 

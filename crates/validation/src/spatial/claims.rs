@@ -1,13 +1,15 @@
 //! What a model in space says of itself, evaluated in any kind of number, for the checks of states.
 
+use crate::cases::model_states::mass_matrix;
+use crate::cases::subject::{Refusal, claimed_at};
 use dwell_geometry::space::{
     BodyMotion, Coordinate, Frame, Joint, JointKind, Placement, Pose, Rotation, Vec3, vec3,
 };
 use dwell_geometry::{JointId, PositionError};
 use dwell_kinetostatics::space::{Axes, Component, Load, LoadKind, Model, Reaction};
 use dwell_kinetostatics::{
-    Friction, FrictionContact, KinematicState, KinetostaticsError, MachineModel as _, Magnitude,
-    Strength,
+    Friction, FrictionContact, InverseDynamics, KinematicState, KinetostaticsError,
+    MachineModel as _, Magnitude, Strength,
 };
 use dwell_numerics::Scalar;
 use dwell_scene::SpaceScene;
@@ -37,17 +39,14 @@ impl<'a> SpaceClaims<'a> {
     pub fn new(scene: &'a SpaceScene) -> Result<Self, StudyError> {
         let all = all_reactions(scene, &[Axes::Ground, Axes::Joint]);
         let model = model_with_loads(scene, &all)?;
-        let mut pose = model.plan().pose::<f64>();
-        // The mechanism was assembled there.
-        let at_start = model.plan().positions(&scene.assembly.q, &mut pose);
         let mut claims = Self {
             scene,
             model,
             start: Vec::new(),
         };
-        if at_start.is_ok() {
-            claims.start = BodyPose::all_in_space(&claims.all_placements(&pose));
-        }
+        // The mechanism was assembled there.
+        let start = claims.placements::<f64>(&scene.assembly.q);
+        claims.start = BodyPose::all_in_space(&start.unwrap_or_default());
         Ok(claims)
     }
 
@@ -172,6 +171,7 @@ impl<'a> SpaceClaims<'a> {
         plan.positions(&q, &mut pose)?;
         plan.velocities(&q_dot, &mut pose);
         plan.accelerations(&q_ddot, &mut pose);
+        let placements = self.all_placements(&pose);
         let motion = |b: usize| {
             let motion = plan.body_motion(&pose, b);
             BodyMotion {
@@ -181,21 +181,15 @@ impl<'a> SpaceClaims<'a> {
                 angular_acceleration: plain(motion.angular_acceleration),
             }
         };
-        let placements = self.all_placements(&pose);
         let motions: Vec<BodyMotion> = (0..placements.len()).map(motion).collect();
-        let velocity = |m: &BodyMotion| Twist {
-            linear: m.velocity,
-            angular: m.angular_velocity,
+        let twists = |m: &BodyMotion| {
+            let twist = |linear, angular| Twist { linear, angular };
+            let velocity = twist(m.velocity, m.angular_velocity);
+            (velocity, twist(m.acceleration, m.angular_acceleration))
         };
-        let acceleration = |m: &BodyMotion| Twist {
-            linear: m.acceleration,
-            angular: m.angular_acceleration,
-        };
-        let bodies = (
-            &self.scene.mechanism,
-            &self.scene.masses[..],
-            &placements[..],
-        );
+        let (velocities, accelerations) = motions.iter().map(twists).unzip();
+        let (mechanism, masses) = (&self.scene.mechanism, &self.scene.masses);
+        let bodies = (mechanism, &masses[..], &placements[..]);
         let [q, q_dot, q_ddot] = rates.map(<[f64]>::to_vec);
         let coordinates: Vec<String> = q.iter().map(|q| format!("{q:.4}")).collect();
         Ok(ClaimedState {
@@ -206,8 +200,8 @@ impl<'a> SpaceClaims<'a> {
             load_wrenches: load_wrenches(bodies, &motions, loads),
             load_power: Some(0.0),
             poses: BodyPose::all_in_space(&placements),
-            velocities: motions.iter().map(velocity).collect(),
-            accelerations: motions.iter().map(acceleration).collect(),
+            velocities,
+            accelerations,
             ..ClaimedState::default()
         })
     }
@@ -247,11 +241,7 @@ impl<'a> SpaceClaims<'a> {
     }
 
     /// What a unit of a load is at rest, of a damper of its resistance.
-    fn unit_parts(
-        &self,
-        q: &[f64],
-        load: usize,
-    ) -> Result<Vec<(LoadKind, f64)>, Box<dyn std::error::Error>> {
+    fn unit_parts(&self, q: &[f64], load: usize) -> Result<Vec<(LoadKind, f64)>, Refusal> {
         let Some((friction, radius)) = self.surface_friction(&self.model.loads()[load]) else {
             return Ok(self.unit_loads().get(load).copied().into_iter().collect());
         };
@@ -273,7 +263,7 @@ impl<'a> SpaceClaims<'a> {
         &self,
         rates: [&[f64]; 3],
         magnitudes: &[f64],
-    ) -> Result<Vec<(LoadKind, f64)>, Box<dyn std::error::Error>> {
+    ) -> Result<Vec<(LoadKind, f64)>, Refusal> {
         let [q, q_dot, q_ddot] = rates;
         let (mut loads, mut frictions) = (Vec::new(), Vec::new());
         for (load, magnitude) in self.model.loads().iter().zip(magnitudes) {
@@ -304,22 +294,19 @@ impl<'a> SpaceClaims<'a> {
         axes: Axes,
     ) -> Result<ClaimedState, SubjectError> {
         let [q, q_dot, _] = rates;
-        let explain = |e: &dyn std::fmt::Display| refused(q, e);
-        let magnitudes = self.magnitudes(t, [q, q_dot]).map_err(|e| explain(&e))?;
-        let loads = (self.loads(rates, &magnitudes)).map_err(|e| explain(&e))?;
-        let mut claimed = self.motion::<T>(rates, &loads).map_err(|e| explain(&e))?;
-        let (mut workspace, mut result) = (self.model.workspace(), self.model.result_buffer());
-        let of_numbers = rates.map(lifted::<T>);
-        let at = of_numbers.each_ref().map(Vec::as_slice);
-        let state = self.model.kinetostatics(t, at, &mut workspace, &mut result);
-        let state = state.map_err(|e| explain(&e))?;
-        let powers = (0..magnitudes.len()).map(|load| state.load_power(load).value());
-        claimed.load_power = Some(powers.sum());
-        let found = state.inverse_dynamics();
-        claimed.tau = found.tau.iter().map(|v| v.value()).collect();
-        claimed.reactions = self.in_ground(&found.reactions, &claimed.poses, axes);
-        claimed.inertias = self.mass_matrix(&mut state.into_kinematic_state(), q.len());
-        Ok(claimed)
+        claimed_at(q, || {
+            let magnitudes = self.magnitudes(t, [q, q_dot])?;
+            let mut claimed = self.motion::<T>(rates, &self.loads(rates, &magnitudes)?)?;
+            let (mut workspace, mut result) = (self.model.workspace(), self.model.result_buffer());
+            let of_numbers = rates.map(lifted::<T>);
+            let at = of_numbers.each_ref().map(Vec::as_slice);
+            let state = (self.model).kinetostatics(t, at, &mut workspace, &mut result)?;
+            let powers = (0..magnitudes.len()).map(|load| state.load_power(load).value());
+            claimed.load_power = Some(powers.sum());
+            self.set_forces(&mut claimed, state.inverse_dynamics(), axes);
+            claimed.inertias = mass_matrix(&self.model, &mut state.into_kinematic_state());
+            Ok(claimed)
+        })
     }
 
     /// Of one actuator: the two unit passes of the reduced model as states, that of unit speed first.
@@ -331,44 +318,21 @@ impl<'a> SpaceClaims<'a> {
         q: f64,
         axes: Axes,
     ) -> Result<[ClaimedState; 2], SubjectError> {
-        let explain = |e: &dyn std::fmt::Display| refused(&[q], e);
-        let mut moving = self
-            .motion::<T>([&[q], &[1.0], &[0.0]], &[])
-            .map_err(|e| explain(&e))?;
-        let mut workspace = self.model.workspace();
-        let mut found = self.model.coefficient_buffer::<T>();
-        let done = self
-            .model
-            .reduce(T::from_f64(q), &mut workspace, &mut found);
-        done.map_err(|e| explain(&e))?;
-        moving.inertias = vec![found.m.value()];
-        let mut from_rest = moving.clone();
-        (from_rest.q_dot, from_rest.q_ddot) = (vec![0.0], vec![1.0]);
-        let at_rest = vec![Twist::default(); moving.velocities.len()];
-        from_rest.accelerations = std::mem::replace(&mut from_rest.velocities, at_rest);
-        moving.tau = vec![found.half_dm.value()];
-        from_rest.tau = vec![found.m.value()];
-        moving.reactions = self.in_ground(&found.b, &moving.poses, axes);
-        from_rest.reactions = self.in_ground(&found.a, &moving.poses, axes);
-        Ok([moving, from_rest])
-    }
-
-    /// The state at rest, under loads with their magnitudes, without reactions.
-    fn state_at_rest<T: Scalar>(
-        &self,
-        q: &[f64],
-        loads: &[(LoadKind, f64)],
-    ) -> Result<ClaimedState, SubjectError> {
-        let zero = vec![0.0; q.len()];
-        let claimed = self.motion::<T>([q, &zero, &zero], loads);
-        let (mut workspace, zero) = (self.model.workspace(), lifted::<T>(&zero));
-        let state = self
-            .model
-            .kinematic_state(&lifted::<T>(q), &zero, &mut workspace);
-        let mut state = state.map_err(|e| refused(q, &e))?;
-        Ok(ClaimedState {
-            inertias: self.mass_matrix(&mut state, q.len()),
-            ..claimed.map_err(|e| refused(q, &e))?
+        claimed_at(&[q], || {
+            let mut moving = self.motion::<T>([&[q], &[1.0], &[0.0]], &[])?;
+            let mut found = self.model.coefficient_buffer::<T>();
+            let mut workspace = self.model.workspace();
+            (self.model).reduce(T::from_f64(q), &mut workspace, &mut found)?;
+            moving.inertias = vec![found.m.value()];
+            let mut from_rest = moving.clone();
+            (from_rest.q_dot, from_rest.q_ddot) = (vec![0.0], vec![1.0]);
+            let at_rest = vec![Twist::default(); moving.velocities.len()];
+            from_rest.accelerations = std::mem::replace(&mut from_rest.velocities, at_rest);
+            moving.tau = vec![found.half_dm.value()];
+            from_rest.tau = vec![found.m.value()];
+            moving.reactions = self.in_ground(&found.b, &moving.poses, axes);
+            from_rest.reactions = self.in_ground(&found.a, &moving.poses, axes);
+            Ok([moving, from_rest])
         })
     }
 
@@ -377,7 +341,7 @@ impl<'a> SpaceClaims<'a> {
     /// # Errors
     /// [`SubjectError`] where there is no pose.
     pub fn at_rest<T: Scalar>(&self, q: &[f64]) -> Result<ClaimedState, SubjectError> {
-        self.state_at_rest::<T>(q, &[])
+        claimed_at(q, || self.at_rest_under::<T>(q, &[], |_| Ok(())))
     }
 
     /// The response to a unit of a load, at rest.
@@ -390,19 +354,30 @@ impl<'a> SpaceClaims<'a> {
         load: usize,
         axes: Axes,
     ) -> Result<ClaimedState, SubjectError> {
-        let explain = |e: &dyn std::fmt::Display| refused(q, e);
-        let loads = self.unit_parts(q, load).map_err(|e| explain(&e))?;
-        let mut claimed = self.state_at_rest::<T>(q, &loads)?;
-        let (mut workspace, mut found) = (self.model.workspace(), self.model.result_buffer::<T>());
-        let rates = [lifted::<T>(q), lifted(&claimed.q_dot)];
-        let state = self
-            .model
-            .kinematic_state(&rates[0], &rates[1], &mut workspace);
-        let mut state = state.map_err(|e| explain(&e))?;
-        let done = state.unit_load_response(load, &mut found);
-        done.map_err(|e| explain(&e))?;
-        claimed.tau = found.tau.iter().map(|v| v.value()).collect();
-        claimed.reactions = self.in_ground(&found.reactions, &claimed.poses, axes);
+        claimed_at(q, || {
+            let mut found = self.model.result_buffer::<T>();
+            let respond = |state: &mut KinematicState<'_, T, Model>| {
+                state.unit_load_response(load, &mut found)
+            };
+            let mut claimed = self.at_rest_under(q, &self.unit_parts(q, load)?, respond)?;
+            self.set_forces(&mut claimed, &found, axes);
+            Ok(claimed)
+        })
+    }
+
+    /// The state at rest under loads with their magnitudes, where more is done with the kinematics.
+    fn at_rest_under<T: Scalar>(
+        &self,
+        q: &[f64],
+        loads: &[(LoadKind, f64)],
+        more: impl FnOnce(&mut KinematicState<'_, T, Model>) -> Result<(), KinetostaticsError>,
+    ) -> Result<ClaimedState, Refusal> {
+        let zero = vec![0.0; q.len()];
+        let mut claimed = self.motion::<T>([q, &zero, &zero], loads)?;
+        let (mut workspace, q, zero) = (self.model.workspace(), lifted(q), lifted(&zero));
+        let mut state = self.model.kinematic_state(&q, &zero, &mut workspace)?;
+        claimed.inertias = mass_matrix(&self.model, &mut state);
+        more(&mut state)?;
         Ok(claimed)
     }
 
@@ -411,27 +386,21 @@ impl<'a> SpaceClaims<'a> {
     /// # Errors
     /// [`SubjectError`] where there is no pose.
     pub fn placements<T: Scalar>(&self, q: &[f64]) -> Result<Vec<Placement>, SubjectError> {
-        let mut pose = self.model.plan().pose::<T>();
-        let done = self.model.plan().positions(&lifted(q), &mut pose);
-        done.map_err(|e| refused(q, &e))?;
-        Ok(self.all_placements(&pose))
+        claimed_at(q, || {
+            let mut pose = self.model.plan().pose::<T>();
+            self.model.plan().positions(&lifted(q), &mut pose)?;
+            Ok(self.all_placements(&pose))
+        })
     }
 
-    /// The generalised inertias of a state, row by row.
-    fn mass_matrix<T: Scalar>(
+    fn set_forces<T: Scalar>(
         &self,
-        state: &mut KinematicState<'_, T, Model>,
-        n: usize,
-    ) -> Vec<f64> {
-        let mut unit = self.model.result_buffer::<T>();
-        let mut inertias = vec![0.0; n * n];
-        for j in 0..n {
-            state.mass_matrix_column(j, &mut unit);
-            for (i, tau) in unit.tau.iter().enumerate() {
-                inertias[i * n + j] = tau.value();
-            }
-        }
-        inertias
+        claimed: &mut ClaimedState,
+        found: &InverseDynamics<T>,
+        axes: Axes,
+    ) {
+        claimed.tau = found.tau.iter().map(|v| v.value()).collect();
+        claimed.reactions = self.in_ground(&found.reactions, &claimed.poses, axes);
     }
 }
 
@@ -474,11 +443,4 @@ fn lifted<T: Scalar>(values: &[f64]) -> Vec<T> {
 
 fn plain<T: Scalar>(v: Vec3<T>) -> Vec3 {
     vec3(v.x.value(), v.y.value(), v.z.value())
-}
-
-pub(super) fn refused(q: &[f64], why: &dyn std::fmt::Display) -> SubjectError {
-    SubjectError {
-        q: q.first().copied().unwrap_or(0.0),
-        message: why.to_string(),
-    }
 }

@@ -1,9 +1,7 @@
 //! All findings of a case in space.
 
 use super::claims::SpaceClaims;
-use super::period::period;
-use super::reference::{Reference, Sample};
-use super::reference_poses::ReferencePoses;
+use super::reference::SpaceReference;
 use super::states::state_findings;
 use crate::error::ValidationError;
 use crate::written::poses::difference::Differences;
@@ -14,8 +12,6 @@ use dwell_study::PreparedSpaceScene;
 use dwell_study::reduce::compute::ReducedScene as _;
 use dwell_verify::{Case, FindingSpec, verify_all};
 
-/// Rounding of positions, amplified by the condition of the equations.
-const ROUNDING: &str = "rounding, amplified by the condition of the equations";
 /// Positions at which everything is compared.
 const POSITIONS: usize = 12;
 
@@ -26,23 +22,7 @@ const IN_PASSES: FindingSpec<'_> = FindingSpec {
     scale: "m, and the largest reaction of the run there",
     // Seen: 3.5e-15.
     tolerance: 3e-13,
-    tolerance_reason: ROUNDING,
-};
-const REFERENCE: FindingSpec<'_> = FindingSpec {
-    key: "reference-inertia",
-    check: Check::ReferenceValues,
-    comparison: "m, ½m′ and the weight's w with the reference of 25 digits",
-    scale: "the largest of each",
-    tolerance: 1e-12,
-    tolerance_reason: ROUNDING,
-};
-const REFERENCE_REACTIONS: FindingSpec<'_> = FindingSpec {
-    key: "reference-reactions",
-    check: Check::ReferenceValues,
-    comparison: "a, b and the weight's c with the reference of 25 digits",
-    scale: "the largest of each",
-    tolerance: 1e-12,
-    tolerance_reason: ROUNDING,
+    tolerance_reason: "rounding, amplified by the condition of the equations",
 };
 const DIGITS: FindingSpec<'_> = FindingSpec {
     key: "rounding",
@@ -50,14 +30,14 @@ const DIGITS: FindingSpec<'_> = FindingSpec {
     comparison: "m, ½m′, a and b with 32-digit arithmetic",
     scale: "the largest of each kind",
     tolerance: 1e-11,
-    tolerance_reason: ROUNDING,
+    ..IN_PASSES
 };
 
 /// All findings; a reference may be missing.
 pub(super) fn findings(
     claims: &SpaceClaims<'_>,
     prepared: &PreparedSpaceScene<'_>,
-    reference: Option<&Reference>,
+    reference: Option<&SpaceReference>,
 ) -> Result<Vec<Finding>, ValidationError> {
     let q = positions(prepared);
     let case = Case {
@@ -72,13 +52,7 @@ pub(super) fn findings(
     let positions: Vec<Vec<f64>> = q.iter().step_by(3).map(|q| vec![*q]).collect();
     found.extend(state_findings(claims, &positions)?);
     if let Some(reference) = reference {
-        let domain = format!("{} positions of the reference", reference.samples().count());
-        let [inertia, reactions] = against_reference(prepared, reference)?;
-        found.extend(inertia.finding(&REFERENCE, &domain));
-        found.extend(reactions.finding(&REFERENCE_REACTIONS, &domain));
-        found.extend(period(prepared, reference)?);
-        let poses = ReferencePoses::of(prepared.scene, reference);
-        found.extend(poses.placements(claims, &|q| claims.at_rest::<f64>(q)));
+        found.extend(reference.findings_of_one(claims, prepared)?);
     }
     Ok(found)
 }
@@ -139,54 +113,6 @@ fn rounding(
         for (errors, max, what) in [(&errors.a, a_max, "a"), (&errors.b, b_max, "b")] {
             let error = errors.iter().copied().fold(0.0, f64::max);
             worst.compare([error, 0.0, max], "", || place(what));
-        }
-    }
-    Ok(worst)
-}
-
-/// m, ½m′ and w, then a, b and c, with the reference.
-fn against_reference(
-    prepared: &PreparedSpaceScene<'_>,
-    reference: &Reference,
-) -> Result<[Differences; 2], ValidationError> {
-    let mut worst: [Differences; 2] = Default::default();
-    let samples: Vec<_> = reference.samples().collect();
-    let q: Vec<f64> = samples.iter().filter_map(|s| s.number("q")).collect();
-    let found = prepared.coefficients(&q)?;
-    let columns = prepared.unit_loads(&q)?;
-    let columns = columns.map_or_else(Vec::new, |loads| loads.columns(prepared));
-    let gravity = prepared.weight().unwrap_or(0.0);
-    let column = |name: &str, k: usize| {
-        let column = columns.iter().find(|(c, _)| c.name == name);
-        column.map_or(0.0, |(_, values)| gravity * values[k])
-    };
-    let names = prepared.reaction_units();
-    let scales = [0, 1, 2].map(|k| {
-        let all = samples
-            .iter()
-            .flat_map(|s| names.iter().map(move |n| (s, n)));
-        let all = all.filter_map(|(s, (name, _))| s.reaction(name)[k]);
-        largest(&all.collect::<Vec<f64>>())
-    });
-    let weights: Vec<f64> = samples.iter().filter_map(Sample::weight).collect();
-    let w_max = largest(&weights);
-    for (k, (sample, at)) in samples.iter().zip(&found).enumerate() {
-        let place = |what: &str| format!("q = {:.4}, {what}", q[k]);
-        let m = sample.number("m").unwrap_or(f64::NAN);
-        let half_dm = sample.number("half_dm").unwrap_or(f64::NAN);
-        worst[0].compare([at.m, m, m], "kg m2", || place("m"));
-        worst[0].compare([at.half_dm, half_dm, m], "kg m2/rad", || place("½m′"));
-        if let Some(w) = sample.weight() {
-            worst[0].compare([column("weight.w", k), w, w_max], "N m", || place("w"));
-        }
-        for (i, (name, _)) in names.iter().enumerate() {
-            let found = [at.a[i], at.b[i], column(&format!("{name}.c.weight"), k)];
-            let wanted = sample.reaction(name);
-            for (j, wanted) in wanted.into_iter().enumerate() {
-                // What the joint cannot transmit there is not in the reference: it is zero.
-                let wanted = wanted.unwrap_or(0.0);
-                worst[1].compare([found[j], wanted, scales[j]], "", || place(name));
-            }
         }
     }
     Ok(worst)

@@ -3,16 +3,14 @@
 //! and what the program writes of each.
 //!
 //! ```text
-//! reference ── subject ── findings ── report
+//! claims ── reference ── findings ── report
 //! ```
 
 mod claims;
 mod determined;
 mod findings;
 mod motion;
-mod period;
 mod reference;
-mod reference_poses;
 mod report;
 mod several;
 mod states;
@@ -22,5 +20,5 @@ mod subject;
 pub use claims::SpaceClaims;
 pub(crate) use claims::all_reactions;
 pub use motion::solved;
-pub use reference_poses::{ClaimedAt, ReferencePoses};
+pub use reference::{ClaimedAt, SpaceReference};
 pub(crate) use report::validate_in_space;

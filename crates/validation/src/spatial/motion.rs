@@ -1,8 +1,8 @@
 //! A free motion of a case with several coordinates: its accelerations against the dense equations, its energy, and a reference.
 
 use super::claims::{SpaceClaims, constant};
-use super::reference::Reference;
-use super::states::{free_accelerations, free_machine, in_units};
+use super::reference::SpaceReference;
+use super::states::{SPEEDS, free_accelerations, free_machine, in_units};
 use crate::error::ValidationError;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::rows::largest;
@@ -15,8 +15,7 @@ use dwell_kinetostatics::space::{LoadKind, Model};
 use dwell_scene::{MotionDuration, SpaceScene};
 use dwell_verify::FindingSpec;
 
-/// The motion without `[motion]`: its speeds at the assembly, rad/s or fifths of the size per s, and the longest time, s.
-const SPEEDS: [f64; 4] = [1.0, -0.6, 0.4, 0.3];
+/// The longest time, s.
 const MAX_DURATION: f64 = 1.0;
 /// Times at which it is judged.
 const TIMES: usize = 8;
@@ -24,7 +23,7 @@ const TIMES: usize = 8;
 pub(super) const TOLERANCE: f64 = 1e-12;
 pub(super) const MAX_STEPS: usize = 20_000;
 
-const EQUATIONS: FindingSpec<'_> = FindingSpec {
+pub(super) const EQUATIONS: FindingSpec<'_> = FindingSpec {
     key: "motion-equations",
     check: Check::MultibodyMotion,
     comparison: "the accelerations of a free motion with those of the dense equations",
@@ -33,7 +32,7 @@ const EQUATIONS: FindingSpec<'_> = FindingSpec {
     tolerance: 5e-11,
     tolerance_reason: "rounding, amplified by the condition of the equations and of the inertias",
 };
-const ENERGY: FindingSpec<'_> = FindingSpec {
+pub(super) const ENERGY: FindingSpec<'_> = FindingSpec {
     key: "motion-energy",
     check: Check::Power,
     comparison: "kinetic and potential energy, of placements and dense velocities, with the start's and the work of all other loads",
@@ -49,7 +48,7 @@ const REFERENCE: FindingSpec<'_> = FindingSpec {
     scale: "one radian or the size",
     // The largest seen in a case is 7.1e-15.
     tolerance: 5e-13,
-    tolerance_reason: "the tolerance of the integration, 1e-12 for each step",
+    ..ENERGY
 };
 
 /// States of the machine at ascending times, as far as the motion goes.
@@ -91,7 +90,7 @@ pub(super) fn start(scene: &SpaceScene, model: &Model) -> ([Vec<f64>; 2], f64) {
             (at.map(Clone::clone), duration)
         }
         None => {
-            let at = [scene.assembly.q.clone(), in_units(model, &SPEEDS)];
+            let at = [scene.assembly.q.clone(), in_units(model, &SPEEDS[0])];
             (at, MAX_DURATION)
         }
     }
@@ -100,7 +99,7 @@ pub(super) fn start(scene: &SpaceScene, model: &Model) -> ([Vec<f64>; 2], f64) {
 /// The findings; none where the machine has no equation of motion.
 pub(super) fn motion_findings(
     claims: &SpaceClaims<'_>,
-    reference: Option<&Reference>,
+    reference: Option<&SpaceReference>,
 ) -> Result<Vec<Finding>, ValidationError> {
     let scene = claims.scene();
     let Some(machine) = free_machine(scene)? else {
@@ -113,54 +112,44 @@ pub(super) fn motion_findings(
         .collect();
     let states = states_at(&machine, &y, &times).unwrap_or_default();
     let domain = format!("{} times", states.len());
-    let [equations, energy] = along(claims, &machine, &states);
-    let mut findings: Vec<Finding> = [(equations, &EQUATIONS), (energy, &ENERGY)]
-        .into_iter()
-        .filter_map(|(worst, of)| worst.finding(of, &domain))
-        .collect();
+    let equations = along(claims, &machine, &states).finding(&EQUATIONS, &domain);
+    let energy = energies(claims, &machine, &states).finding(&ENERGY, &domain);
+    let mut findings: Vec<Finding> = equations.into_iter().chain(energy).collect();
     // A motion that stops early shows less than it should.
     for finding in &mut findings {
         if states.len() <= TIMES {
             finding.pass = false;
         }
     }
-    let wanted = reference.map(Reference::coordinates).unwrap_or_default();
-    if !wanted.is_empty() {
-        let times: Vec<f64> = wanted.iter().map(|(t, _)| *t).collect();
-        let found = states_at(&machine, &y, &times).unwrap_or_default();
-        let mut worst = Differences::default();
-        for (k, (t, wanted)) in wanted.iter().enumerate() {
-            for (i, wanted) in wanted.iter().enumerate() {
-                let found = found.get(k).map_or(f64::NAN, |state| state.y[i]);
-                let is_angle = claims.model().is_angle(i);
-                let unit = if is_angle { 1.0 } else { claims.size() };
-                let name = &scene.mechanism.actuators[i].name;
-                let of = if is_angle { "rad" } else { "m" };
-                worst.compare([found, *wanted, unit], of, || format!("t = {t} s, {name}"));
-            }
+    let wanted = reference.map(SpaceReference::states).unwrap_or_default();
+    let times: Vec<f64> = wanted.iter().map(|(t, _)| *t).collect();
+    let found = states_at(&machine, &y, &times).unwrap_or_default();
+    let mut worst = Differences::default();
+    for (k, (t, wanted)) in wanted.iter().enumerate() {
+        for (i, wanted) in wanted.iter().enumerate() {
+            let found = found.get(k).map_or(f64::NAN, |state| state.y[i]);
+            let (scale, unit) = match claims.model().is_angle(i) {
+                true => (1.0, "rad"),
+                false => (claims.size(), "m"),
+            };
+            let name = &scene.mechanism.actuators[i].name;
+            let place = || format!("t = {t} s, {name}");
+            worst.compare([found, *wanted, scale], unit, place);
         }
-        let domain = format!("{} times of the reference", wanted.len());
-        findings.extend(worst.finding(&REFERENCE, &domain));
     }
+    let domain = format!("{} times of the reference", wanted.len());
+    findings.extend(worst.finding(&REFERENCE, &domain));
     Ok(findings)
 }
 
-/// Accelerations and energies along a motion.
-fn along(
-    claims: &SpaceClaims<'_>,
-    machine: &Machine<Model>,
-    states: &[OdeState],
-) -> [Differences; 2] {
-    let [mut equations, mut energy] = <[Differences; 2]>::default();
-    let mut energies = Vec::new();
+/// Accelerations along a motion.
+fn along(claims: &SpaceClaims<'_>, machine: &Machine<Model>, states: &[OdeState]) -> Differences {
+    let mut equations = Differences::default();
     let n = claims.model().plan().actuators();
     for OdeState { t, y } in states {
         let [q, q_dot] = [&y[..n], &y[n..2 * n]];
-        let judged = free_accelerations(machine, *t, [q, q_dot]).and_then(|found| {
-            let dense = Dense::new(claims, *t, [q, q_dot])?;
-            Some((found, dense))
-        });
-        let Some((found, dense)) = judged else {
+        let found = free_accelerations(machine, *t, [q, q_dot]);
+        let (Some(found), Some(dense)) = (found, Dense::new(claims, *t, [q, q_dot])) else {
             equations.compare([f64::NAN, 0.0, 1.0], "", || format!("t = {t} s"));
             continue;
         };
@@ -177,25 +166,38 @@ fn along(
                 format!("t = {t:.4} s, {name}")
             });
         }
+    }
+    equations
+}
+
+/// Kinetic and potential energy with those of the first state and the work since.
+pub(super) fn energies(
+    claims: &SpaceClaims<'_>,
+    machine: &Machine<Model>,
+    states: &[OdeState],
+) -> Differences {
+    let mut worst = Differences::default();
+    let n = claims.model().plan().actuators();
+    let mut energies: Vec<(f64, [f64; 3])> = Vec::new();
+    for OdeState { t, y } in states {
+        let Some(dense) = Dense::new(claims, *t, [&y[..n], &y[n..2 * n]]) else {
+            worst.compare([f64::NAN, 0.0, 1.0], "", || format!("t = {t} s"));
+            continue;
+        };
         let work: f64 = y[machine.work_offset()..].iter().sum();
         energies.push((*t, [dense.kinetic, dense.potential, work]));
     }
-    compare_energies(&mut energy, &energies);
-    [equations, energy]
-}
-
-/// Kinetic and potential energy with those of the first time and the work since, at times.
-pub(super) fn compare_energies(to: &mut Differences, energies: &[(f64, [f64; 3])]) {
     let Some(&(_, [kinetic, potential, work])) = energies.first() else {
-        return;
+        return worst;
     };
     let larger =
         |max: f64, (_, [t, v, _]): &(f64, [f64; 3])| max.max(*t).max((v - potential).abs());
     let scale = energies.iter().fold(0.0, larger);
     for (time, [t, v, w]) in energies {
         let (found, wanted) = (t + v - potential, kinetic + w - work);
-        to.compare([found, wanted, scale], "J", || format!("t = {time:.4} s"));
+        worst.compare([found, wanted, scale], "J", || format!("t = {time:.4} s"));
     }
+    worst
 }
 
 /// What the dense equations say of a state.
@@ -206,8 +208,8 @@ pub(super) struct Dense {
     pub(super) rest: Vec<f64>,
     /// The largest acceleration that one actuator's action alone makes.
     scale: f64,
-    pub(super) kinetic: f64,
-    pub(super) potential: f64,
+    kinetic: f64,
+    potential: f64,
 }
 
 impl Dense {

@@ -10,7 +10,7 @@ use dwell_study::{StudyError, model_with_loads};
 use dwell_verify::{ClaimedState, SubjectError, check_branch, check_states};
 
 /// Speeds and accelerations of the states, by state and actuator, in the unit of the coordinate: rad, or a fifth of the size.
-const SPEEDS: [[f64; 4]; STATES] = [
+pub(super) const SPEEDS: [[f64; 4]; STATES] = [
     [1.0, -0.6, 0.4, 0.3],
     [-0.8, 0.9, -0.5, 0.7],
     [0.6, 0.7, 1.1, -0.4],
@@ -67,12 +67,9 @@ pub(super) fn free_accelerations(
     [q, q_dot]: [&[f64]; 2],
 ) -> Option<Vec<f64>> {
     let y = machine.initial_state(q, q_dot);
-    let mut rates = vec![0.0; machine.state_count()];
     let mut workspace = machine.workspace();
     let state = machine.evaluate(t, &y, &mut workspace).ok()?;
-    state.derivative(&mut rates);
-    let n = q.len();
-    Some(rates[n..2 * n].to_vec())
+    Some(state.q_ddot().to_vec())
 }
 
 /// So many states are checked by kinetic energy alone, which takes some twenty closings a row of the constraints.

@@ -3,7 +3,7 @@
 //! is pressed in.
 
 use super::claims::SpaceClaims;
-use super::motion::{Dense, MAX_STEPS, TOLERANCE, compare_energies, start};
+use super::motion::{self, Dense, EQUATIONS, MAX_STEPS, TOLERANCE, energies, start};
 use crate::error::ValidationError;
 use crate::written::poses::difference::Differences;
 use dwell_dynamics::{
@@ -17,12 +17,11 @@ use dwell_verify::FindingSpec;
 
 const FORCES: FindingSpec<'_> = FindingSpec {
     key: "stop-forces",
-    check: Check::MultibodyMotion,
     comparison: "what the dense equations require along each coordinate of a motion with the force of its end stop",
     scale: "the largest action of a coordinate, of inertia or loads",
     // The largest seen in a case is 1.2e-13.
     tolerance: 1e-11,
-    tolerance_reason: "rounding, amplified by the condition of the equations and of the inertias",
+    ..EQUATIONS
 };
 const IMPACTS: FindingSpec<'_> = FindingSpec {
     key: "stop-impacts",
@@ -36,12 +35,11 @@ const IMPACTS: FindingSpec<'_> = FindingSpec {
 };
 const ENERGY: FindingSpec<'_> = FindingSpec {
     key: "stop-energy",
-    check: Check::Power,
     comparison: "kinetic and potential energy, of placements and dense velocities, with the start's and the work of stops and other loads",
-    scale: "the largest kinetic energy, or the largest change of the potential one",
     // The largest seen in a case is 2.2e-13.
     tolerance: 2e-11,
     tolerance_reason: "the tolerance of the integration, 1e-12 for each step, and of the times of events",
+    ..motion::ENERGY
 };
 
 /// The findings of the motion of a scene with end stops whose coordinates are all free; none where something drives them.
@@ -74,7 +72,7 @@ pub(super) fn stopped_findings(claims: &SpaceClaims<'_>) -> Result<Vec<Finding>,
     let found = [
         motion.forces(&solution).finding(&FORCES, &steps),
         motion.impacts(&solution).finding(&IMPACTS, &impacts),
-        motion.energy(&solution).finding(&ENERGY, &steps),
+        energies(claims, &machine, &solution.steps).finding(&ENERGY, &steps),
     ];
     let mut findings: Vec<Finding> = found.into_iter().flatten().collect();
     // A motion that stops early shows less than it should.
@@ -199,21 +197,6 @@ impl StoppedMotion<'_> {
                 || at("speed"),
             );
         }
-        worst
-    }
-
-    fn energy(&self, solution: &Solution) -> Differences {
-        let mut worst = Differences::default();
-        let mut energies = Vec::new();
-        for OdeState { t, y } in &solution.steps {
-            let Some(dense) = Dense::new(self.claims, *t, self.parts(y)) else {
-                worst.compare([f64::NAN, 0.0, 1.0], "", || format!("t = {t} s"));
-                continue;
-            };
-            let work: f64 = y[self.machine.work_offset()..].iter().sum();
-            energies.push((*t, [dense.kinetic, dense.potential, work]));
-        }
-        compare_energies(&mut worst, &energies);
         worst
     }
 }

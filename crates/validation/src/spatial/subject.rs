@@ -1,6 +1,7 @@
 //! A scene in space as the subject of the checks of its reduced model.
 
-use super::claims::{SpaceClaims, of_ground, refused};
+use super::claims::{SpaceClaims, of_ground};
+use crate::cases::subject::claimed_at;
 use dwell_verify::{Coefficients, InverseDynamics, Pose, Subject, SubjectError};
 
 /// Its reduced model, with all components of all joints in the axes of the ground.
@@ -10,9 +11,9 @@ impl Subject for SpaceClaims<'_> {
     }
 
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
-        let (mut workspace, mut at) = (self.model().workspace(), self.model().coefficient_buffer());
-        let done = self.model().reduce(q, &mut workspace, &mut at);
-        done.map_err(|e| refused(&[q], &e))?;
+        let model = self.model();
+        let (mut workspace, mut at) = (model.workspace(), model.coefficient_buffer());
+        claimed_at(&[q], || Ok(model.reduce(q, &mut workspace, &mut at)?))?;
         (at.a, at.b) = (of_ground(&at.a), of_ground(&at.b));
         Ok(at)
     }
@@ -23,11 +24,12 @@ impl Subject for SpaceClaims<'_> {
         q_dot: f64,
         q_ddot: f64,
     ) -> Result<InverseDynamics, SubjectError> {
-        let (mut workspace, mut found) = (self.model().workspace(), self.model().result_buffer());
-        let rates = [[q], [q_dot], [q_ddot]];
-        let [q, q_dot, q_ddot] = rates.each_ref().map(|rate| &rate[..]);
-        let done = (self.model()).inverse_dynamics(q, q_dot, q_ddot, &mut workspace, &mut found);
-        done.map_err(|e| refused(q, &e))?;
+        let model = self.model();
+        let (mut workspace, mut found) = (model.workspace(), model.result_buffer());
+        claimed_at(&[q], || {
+            let (memory, found) = (&mut workspace, &mut found);
+            Ok(model.inverse_dynamics(&[q], &[q_dot], &[q_ddot], memory, found)?)
+        })?;
         Ok(InverseDynamics {
             tau: found.tau[0],
             reactions: of_ground(&found.reactions),

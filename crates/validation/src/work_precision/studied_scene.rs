@@ -11,7 +11,7 @@ use dwell_findings::Table;
 use dwell_geometry::space::CoordinateFunction;
 use dwell_kinetostatics::TableDomain;
 use dwell_kinetostatics::space::{Axes, Model as SpaceModel};
-use dwell_scene::{FreeMotionSpec, MotionDuration, PlaneScene, SpaceScene};
+use dwell_scene::{Dimensions, FreeMotionSpec, MotionDuration, PlaneScene, SceneIn, SpaceScene};
 use dwell_study::explain::NamedScene;
 use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
 use dwell_study::machines::MachineScene as _;
@@ -146,17 +146,26 @@ fn range_ends(scene: &SpaceScene, machine: &Machine<SpaceModel>) -> Vec<Event<Co
     ends.map(event).collect()
 }
 
-/// The requested columns with those of all coordinates and speeds; `None` for all columns.
-fn with_states(scene: &impl NamedScene, requested: Option<&[String]>) -> Option<Vec<String>> {
-    let mut columns = requested?.to_vec();
-    let names = (0..).map_while(|i| scene.actuator(i));
-    let states = names.flat_map(|(name, _)| [name.to_owned(), format!("{name}.velocity")]);
-    for state in states {
-        if !columns.contains(&state) {
-            columns.push(state);
+/// A copy of a scene with a motion of another duration, s, and all coordinates and speeds in its table.
+fn lasting<D: Dimensions>(scene: &SceneIn<D>, duration: f64) -> SceneIn<D>
+where
+    SceneIn<D>: NamedScene,
+{
+    let mut lasting = scene.clone();
+    if let Some(motion) = &mut lasting.motion {
+        motion.duration = MotionDuration::Seconds(duration);
+    }
+    // Without a list all columns are there.
+    if let Some(columns) = &mut lasting.requests.variables {
+        let names = (0..).map_while(|i| scene.actuator(i));
+        let states = names.flat_map(|(name, _)| [name.to_owned(), format!("{name}.velocity")]);
+        for state in states {
+            if !columns.contains(&state) {
+                columns.push(state);
+            }
         }
     }
-    Some(columns)
+    lasting
 }
 
 impl StudiedScene for PlaneScene {
@@ -220,12 +229,7 @@ impl StudiedScene for PlaneScene {
     }
 
     fn lasting(&self, duration: f64) -> Self {
-        let mut scene = self.clone();
-        if let Some(motion) = &mut scene.motion {
-            motion.duration = MotionDuration::Seconds(duration);
-        }
-        scene.requests.variables = with_states(self, self.requests.variables.as_deref());
-        scene
+        lasting(self, duration)
     }
 }
 
@@ -302,11 +306,6 @@ impl StudiedScene for SpaceScene {
     }
 
     fn lasting(&self, duration: f64) -> Self {
-        let mut scene = self.clone();
-        if let Some(motion) = &mut scene.motion {
-            motion.duration = MotionDuration::Seconds(duration);
-        }
-        scene.requests.variables = with_states(self, self.requests.variables.as_deref());
-        scene
+        lasting(self, duration)
     }
 }

@@ -1,6 +1,6 @@
 //! Values of named quantities at states of motion, as a reference gives them, and their comparison.
 
-use super::{Reference, check_keys, list, named_values, number, object, read_each};
+use super::{Reference, check_keys, list, named_values, number_of, object, read_each};
 use crate::cases::model_states::{ModelStates, StateRequest};
 use crate::cases::state_quantity::{KINDS, StateQuantity};
 use crate::error::ValidationError;
@@ -48,7 +48,7 @@ pub(super) fn read_states(
     Ok(Some(ReferenceStates {
         samples: read_each("samples", samples, |s| read_state(s, scene))?,
         source: value["source"].as_str().map(str::to_owned),
-        tolerance: number(tolerance, "relative").map_err(wrong)?,
+        tolerance: number_of(tolerance, "relative").map_err(wrong)?,
         reason: why.to_owned(),
     }))
 }
@@ -81,7 +81,10 @@ fn by_actuator(value: &Value, scene: &PlaneScene) -> Result<Vec<f64>, String> {
     if let Some(name) = names.find(|k| actuators.iter().all(|a| a.name != **k)) {
         return Err(format!("the scene has no actuator `{name}`"));
     }
-    actuators.iter().map(|a| number(value, &a.name)).collect()
+    actuators
+        .iter()
+        .map(|a| number_of(value, &a.name))
+        .collect()
 }
 
 impl ReferenceStates {

@@ -1,6 +1,6 @@
 //! The tolerances of a case, by finding: written from measurement, in place of those of the code.
 
-use super::{object, parse};
+use super::{number, object};
 use crate::written::WRITTEN_PREFIX;
 use dwell_findings::Finding;
 use serde_json::Value;
@@ -18,7 +18,7 @@ impl Tolerances {
         }
         let mut tolerances = Self::default();
         for (key, value) in object(value, "`tolerances`")? {
-            let Some(tolerance) = parse(value).filter(|&tolerance| tolerance >= 0.0) else {
+            let Some(tolerance) = number(value).filter(|&tolerance| tolerance >= 0.0) else {
                 return Err(format!(
                     "tolerances: `{key}` must be a number of 0 or more, not {value}"
                 ));
