@@ -126,12 +126,9 @@ impl FitWindow {
 
     /// Whether a coordinate is so far behind the window that the machine of the branch there goes on.
     pub(crate) fn has_passed(&self, q: f64) -> bool {
-        let half_width = self.fit.half_width;
+        let direction = if self.above { -1.0 } else { 1.0 };
         let offset = self.offset_within(q);
-        offset.is_some_and(|x| match self.above {
-            true => x < -half_width,
-            false => x > half_width,
-        })
+        offset.is_some_and(|x| direction * x > self.fit.half_width)
     }
 }
 

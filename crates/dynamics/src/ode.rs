@@ -328,9 +328,10 @@ impl Step<'_> {
 
     /// The same, at its start the very state before it.
     pub(crate) fn state_from_start(&mut self, t: f64) -> Result<OdeState> {
-        match t > self.before.t {
-            true => self.state_at(t),
-            false => Ok(self.before.clone()),
+        if t > self.before.t {
+            self.state_at(t)
+        } else {
+            Ok(self.before.clone())
         }
     }
 }
