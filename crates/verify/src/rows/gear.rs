@@ -28,7 +28,8 @@ impl Gear {
     /// Of pitch radii (m), with the body that holds both centres, if any.
     pub(crate) fn new(
         ends: Ends,
-        (radii, internal): ([f64; 2], bool),
+        radii: [f64; 2],
+        internal: bool,
         carrier: Option<usize>,
         ground: usize,
     ) -> Self {
