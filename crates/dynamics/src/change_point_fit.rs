@@ -126,12 +126,9 @@ impl FitWindow {
 
     /// Whether a coordinate is so far beyond the window that the motion continues on the machine of the branch there.
     pub(crate) fn has_passed(&self, q: f64) -> bool {
-        let half_width = self.fit.half_width;
+        let direction = if self.above { -1.0 } else { 1.0 };
         let offset = self.offset_within(q);
-        offset.is_some_and(|x| match self.above {
-            true => x < -half_width,
-            false => x > half_width,
-        })
+        offset.is_some_and(|x| direction * x > self.fit.half_width)
     }
 }
 

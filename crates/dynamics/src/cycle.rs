@@ -381,9 +381,9 @@ impl<'m, M: MovingModel> CycleProblem<'m, M> {
             }
             Ok(StepControl::Continue)
         };
-        let (end, options) = (Some(self.cycle_angle), &self.options);
-        let end = integrate(&mut system, &start, end, options, &mut observer)?.completed()?;
-        let end = self.machine_state(self.cycle_angle, &end.y);
+        let (to, options) = (Some(self.cycle_angle), &self.options);
+        let last = integrate(&mut system, &start, to, options, &mut observer)?.completed()?;
+        let end = self.machine_state(self.cycle_angle, &last.y);
         let by_speed = |x: &&[f64; 2], y: &&[f64; 2]| x[1].abs().total_cmp(&y[1].abs());
         let slowest = *extremes.iter().min_by(by_speed).unwrap_or(&extremes[0]);
         let fastest = *extremes.iter().max_by(by_speed).unwrap_or(&extremes[0]);

@@ -48,39 +48,13 @@ const FAILURE_REDUCTION: f64 = 0.25;
 /// A step that ends within this part of itself before the end is stretched to it.
 const STRETCH_FRACTION: f64 = 0.01;
 
-/// Integrates a system whose start has `rates`, by steps no shorter than `min_step` (s), each state to its own absolute tolerance.
-pub(crate) fn integrate(
-    system: &mut dyn OdeSystem,
-    part: &Part,
-    (rates, atol, min_step): (&[f64], &[f64], f64),
-    limits: (Option<&mut TimePieces<'_>>, &mut Pace),
-    observer: StepObserver<'_>,
-) -> Termination {
-    let mut stepper = Stepper {
-        stages: Stages::new(system, rates),
-        tolerance: (part.options.rtol, atol),
-        from: part.start.clone(),
-        to: part.start.clone(),
-        min_step,
-        previous_error: MIN_ERROR,
-        stiffness: 0.0,
-        interpolant: Interpolant::new(rates.len()),
-        statistics: Statistics::default(),
-    };
-    let error = stepper.run(part, limits, observer).err();
-    stepper.statistics.evaluations = stepper.stages.evaluations;
-    Termination {
-        state: stepper.from,
-        error,
-        statistics: stepper.statistics,
-    }
-}
-
-struct Stepper<'s> {
+/// An integration of a part of a motion.
+pub(crate) struct Stepper<'s> {
     stages: Stages<'s>,
-    /// Relative, and absolute by state.
-    tolerance: (f64, &'s [f64]),
-    /// Start and end of the step.
+    part: &'s Part,
+    /// The absolute tolerance, by state.
+    atol: &'s [f64],
+    /// Where the step begins and ends.
     from: OdeState,
     to: OdeState,
     min_step: f64,
@@ -92,14 +66,52 @@ struct Stepper<'s> {
     statistics: Statistics,
 }
 
-impl Stepper<'_> {
+impl<'s> Stepper<'s> {
+    /// Of a part whose start has `rates`, by steps no shorter than `min_step` (s), each state to its own absolute tolerance.
+    pub(crate) fn new(
+        system: &'s mut dyn OdeSystem,
+        part: &'s Part,
+        rates: &[f64],
+        atol: &'s [f64],
+        min_step: f64,
+    ) -> Self {
+        Self {
+            stages: Stages::new(system, rates),
+            part,
+            atol,
+            from: part.start.clone(),
+            to: part.start.clone(),
+            min_step,
+            previous_error: MIN_ERROR,
+            stiffness: 0.0,
+            interpolant: Interpolant::new(rates.len()),
+            statistics: Statistics::default(),
+        }
+    }
+
+    /// Integrates; `pieces` and `pace` limit the steps.
+    pub(crate) fn integrate(
+        mut self,
+        pieces: Option<&mut TimePieces<'_>>,
+        pace: &mut Pace,
+        observer: StepObserver<'_>,
+    ) -> Termination {
+        let error = self.run(pieces, pace, observer).err();
+        self.statistics.evaluations = self.stages.evaluations;
+        Termination {
+            state: self.from,
+            error,
+            statistics: self.statistics,
+        }
+    }
+
     fn run(
         &mut self,
-        part: &Part,
-        (mut pieces, pace): (Option<&mut TimePieces<'_>>, &mut Pace),
+        mut pieces: Option<&mut TimePieces<'_>>,
+        pace: &mut Pace,
         observer: StepObserver<'_>,
     ) -> Result<()> {
-        let (options, end) = (&part.options, part.end);
+        let (options, end) = (&self.part.options, self.part.end);
         let max_step = options.max_step.unwrap_or(f64::INFINITY);
         let mut longest = |t: f64| -> Result<f64> {
             Ok(match &mut pieces {
@@ -110,7 +122,7 @@ impl Stepper<'_> {
         let remaining = |t: f64| end.map_or(f64::INFINITY, |end| end - t);
         let first = remaining(self.from.t).min(longest(self.from.t)?);
         // Behind an event the step before it fits, where the rates that jump have their size.
-        let mut h = match part.first_step {
+        let mut h = match self.part.first_step {
             Some(step) => step.min(first),
             None => self.initial_step(first),
         };
@@ -163,10 +175,12 @@ impl Stepper<'_> {
                 continue;
             }
             let ends = [&self.from.y[..], &self.to.y[..]];
-            let error = self.stages.error_norm(h, self.tolerance, ends);
+            let error = self
+                .stages
+                .error_norm(h, self.part.options.rtol, self.atol, ends);
             // NaN is not accepted.
             if error <= 1.0 {
-                self.stiffness = self.stages.stiffness(h, (self.tolerance.1, &self.to.y));
+                self.stiffness = self.stages.stiffness(h, self.atol, &self.to.y);
                 let is_stiff = (MAX_STIFFNESS..ROUNDING_STIFFNESS).contains(&self.stiffness);
                 let stable = MAX_STIFFNESS / self.stiffness;
                 if is_stiff && error > MIN_ERROR && !is_repeated {
@@ -196,7 +210,7 @@ impl Stepper<'_> {
     /// A first step from the curvature that an Euler step shows (Hairer, Nørsett and Wanner 1993,
     /// II.4).
     fn initial_step(&mut self, max_step: f64) -> f64 {
-        let (rtol, atol) = self.tolerance;
+        let (rtol, atol) = (self.part.options.rtol, self.atol);
         let y = &self.from.y;
         let scale = |i: usize| atol[i] + rtol * y[i].abs();
         let norm = |of: &dyn Fn(usize) -> f64| {
@@ -310,7 +324,7 @@ impl<'s> Stages<'s> {
     }
 
     /// The error of the step in units of the tolerance, by (2).
-    fn error_norm(&self, h: f64, (rtol, atol): (f64, &[f64]), y: [&[f64]; 2]) -> f64 {
+    fn error_norm(&self, h: f64, rtol: f64, atol: &[f64], y: [&[f64]; 2]) -> f64 {
         let [mut fifth, mut third] = [0.0; 2];
         for (i, rates) in self.stage_rhs.iter().enumerate() {
             let size = y[0][i].abs().max(y[1][i].abs());
@@ -327,7 +341,7 @@ impl<'s> Stages<'s> {
     }
 
     /// h |λ| of the largest eigenvalue, from two states at the end of the step: the stage's and the step's.
-    fn stiffness(&self, h: f64, (atol, end): (&[f64], &[f64])) -> f64 {
+    fn stiffness(&self, h: f64, atol: &[f64], end: &[f64]) -> f64 {
         let [mut rhs_difference, mut state_difference] = [0.0; 2];
         for (i, all) in self.stage_rhs.iter().enumerate() {
             rhs_difference += ((all[END_STAGE] - all[END_STAGE - 1]) / atol[i]).powi(2);

@@ -148,9 +148,10 @@ fn integrate_held(
                 found.state_mut().t = end;
             }
             let is_longer = found.state().t > before.t;
-            let control = match is_longer {
-                true => observer(before, found.state(), taken.dense)?,
-                false => StepControl::Continue,
+            let control = if is_longer {
+                observer(before, found.state(), taken.dense)?
+            } else {
+                StepControl::Continue
             };
             event = (control == StepControl::Continue).then_some(found);
             Ok(StepControl::Stop)
@@ -299,11 +300,8 @@ fn integrate_part(
     let atol = impasse.absolute.clone();
     let min_step = MIN_STEP / max_rate;
     if options.method == Method::Dop853 {
-        let (of, limits) = (
-            (&rates[..], &atol[..], min_step),
-            (pieces, &mut impasse.pace),
-        );
-        return Ok(dop853::integrate(system, part, of, limits, observer));
+        let stepper = dop853::Stepper::new(system, part, &rates, &atol, min_step);
+        return Ok(stepper.integrate(pieces, &mut impasse.pace, observer));
     }
     let system = RefCell::new(system);
     let failure: RefCell<Option<DynamicsError>> = RefCell::new(None);

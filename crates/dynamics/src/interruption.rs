@@ -30,8 +30,8 @@ pub fn is_requested() -> bool {
 /// The error, if they are to end. It costs a load from memory.
 #[inline]
 pub(crate) fn check() -> Result<()> {
-    match is_requested() {
-        false => Ok(()),
-        true => Err(DynamicsError::Interrupted),
+    if is_requested() {
+        return Err(DynamicsError::Interrupted);
     }
+    Ok(())
 }

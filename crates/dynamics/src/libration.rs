@@ -93,7 +93,7 @@ impl SampledLibration {
         let (step, half) = (TAU / points as f64, self.half_width());
         let upwards = self.samples.iter().take(points / 2 + 1);
         let rate = |phase: f64| half * phase.sin();
-        let is_hidden = hides_turns(&mut series, accuracy, (upwards, step), rate);
+        let is_hidden = hides_turns(&mut series, accuracy, upwards, step, rate);
         if let (true, Some(tail)) = (is_hidden, self.missed_work()) {
             return Err(DynamicsError::NotResolved { points, tail });
         }

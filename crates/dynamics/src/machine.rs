@@ -133,9 +133,10 @@ impl<M: MovingModel> Machine<M> {
             state_switches: drives::state_switches(&model, &drives),
             drive_state_count: drives.iter().filter(|d| d.state.is_some()).count(),
             // Where everything is prescribed nothing can be held.
-            contacts: match free.is_empty() {
-                true => Vec::new(),
-                false => Contact::of_model(&model),
+            contacts: if free.is_empty() {
+                Vec::new()
+            } else {
+                Contact::of_model(&model)
             },
             stops: Vec::new(),
             model,
@@ -244,7 +245,7 @@ impl<M: MovingModel> Machine<M> {
     where
         M: EvaluatedIn<T>,
     {
-        M::evaluate_machine(self, (t, y), workspace)
+        M::evaluate_machine(self, t, y, workspace)
     }
 
     /// [`Self::evaluate`], compiled by [`EvaluatedIn`].
@@ -418,9 +419,8 @@ impl<M: MovingModel> Machine<M> {
                 unloaded: &result.reactions,
                 responses: friction_responses,
             };
-            let accelerations = (&free_accelerations[..], &friction_accelerations[..]);
             let freedoms = locked.iter().filter(|locked| !**locked).count();
-            problem.solve(accelerations, freedoms)?;
+            problem.solve(free_accelerations, friction_accelerations, freedoms)?;
         } else if self.model.frictions().len() > 0 {
             state.solve_friction(&result.reactions, friction_responses)?;
         }

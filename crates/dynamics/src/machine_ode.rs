@@ -53,14 +53,14 @@ impl<'m, M: MovingModel> MachineOde<'m, M> {
         }
         let span = end.unwrap_or(t) - t;
         if SLOW * span > 1.0 {
-            ode.scale_speeds((t, y), span)?;
+            ode.scale_speeds(t, y, span)?;
         }
         Ok(ode)
     }
 
-    /// The speeds of a motion that is slow are accurate by its own measure: one unit of its coordinates over its span, s. A motion is
-    /// slow if both its speeds and its accelerations times the span are small.
-    fn scale_speeds(&mut self, (t, y): (f64, &[f64]), span: f64) -> Result<()> {
+    /// The speeds of a motion that is slow are accurate by its own measure: one unit of its coordinates over its span, s. It is slow by
+    /// its speeds, and by what its accelerations become over the span.
+    fn scale_speeds(&mut self, t: f64, y: &[f64], span: f64) -> Result<()> {
         let machine = self.machine;
         let state = machine.evaluate(t, y, &mut self.workspace)?;
         let free = || machine.free().iter();
@@ -199,9 +199,9 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
     }
 
     fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
-        let kept = (&self.held[..], &mut self.seen);
+        let (held, seen) = (&self.held, &mut self.seen);
         self.machine
-            .switch_values((t, y), &mut self.workspace, kept, out)
+            .switch_values(t, y, &mut self.workspace, held, seen, out)
     }
 
     fn switch_rates(
@@ -212,7 +212,7 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
         out: &mut [[f64; 2]],
     ) -> Result<bool> {
         self.machine
-            .switch_rates((t, y), rates, &mut self.workspace, &self.held, out)?;
+            .switch_rates(t, y, rates, &mut self.workspace, &self.held, out)?;
         Ok(true)
     }
 
@@ -294,7 +294,7 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
     }
 
     fn pass_contacts(&mut self, t: f64, y: &mut [f64], step: &ContactStep<'_>) -> Result<()> {
-        let changes = pass(self.machine, &mut self.workspace, (t, y), step)?;
+        let changes = pass(self.machine, &mut self.workspace, t, y, step)?;
         self.contact_events.extend(changes);
         if self.contact_events.len() > MAX_OCCURRENCES {
             return Err(too_many_events(t));

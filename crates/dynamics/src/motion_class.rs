@@ -247,9 +247,10 @@ impl<'a> EnergyScan<'a> {
             from: self.q,
             step: direction * step,
             known: BTreeMap::new(),
-            count: match growth == 1.0 && !self.system.follows_functions() {
-                true => max_steps,
-                false => 0,
+            count: if growth == 1.0 && !self.system.follows_functions() {
+                max_steps
+            } else {
+                0
             },
         };
         let mut before = (self.q, self.kinetic, self.initial_terms.force * direction);
@@ -262,10 +263,11 @@ impl<'a> EnergyScan<'a> {
                 continue;
             }
             k += 1;
-            let mut q = match growth == 1.0 {
+            let mut q = if growth == 1.0 {
                 // Roundings of steps do not add up.
-                true => equal_steps.at(k),
-                false => before.0 + direction * step,
+                equal_steps.at(k)
+            } else {
+                before.0 + direction * step
             };
             let at_end = end.filter(|end| (q - end) * direction >= -LIMIT_TOLERANCE);
             if let Some(end) = at_end {

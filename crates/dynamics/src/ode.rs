@@ -330,9 +330,10 @@ impl Step<'_> {
 
     /// The state at a time within the step; at its start, exactly the state before the step.
     pub(crate) fn state_from_start(&mut self, t: f64) -> Result<OdeState> {
-        match t > self.before.t {
-            true => self.state_at(t),
-            false => Ok(self.before.clone()),
+        if t > self.before.t {
+            self.state_at(t)
+        } else {
+            Ok(self.before.clone())
         }
     }
 }

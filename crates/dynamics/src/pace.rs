@@ -102,8 +102,8 @@ impl Pace {
         self.steps
     }
 
-    /// Whether the rest, from a time (s), takes more than `times` the allowed steps if `steps` advance the time by `advance`, s.
-    pub(crate) fn is_too_slow(&self, (t, times): (f64, f64), steps: usize, advance: f64) -> bool {
+    /// Whether the rest, from a time (s), takes more than so many times the steps allowed if some steps lead on by `advance`, s.
+    pub(crate) fn is_too_slow(&self, t: f64, times: f64, steps: usize, advance: f64) -> bool {
         (self.end - t) * steps as f64 > advance * times * self.max_steps as f64
     }
 
@@ -117,7 +117,7 @@ impl Pace {
         let (steps, max_steps) = (self.steps, self.max_steps);
         if let Some((window, advance)) = self.full(1, t)
             && steps > window
-            && self.is_too_slow((t, self.times(advance / window as f64, t)), window, advance)
+            && self.is_too_slow(t, self.times(advance / window as f64, t), window, advance)
         {
             let needed = (self.end - t) / advance * window as f64;
             return Err(DynamicsError::TooSlow {
@@ -129,7 +129,7 @@ impl Pace {
             });
         }
         if let Some((window, advance)) = self.full(0, t)
-            && self.is_too_slow((t, HOPELESS), window, advance)
+            && self.is_too_slow(t, HOPELESS, window, advance)
         {
             let (function, step) = (self.function, advance / window as f64);
             return Err(DynamicsError::NoProgress { function, t, step });

@@ -61,7 +61,7 @@ impl SampledRotation {
         let step = TAU / points as f64;
         let samples = self.samples.iter().chain(self.samples.first());
         let rate = |_| angle_per_period / TAU;
-        let is_hidden = hides_turns(&mut series, accuracy, (samples, step), rate);
+        let is_hidden = hides_turns(&mut series, accuracy, samples, step, rate);
         let mut is_resolved = series.is_resolved;
         let is_sharp = (points >= SHARP_POINTS || is_hidden) && !is_resolved;
         let time_density = if is_sharp && (series.tail >= accuracy || series.tail.is_nan()) {

@@ -65,7 +65,7 @@ impl BothSides {
         at: &OdeState,
     ) -> Result<Option<Self>> {
         let mut both = Self::default();
-        let are_known = both.evaluate(sides, system, (at.t, &at.y))?;
+        let are_known = both.evaluate(sides, system, at.t, &at.y)?;
         Ok(are_known.then_some(both))
     }
 
@@ -74,7 +74,8 @@ impl BothSides {
         &mut self,
         sides: &[Vec<Option<f64>>; 2],
         system: &mut dyn OdeSystem,
-        (t, y): (f64, &[f64]),
+        t: f64,
+        y: &[f64],
     ) -> Result<bool> {
         let each = self.rates.iter_mut().zip(&mut self.functions);
         for ((rates, functions), pieces) in each.zip(sides) {
@@ -123,7 +124,7 @@ impl<'s, 'i> SlidingSystem<'s, 'i> {
             return Ok(None);
         };
         let mut sides = std::mem::take(&mut self.sides);
-        let evaluated = sides.evaluate(&sliding.sides, self, (t, y));
+        let evaluated = sides.evaluate(&sliding.sides, self, t, y);
         let first = sliding.switches[0];
         (self.sliding, self.sides) = (Some(sliding), sides);
         evaluated?;

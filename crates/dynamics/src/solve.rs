@@ -127,7 +127,7 @@ pub fn solve<M: MovingModel>(
     events: &[Event<M::CoordinateFunction>],
 ) -> Result<Solution> {
     let recorder_state = RecorderState::new(start.t, events, options);
-    record_machine((machine, output_model), recorder_state, start, end, options)
+    record_machine(machine, output_model, recorder_state, start, end, options)
 }
 
 /// As [`solve`], for a motion that started at t = 0 in another coordinate: its samples continue at multiples of their
@@ -145,12 +145,13 @@ pub fn solve_further<M: MovingModel>(
 ) -> Result<Solution> {
     let recorder_state = RecorderState::new(0.0, events, options);
     let recorder_state = recorder_state.sampled_until(start.t, options);
-    record_machine((machine, output_model), recorder_state, start, end, options)
+    record_machine(machine, output_model, recorder_state, start, end, options)
 }
 
 /// Integrates the motion of a machine, and records it.
 fn record_machine<M: MovingModel>(
-    (machine, output_model): (&Machine<M>, &M),
+    machine: &Machine<M>,
+    output_model: &M,
     recorder_state: RecorderState<'_, M::CoordinateFunction>,
     start: &OdeState,
     end: f64,
@@ -161,7 +162,8 @@ fn record_machine<M: MovingModel>(
     let observed = ObservedMachine::new(machine, output_model).in_modes(ode.modes());
     let mut solution = record(
         &mut ode,
-        (observed, recorder_state),
+        observed,
+        recorder_state,
         start,
         Some(end),
         options,
@@ -198,13 +200,14 @@ pub(crate) fn solve_with_limits<O: Observed>(
     [events, limits]: [&[Event<O::Coordinate>]; 2],
 ) -> Result<Solution> {
     let recorder_state = RecorderState::new(start.t, events, options).with_limits(limits);
-    record(system, (observed, recorder_state), start, end, options)
+    record(system, observed, recorder_state, start, end, options)
 }
 
 /// Integrates and records.
 fn record<O: Observed>(
     system: &mut dyn OdeSystem,
-    (observed, mut recorder_state): (O, RecorderState<'_, O::Coordinate>),
+    observed: O,
+    mut recorder_state: RecorderState<'_, O::Coordinate>,
     start: &OdeState,
     end: Option<f64>,
     options: &Options,
@@ -266,7 +269,7 @@ impl<'e, C: Copy> RecorderState<'e, C> {
     ) -> Result<SolutionRecorder<'m, 'e, O>> {
         if self.trackers.is_empty() {
             for (i, &(&event, tolerance)) in self.events.iter().enumerate() {
-                let tracker = EventTracker::new((i, event), tolerance, &mut observed, from)?;
+                let tracker = EventTracker::new(i, event, tolerance, &mut observed, from)?;
                 self.trackers.push(tracker);
             }
         } else {

@@ -111,10 +111,7 @@ pub fn is_equilibrium<M: MovingModel>(
     linear: &StateSpace,
 ) -> Result<bool> {
     let coordinates = machine.free().len();
-    let size = |j: usize| match j < coordinates {
-        true => y[j].abs().max(1.0),
-        false => y[j].abs(),
-    };
+    let size = |j: usize| state_size(y, j, coordinates);
     let mut workspace: MachineWorkspace<DoubleDouble, M> = machine.workspace();
     let at: Vec<DoubleDouble> = y.iter().map(|&y| DoubleDouble::from_f64(y)).collect();
     let mut finer = vec![DoubleDouble::from_f64(0.0); machine.state_count()];
@@ -130,6 +127,12 @@ pub fn is_equilibrium<M: MovingModel>(
     // A speed is exact: a coordinate that moves, however slowly, is in no equilibrium.
     let moves = y[coordinates..2 * coordinates].iter().any(|v| *v != 0.0);
     Ok(!moves && rows.skip(coordinates).all(is_zero))
+}
+
+/// The size of a state: a coordinate, of which the first are, is of the size of 1 rad or 1 m at least.
+fn state_size(y: &[f64], j: usize, coordinates: usize) -> f64 {
+    let least = if j < coordinates { 1.0 } else { 0.0 };
+    y[j].abs().max(least)
 }
 
 /// z of a state.
@@ -183,10 +186,7 @@ pub fn eigenvalues_about<M: MovingModel>(
     for sides in SIDES {
         let mut near = y.to_vec();
         for j in 0..n {
-            let size = match j < coordinates {
-                true => y[j].abs().max(1.0),
-                false => y[j].abs(),
-            };
+            let size = state_size(y, j, coordinates);
             let error = state_errors.get(j).copied().unwrap_or(0.0);
             near[j] += sides[j % 2] * error.max(STATE_ROUNDINGS * f64::EPSILON * size);
         }

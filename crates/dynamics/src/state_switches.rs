@@ -200,7 +200,8 @@ impl StateSwitches {
     /// values of its signals, which are all kept in `seen`.
     pub(crate) fn values<'a, M: MachineModel + 'a>(
         &self,
-        (held, seen): (&[HeldSource], &mut Vec<f64>),
+        held: &[HeldSource],
+        seen: &mut Vec<f64>,
         mut state_of: impl FnMut(usize, &mut Vec<f64>) -> SourceState<'a, M>,
         mut out: &mut [f64],
     ) {

@@ -361,8 +361,8 @@ impl SwitchMonitor {
             return self.pass_while_sliding(crossing, &all, system);
         }
         let none = self.marked(std::iter::empty());
-        let passed = (&none[..], &crossing.passed[..]);
-        self.settle(passed, &mut changed, system, &crossing.state)?;
+        let (passed, at) = (&crossing.passed, &crossing.state);
+        self.settle(&none, passed, &mut changed, system, at)?;
         if self.slide_from_crossing(&before, crossing, system)? {
             return Ok(());
         }

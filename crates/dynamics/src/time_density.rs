@@ -55,7 +55,8 @@ fn hidden_turn(points: &[Turns], rate: impl Fn(f64) -> f64) -> f64 {
 pub(crate) fn hides_turns<'s>(
     series: &mut FourierSeries,
     accuracy: f64,
-    (samples, step): (impl Iterator<Item = &'s Sample>, f64),
+    samples: impl Iterator<Item = &'s Sample>,
+    step: f64,
     rate: impl Fn(f64) -> f64,
 ) -> bool {
     if !series.is_resolved && series.tail >= accuracy {

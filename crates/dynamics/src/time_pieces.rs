@@ -41,8 +41,8 @@ impl<'f> TimePieces<'f> {
     ) -> Result<Self> {
         let to = end.unwrap_or(from + HORIZON);
         let switches = features.scan_switches(from, to);
-        let smooth = options.max_step.is_none();
-        let smooth = smooth.then(|| features.scan(from, to));
+        let is_free = options.max_step.is_none();
+        let smooth = is_free.then(|| features.scan(from, to));
         if let Some(smooth) = &smooth {
             for (scan, steps) in [
                 (&switches, STEPS_PER_RESTART),

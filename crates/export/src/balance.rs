@@ -92,9 +92,10 @@ struct Change {
 /// The next number of single precision.
 fn next(value: f64, sign: i32) -> f64 {
     let single = value as f32;
-    f64::from(match sign > 0 {
-        true => single.next_up(),
-        false => single.next_down(),
+    f64::from(if sign > 0 {
+        single.next_up()
+    } else {
+        single.next_down()
     })
 }
 

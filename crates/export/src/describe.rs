@@ -52,12 +52,12 @@ fn accuracy(export: &Export) -> [String; 2] {
     let (machine, measured) = (&export.machine, &export.measured);
     let errors = measured.errors;
     let accuracy = export.request.accuracy;
-    let asked = match export.code {
+    let origin = match export.code {
         None => format!("accuracy: asked for {accuracy:e}"),
         Some(_) => "accuracy: the operations of the model itself".to_owned(),
     };
     let asked = format!(
-        "{asked}; largest errors measured at 4096 positions in {}, relative to the largest value of each function:",
+        "{origin}; largest errors measured at 4096 positions in {}, relative to the largest value of each function:",
         export.request.precision.measured_in()
     );
     let mut all = vec![("m", errors.m), ("half_dm", errors.half_dm)];

@@ -48,8 +48,8 @@ impl Export {
         request: Request,
         sampler: &mut S,
     ) -> Result<Self, FitError<S::Error>> {
-        let asked = (Some(request.accuracy), request.precision);
-        let export = Self::measured(machine, asked, None, sampler)?;
+        let (accuracy, precision) = (Some(request.accuracy), request.precision);
+        let export = Self::measured(machine, accuracy, precision, None, sampler)?;
         match export.error_beyond(10.0 * request.accuracy) {
             Some(error) => Err(FitError::NarrowPeak { error }),
             None => export.within_precision(),
@@ -82,7 +82,7 @@ impl Export {
         let first = 2 * machine.curves(PartKind::Motion).len();
         let motion = with_slopes(&motion, first, &machine.rotor_columns());
         let code = Some([motion, reactions, positions]);
-        let mut export = Self::measured(machine, (None, precision), code, sampler)?;
+        let mut export = Self::measured(machine, None, precision, code, sampler)?;
         if let Some(error) = export.error_beyond(0.0) {
             return Err(FitError::OtherOperations { error });
         }
@@ -93,11 +93,12 @@ impl Export {
     /// The export of a machine in cells of an accuracy, or as operations, with its measured errors.
     fn measured<S: FunctionSampler>(
         machine: MachineDescription,
-        asked: (Option<f64>, Precision),
+        accuracy: Option<f64>,
+        precision: Precision,
         code: Option<[StraightLine; 3]>,
         sampler: &mut S,
     ) -> Result<Self, FitError<S::Error>> {
-        let mut one = |kind| fit(&machine, kind, asked, sampler);
+        let mut one = |kind| fit(&machine, kind, accuracy, precision, sampler);
         let fitted = [
             one(PartKind::Motion)?,
             one(PartKind::Reactions)?,
@@ -111,8 +112,8 @@ impl Export {
         let mut export = Self {
             machine,
             request: Request {
-                accuracy: asked.0.unwrap_or_default(),
-                precision: asked.1,
+                accuracy: accuracy.unwrap_or_default(),
+                precision,
             },
             parts: fitted.map(|fitted| fitted.part),
             code,

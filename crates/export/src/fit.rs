@@ -70,7 +70,8 @@ struct Fitter<'a, S> {
 pub(crate) fn fit<S: FunctionSampler>(
     machine: &MachineDescription,
     kind: PartKind,
-    (accuracy, precision): (Option<f64>, Precision),
+    accuracy: Option<f64>,
+    precision: Precision,
     sampler: &mut S,
 ) -> Result<FittedPart, FitError<S::Error>> {
     let columns = machine.columns(kind).into_iter();

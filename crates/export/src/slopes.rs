@@ -12,9 +12,12 @@ pub(crate) fn with_slopes(code: &StraightLine, first: usize, wanted: &[bool]) ->
     let evaluate = |q: RecordedNumber| {
         let all = code.evaluate(&[Sloped::new(q, RecordedNumber::from_f64(1.0))]);
         let slopes = all[first..].iter().zip(wanted);
-        let slopes = slopes.map(|(of, &wanted)| match wanted {
-            true => of.slope,
-            false => RecordedNumber::default(),
+        let slopes = slopes.map(|(of, &wanted)| {
+            if wanted {
+                of.slope
+            } else {
+                RecordedNumber::default()
+            }
         });
         Ok(all.iter().map(|of| of.value).chain(slopes).collect())
     };

@@ -185,11 +185,12 @@ impl Access {
             LoadEffect::VariableDamper { law, .. } => self.resistance(*law, inputs, name, velocity),
             LoadEffect::Motor(_) => {
                 let constant = format!("({p}gear_ratio_{name} * {p}torque_constant_{name})");
-                match effect.has_current() {
-                    true => format!("{constant} * {state}current_{name}"),
-                    false => format!(
+                if effect.has_current() {
+                    format!("{constant} * {state}current_{name}")
+                } else {
+                    format!(
                         "{constant} * ({inputs}voltage_{name} - {constant} * {velocity}) / {p}resistance_{name}"
-                    ),
+                    )
                 }
             }
         }

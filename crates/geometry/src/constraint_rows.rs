@@ -123,16 +123,16 @@ impl ConstraintRows {
         let mut joints = mechanism.joints.iter();
         let counts_revolutions = joints.any(|j| joint_counts_revolutions(mechanism, j));
         for (joint, described) in mechanism.joints.iter().enumerate() {
-            writer.check_bodies(("joint", joint), described.bodies)?;
+            writer.check_bodies("joint", joint, described.bodies)?;
         }
         let mut rows = Vec::with_capacity(2 * mechanism.joints.len() + mechanism.actuators.len());
         for (joint, described) in mechanism.joints.iter().enumerate() {
             rows.extend(writer.joint(joint, described)?);
         }
         for (actuator, described) in mechanism.actuators.iter().enumerate() {
-            let named_by = ("actuator", actuator);
-            writer.check_bodies(named_by, described.bodies)?;
-            rows.push(match writer.term(named_by, described.coordinate())? {
+            writer.check_bodies("actuator", actuator, described.bodies)?;
+            let term = writer.term("actuator", actuator, described.coordinate())?;
+            rows.push(match term {
                 ConstraintTerm::RelativeAngle(angle_columns) if !counts_revolutions => {
                     ConstraintRow::periodic_angle(angle_columns, 0.0)
                 }

@@ -138,7 +138,7 @@ impl Plan {
                             && product < CHANGE_POINT_PRODUCT * maximum[1]
                     })
                 };
-                let advanced = self.advance((&pose, &margins), next, &mut buffers);
+                let advanced = self.advance(&pose, &margins, next, &mut buffers);
                 let reached = &mut buffers.reached;
                 let at_change_point = advanced.as_ref().is_some_and(|left| ended(left));
                 match advanced.filter(|_| !at_change_point) {
@@ -180,15 +180,21 @@ impl Plan {
                             let change_point = at_change_point
                                 || size(&margins[group])[1]
                                     < CHANGE_POINT_PRODUCT * largest[group][1];
-                            let at = (&pose, &margins[group]);
-                            let shallow = size(at.1)[1] < NEAR_PRODUCT * largest[group][1];
+                            let margin = &margins[group];
+                            let shallow = size(margin)[1] < NEAR_PRODUCT * largest[group][1];
                             self.complete_pose(Some(&mut anchor));
                             self.complete_pose(poses.last_mut());
                             let anchor = Some(&anchor).filter(|_| shallow || change_point);
-                            let limit =
-                                self.limit_near(at, (direction, group, change_point), anchor);
-                            near.extend(limit.1);
-                            return Some(limit.0);
+                            let (limit, behind) = self.limit_near(
+                                &pose,
+                                margin,
+                                direction,
+                                group,
+                                change_point,
+                                anchor,
+                            );
+                            near.extend(behind);
+                            return Some(limit);
                         }
                     }
                 }
@@ -220,14 +226,18 @@ impl Plan {
     /// one is near. `margin` is that of the group that ends it.
     fn limit_near(
         &self,
-        (pose, margin): (&Pose<f64>, &Dual),
-        (direction, group, change_point): (f64, usize, bool),
+        pose: &Pose<f64>,
+        margin: &Dual,
+        direction: f64,
+        group: usize,
+        change_point: bool,
         anchor: Option<&Pose<f64>>,
     ) -> (RangeLimit, Option<NearBranch>) {
         // Where the determinant crosses zero, the last step is Newton's.
-        let left = match change_point {
-            true => -margin.v / margin.d,
-            false => 0.0,
+        let left = if change_point {
+            -margin.v / margin.d
+        } else {
+            0.0
         };
         let is_near = left * direction > 0.0 && left.abs() < self.continuation_step(0);
         let q = pose.q[0] + if is_near { left } else { 0.0 };
@@ -253,7 +263,8 @@ impl Plan {
     /// the other branch, with the same sign at both ends.
     fn advance(
         &self,
-        (from, margins): (&Pose<f64>, &[Dual]),
+        from: &Pose<f64>,
+        margins: &[Dual],
         q: f64,
         buffers: &mut StepBuffers,
     ) -> Option<Vec<Dual>> {
@@ -265,7 +276,7 @@ impl Plan {
         let is_clear = |new: &Dual| new.v - new.d * clearance > 0.0;
         if self.is_dyadic() {
             // Closed forms need no prediction.
-            return self.closed_form_margins((from, q), buffers, is_clear);
+            return self.closed_form_margins(from, q, buffers, is_clear);
         }
         buffers.reached = self.corrected_pose(from, q)?;
         let found = self.margins_by_duals(&buffers.reached, &mut buffers.with_slopes)?;

@@ -59,7 +59,7 @@ impl<C: Constant> Plan<C> {
         self.set_actuated(q_dot, &mut motion.velocity);
         for (assur, &inverse) in self.groups.iter().zip(&pose.inverse_determinant) {
             if !assur.pruned {
-                self.group_velocities((assur, inverse), pose, q_dot, motion);
+                self.group_velocities(assur, inverse, pose, q_dot, motion);
             }
         }
     }
@@ -79,7 +79,8 @@ impl<C: Constant> Plan<C> {
     #[inline(always)]
     pub(crate) fn group_velocities<T: Scalar>(
         &self,
-        (assur, inverse): (&AssurGroup<C>, T),
+        assur: &AssurGroup<C>,
+        inverse: T,
         pose: &Pose<T>,
         q_dot: &[T],
         motion: &mut Motion<T>,
@@ -125,9 +126,10 @@ impl<C: Constant> Plan<C> {
                 }
                 GroupKind::GuidedPoint(guided) => {
                     motion.acceleration.angular[guided.frame] = T::from_f64(0.0);
-                    let rates = vector_velocity_and_acceleration(&guided.vectors, pose, motion);
-                    let travel = pose.closure_travel[guided.closure];
-                    let rate = normal_gap_acceleration(rates, guided.axis, travel, pose, motion);
+                    let (first, second) =
+                        vector_velocity_and_acceleration(&guided.vectors, pose, motion);
+                    let (axis, travel) = (guided.axis, pose.closure_travel[guided.closure]);
+                    let rate = normal_gap_acceleration(first, second, axis, travel, pose, motion);
                     motion.acceleration.angular[guided.frame] = -(rate * inverse);
                 }
                 GroupKind::Factored(factored_group) => {
@@ -181,15 +183,16 @@ impl<C: Constant> Plan<C> {
         self.start_rates(assur, q_ddot, &mut motion.acceleration);
         let mut workspace = std::mem::take(&mut motion.workspace);
         let loop_rate = |l: usize| {
-            let rates = gap_velocity_and_acceleration(&self.loop_closures[l], pose, motion);
+            let (first, second) =
+                gap_velocity_and_acceleration(&self.loop_closures[l], pose, motion);
             let travel = pose.closure_travel[l];
-            let normal = |axis| normal_gap_acceleration(rates, axis, travel, pose, motion);
+            let normal = |axis| normal_gap_acceleration(first, second, axis, travel, pose, motion);
             let along_normal = self.loop_closures[l].axis.map(normal);
-            along_normal.map_or(rates.1, |rate| vec2(rate, T::from_f64(0.0)))
+            along_normal.map_or(second, |rate| vec2(rate, T::from_f64(0.0)))
         };
         let coupling_rate = |coupling: &CouplingEquation| {
-            let rates = (&motion.velocity, &motion.acceleration);
-            coupling.acceleration(&pose.angle, &pose.slide_travel, rates)
+            let (first, second) = (&motion.velocity, &motion.acceleration);
+            coupling.acceleration(&pose.angle, &pose.slide_travel, first, second)
         };
         self.fill_rates(assur, loop_rate, coupling_rate, &mut workspace);
         factored_group.solve(pose, &mut workspace[..factored_group.rows]);
@@ -278,7 +281,8 @@ fn normal_gap_velocity<T: Scalar>(
 /// d²/dt² of n·L: n·L̈ − 2 ω_n (axis·L̇) − α_n travel.
 #[inline(always)]
 fn normal_gap_acceleration<T: Scalar>(
-    (velocity, acceleration): (Vec2<T>, Vec2<T>),
+    velocity: Vec2<T>,
+    acceleration: Vec2<T>,
     (axis, frame): (usize, usize),
     travel: T,
     pose: &Pose<T>,

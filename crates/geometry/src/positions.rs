@@ -334,7 +334,7 @@ impl Plan {
         for (g, assur) in self.groups.iter().enumerate() {
             self.group_positions(g, pose)?;
             let inverse = pose.inverse_determinant[g];
-            self.group_velocities((assur, inverse), pose, &[1.0], motion);
+            self.group_velocities(assur, inverse, pose, &[1.0], motion);
             if !each(g, pose, motion) {
                 return Ok(false);
             }

@@ -64,9 +64,6 @@ pub(crate) struct FourBar {
     gravity: f64,
 }
 
-/// The rotation of a body: its unit direction, angular velocity and angular acceleration.
-type BodyRotation = ([f64; 2], f64, f64);
-
 impl FourBar {
     pub(crate) fn new() -> Self {
         let body = |mass, center, inertia| Body {
@@ -116,13 +113,11 @@ impl FourBar {
         let gamma_rate = (hx * ux + hy * uy) * inv;
 
         let [one, two, three] = &self.bodies;
-        let force =
-            |body: &Body, at: [f64; 2], rotation: BodyRotation| self.inertia(body, at, rotation);
-        let (f1, k1) = force(one, [0.0; 2], ([cos, sin], omega, alpha));
-        let along = [ux / self.coupler, uy / self.coupler];
-        let (f2, k2) = force(two, [ax, ay], (along, beta, beta_rate));
-        let along = [vx / self.rocker, vy / self.rocker];
-        let (f3, k3) = force(three, [0.0; 2], (along, gamma, gamma_rate));
+        let (f1, k1) = self.inertia(one, [0.0; 2], [cos, sin], omega, alpha);
+        let coupler = [ux / self.coupler, uy / self.coupler];
+        let (f2, k2) = self.inertia(two, [ax, ay], coupler, beta, beta_rate);
+        let rocker = [vx / self.rocker, vy / self.rocker];
+        let (f3, k3) = self.inertia(three, [0.0; 2], rocker, gamma, gamma_rate);
 
         let p = k3 - self.couple;
         let c = [-(p * ux + k2 * vx) * inv, -(p * uy + k2 * vy) * inv];
@@ -140,13 +135,16 @@ impl FourBar {
         ]
     }
 
-    /// m (a − g) of a body, and the moment of it and of I α about the point that accelerates with `at`.
+    /// m (a − g) of a body in a unit direction, with angular speed w and acceleration alpha; and the moment of it and of I α about the
+    /// point that accelerates with `at`.
     #[inline]
     fn inertia(
         &self,
         body: &Body,
         at: [f64; 2],
-        ([cos, sin], w, alpha): BodyRotation,
+        [cos, sin]: [f64; 2],
+        w: f64,
+        alpha: f64,
     ) -> ([f64; 2], f64) {
         let [x, y] = body.center;
         let (rx, ry) = (cos * x - sin * y, sin * x + cos * y);

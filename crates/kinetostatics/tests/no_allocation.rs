@@ -122,11 +122,11 @@ fn loads(model: &Model) -> Vec<Load> {
     let law = Law::Polynomial(Polynomial::motion(1.0, 2.0, 3.0));
     let direction = vec2(0.0, -1.0);
     let formula = Expression::parse("t + sin(l)", &["t", "l"]).expect("an expression");
-    let formula = Magnitude::Expression(formula, vec![Signal::Time, Signal::Value(length)]);
+    let by_formula = Magnitude::Expression(formula, vec![Signal::Time, Signal::Value(length)]);
     [
         (LoadKind::Gravity { direction }, Magnitude::Constant(9.81)),
         (spring, Magnitude::Law(Signal::Velocity(length), law)),
-        (LoadKind::couple(bodies), formula),
+        (LoadKind::couple(bodies), by_formula),
     ]
     .map(|(kind, magnitude)| Load {
         name: "load".into(),

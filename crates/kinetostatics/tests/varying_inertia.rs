@@ -156,9 +156,9 @@ fn part_of_a_revolution_limits_the_range() {
         model(&[on_ground]),
         Err(ModelError::VaryingInertia { .. })
     ));
-    let negative = positions.cubic(vec![1.5, 1.2, -1.0, 1.2, 1.5]);
+    let values = positions.cubic(vec![1.5, 1.2, -1.0, 1.2, 1.5]);
     let negative = VaryingInertia {
-        inertia: PiecewiseQuintic::through(&positions, &negative, Checked::Slope),
+        inertia: PiecewiseQuintic::through(&positions, &values, Checked::Slope),
         ..part
     };
     assert!(matches!(

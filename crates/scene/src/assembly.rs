@@ -100,8 +100,8 @@ impl<D: AssemblyNotation> ParsedAssembly<D> {
         actuators: &[ParsedActuator<'_, D>],
         section: Option<&TableReader<'_>>,
     ) -> Vec<f64> {
-        let given = |k: usize| self.coordinates[k].or(initial.get(k).copied().flatten());
-        let given = (0..actuators.len()).map(given);
+        let coordinate = |k: usize| self.coordinates[k].or(initial.get(k).copied().flatten());
+        let given = (0..actuators.len()).map(coordinate);
         let mut coordinates: Vec<f64> = given.clone().map(Option::unwrap_or_default).collect();
         let is_missing = |(k, a): &(usize, &ParsedActuator<'_, D>)| {
             a.is_distance() && !self.mentioned.contains(k)

@@ -158,7 +158,7 @@ impl<'a, D: Notation> Bodies<'a, D> {
         let owner = &self.list[id.0];
         let found = owner.by_name.get(point).copied();
         if found.is_none() && owner.points_known {
-            self.list[id.0].report_unknown_point(point, point, (at, "unknown point"), self.log);
+            self.list[id.0].report_unknown_point(point, point, at, "unknown point", self.log);
         }
         found
     }
@@ -184,7 +184,8 @@ impl<D: Notation> ParsedBody<'_, D> {
         &self,
         point: &str,
         name: &str,
-        (at, label): (&Span, &str),
+        at: &Span,
+        label: &str,
         log: &Diagnostics,
     ) {
         let body = shorten(self.name);
@@ -256,9 +257,10 @@ fn read_body<'a, D: Notation>(
     fields.place("inertia", SceneLocation::Inertia(id));
     fields.place("center", SceneLocation::Center(id));
     let mass = body.read_mass(fields, is_ground);
-    let varying = match D::table("body").contains_key("varying-inertia") {
-        true => varying_inertia(fields, id, body.name),
-        false => None,
+    let varying = if D::table("body").contains_key("varying-inertia") {
+        varying_inertia(fields, id, body.name)
+    } else {
+        None
     };
     // The ground never moves: what it weighs has no effect, and must not appear in any balance.
     if !is_ground {
@@ -324,10 +326,12 @@ impl<'a, D: Notation> ParsedBody<'a, D> {
         let point = self.by_name.get(text.as_ref());
         if point.is_none() && self.points_known {
             // `crank.A` is understood, but written as everywhere else it would be one more rule.
-            let without_body = text.strip_prefix(self.name);
-            let without_body = without_body.and_then(|t| t.strip_prefix('.'));
-            let at = (&value.span(), "unknown point of this body");
-            self.report_unknown_point(text, without_body.unwrap_or(text), at, value.log());
+            let behind_name = text.strip_prefix(self.name);
+            let meant = behind_name
+                .and_then(|t| t.strip_prefix('.'))
+                .unwrap_or(text);
+            let label = "unknown point of this body";
+            self.report_unknown_point(text, meant, &value.span(), label, value.log());
         }
         point.map(|&k| self.points[k].1)
     }

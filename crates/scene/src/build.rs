@@ -149,9 +149,10 @@ fn reject_empty(source: &Source, fields: &TableReader<'_>) -> Option<()> {
         return Some(());
     }
     let blank = |c: char| c.is_whitespace() || c == BYTE_ORDER_MARK;
-    let message = match source.inner().trim_matches(blank).is_empty() {
-        true => "the scene is empty",
-        false => "the scene has nothing but comments",
+    let message = if source.inner().trim_matches(blank).is_empty() {
+        "the scene is empty"
+    } else {
+        "the scene has nothing but comments"
     };
     let help = "a scene has at least [bodies] and [joints]";
     let labels = [(&(0..0), "no bodies, no joints")];
@@ -276,8 +277,10 @@ fn read<D: Sections>(
     }
     Some(SceneIn {
         file: SceneFile::new(
-            (name, source),
-            (title.map(one_line), note.map(printable)),
+            name,
+            source,
+            title.map(one_line),
+            note.map(printable),
             fields,
             body_numbers,
         ),

@@ -186,12 +186,12 @@ impl<'a, C: AnyCoordinate> ParsedCoordinates<'a, C> {
         for entry in fields.iter().flat_map(|f| &f.entries) {
             check_coordinate_name(entry, "a coordinate");
             if let Some(k) = parts.bodies.position(entry.name) {
-                let other = (&parts.bodies.list[k].key, "a body");
-                report_ambiguous_name(entry, other, "a coordinate", "a request");
+                let key = &parts.bodies.list[k].key;
+                report_ambiguous_name(entry, key, "a body", "a coordinate", "a request");
             }
             if let Some(k) = all.by_name.get(entry.name) {
-                let other = (&all.list[*k].key, "an actuator");
-                report_ambiguous_name(entry, other, "a coordinate", "an expression");
+                let (key, context) = (&all.list[*k].key, "an expression");
+                report_ambiguous_name(entry, key, "an actuator", "a coordinate", context);
             }
             let location = SceneLocation::Coordinate(all.list.len() - count);
             all.log.place(location, &entry.key);
@@ -266,10 +266,11 @@ pub(crate) fn check_coordinate_name(entry: &Entry<'_>, kind: &str) {
     }
 }
 
-/// `other` is the place and the kind of the first use of the name.
+/// The name stands first at `key`, where it is of the kind `other`.
 pub(crate) fn report_ambiguous_name(
     entry: &Entry<'_>,
-    (key, other): (&Span, &str),
+    key: &Span,
+    other: &str,
     kind: &str,
     context: &str,
 ) {
@@ -292,8 +293,8 @@ pub(crate) fn actuators<'a, D: CoordinateNotation>(
     for entry in &fields.entries {
         check_coordinate_name(entry, "an actuator");
         if let Some(k) = parts.bodies.position(entry.name) {
-            let other = (&parts.bodies.list[k].key, "a body");
-            report_ambiguous_name(entry, other, "an actuator", "[assembly]");
+            let key = &parts.bodies.list[k].key;
+            report_ambiguous_name(entry, key, "a body", "an actuator", "[assembly]");
         }
         let location = SceneLocation::Actuator(ActuatorId(list.len()));
         entry.place(location);
@@ -324,13 +325,13 @@ fn read_coordinate<D: CoordinateNotation>(
     parts: &Parts<'_, '_, D>,
 ) -> Option<D::Coordinate> {
     let fields = TableReader::open(entry, format!("coordinate `{}`", shorten(entry.name)))?;
-    fields.reject_unknown_keys(D::table("coordinate"));
-    let lacks = ("measures nothing", "which angle, travel or length?");
-    let chosen = fields.alternative(D::table("coordinate"), lacks, D::COORDINATE)?;
+    let (table, label) = (D::table("coordinate"), "which angle, travel or length?");
+    fields.reject_unknown_keys(table);
+    let chosen = fields.alternative(table, "measures nothing", label, D::COORDINATE)?;
     if chosen.name != "length" {
         return D::angle_or_travel(chosen, &fields, parts);
     }
-    let (bodies, points) = length(chosen, &fields, ("measures", TWO_POINTS), parts.bodies)?;
+    let (bodies, points) = length(chosen, &fields, "measures", TWO_POINTS, parts.bodies)?;
     Some(D::distance(bodies, points))
 }
 
@@ -338,7 +339,8 @@ fn read_coordinate<D: CoordinateNotation>(
 pub(crate) fn length<D: Notation>(
     entry: &Entry<'_>,
     fields: &TableReader<'_>,
-    (verb, expected): (&str, &str),
+    verb: &str,
+    expected: &str,
     bodies: &Bodies<'_, D>,
 ) -> Option<([BodyId; 2], [D::Point; 2])> {
     let [a, b] = bodies.find_two_points(entry.value, expected, fields.name_of(entry))?;

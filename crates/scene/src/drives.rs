@@ -68,7 +68,7 @@ pub(crate) fn reject_shared_names(
     };
     for drive in &drives.entries {
         if let Some(load) = loads.entries.iter().find(|load| load.name == drive.name) {
-            report_ambiguous_name(drive, (&load.key, "a load"), "a drive", "results");
+            report_ambiguous_name(drive, &load.key, "a load", "a drive", "results");
         }
     }
 }
@@ -90,21 +90,22 @@ impl<C: AnyCoordinate> DriveTable<'_, C> {
 
     fn motor(&self) -> Option<DriveKind<C>> {
         let (fields, units) = (self.fields, self.fields.units());
-        let ratio = NumberRule {
+        let ratio_rule = NumberRule {
             unit: &SI,
             sign: SignRule::NotZero,
             why: "below zero the motor rotates in the opposite direction; at zero it is not connected",
         };
-        let ratio = fields.number_or(1.0, "gear-ratio", &ratio);
+        let ratio = fields.number_or(1.0, "gear-ratio", &ratio_rule);
         if let Some(entry) = fields.get("inertia") {
             units.require_inertia_unit(&entry.value.span(), fields.log());
         }
-        let inertia = NumberRule::new(&units.inertia, SignRule::NotNegative);
-        let inertia = fields.number_or(0.0, "inertia", &inertia);
+        let inertia_rule = NumberRule::new(&units.inertia, SignRule::NotNegative);
+        let inertia = fields.number_or(0.0, "inertia", &inertia_rule);
         let is_torque_speed_line = self.is_torque_speed_line()?;
-        let circuit = match is_torque_speed_line {
-            true => self.torque_speed_line(),
-            false => self.circuit(),
+        let circuit = if is_torque_speed_line {
+            self.torque_speed_line()
+        } else {
+            self.circuit()
         };
         let (voltage, [constant, resistance, inductance]) = circuit?;
         Some(DriveKind::Motor(Motor {
@@ -155,8 +156,8 @@ impl<C: AnyCoordinate> DriveTable<'_, C> {
         let constant = self.fields.number("torque-constant", help, &positive);
         let help = "add for instance `resistance = 1.2`, in ohm";
         let resistance = self.fields.number("resistance", help, &positive);
-        let inductance = NumberRule::new(&SI, SignRule::NotNegative);
-        let inductance = self.fields.number_or(0.0, "inductance", &inductance);
+        let not_negative = NumberRule::new(&SI, SignRule::NotNegative);
+        let inductance = self.fields.number_or(0.0, "inductance", &not_negative);
         Some((voltage?, [constant?, resistance?, inductance?]))
     }
 
@@ -186,9 +187,10 @@ impl<C: AnyCoordinate> DriveTable<'_, C> {
     fn speed_controller(&self) -> Option<DriveKind<C>> {
         let fields = self.fields;
         let unit = fields.units().coordinate_unit(self.is_angle);
-        let [damping, force] = match self.is_angle {
-            true => ["N m s/rad", "N m"],
-            false => ["N s/m", "N"],
+        let [damping, force] = if self.is_angle {
+            ["N m s/rad", "N m"]
+        } else {
+            ["N s/m", "N"]
         };
         let help = format!("add the reference speed: `speed = 10`, in {}/s", unit.name);
         let speed = self.magnitude("speed", unit, &help);
@@ -198,8 +200,8 @@ impl<C: AnyCoordinate> DriveTable<'_, C> {
         let proportional = fields.number("proportional", &help, &gain);
         let integral = fields.number_or(0.0, "integral", &gain);
         let why = format!("it is the largest force or torque, in {force}, in either direction");
-        let limit = NumberRule::new(&SI, SignRule::Positive).because(&why);
-        let limit = fields.number_or(f64::INFINITY, "limit", &limit);
+        let positive = NumberRule::new(&SI, SignRule::Positive).because(&why);
+        let limit = fields.number_or(f64::INFINITY, "limit", &positive);
         Some(DriveKind::SpeedController(SpeedController {
             reference_speed: speed?,
             proportional_gain: proportional?,

@@ -73,16 +73,18 @@ impl SceneError {
         }
     }
 
-    /// An error at a range of the text of another file than a scene, such as a table of numbers: the file's name and its text, and
-    /// the range with a remark.
+    /// An error at a range of the text of another file than a scene, such as a table of numbers: the file's `name` and its text; the
+    /// remark at the range is its `label`.
     pub fn in_text(
-        (name, text): (&str, &str),
+        name: &str,
+        text: &str,
         message: String,
         help: Option<String>,
-        label: (Range<usize>, String),
+        at: Range<usize>,
+        label: String,
     ) -> Self {
         let source = Arc::new(NamedSource::new(name, text.to_owned()));
-        Self::with_labels(&source, message, help, [label])
+        Self::with_labels(&source, message, help, [(at, label)])
     }
 
     /// An error at ranges of the text. The ranges are cut to the text and to character boundaries, since a label
@@ -99,9 +101,10 @@ impl SceneError {
         let written = text.trim_end();
         let last = written.char_indices().next_back().map_or(0, |(at, _)| at);
         let labels = labels.into_iter().map(|(span, label)| {
-            let span = match span.start >= written.len() {
-                true => last..written.len(),
-                false => span,
+            let span = if span.start >= written.len() {
+                last..written.len()
+            } else {
+                span
             };
             let start = text.floor_char_boundary(span.start);
             let end = text.ceil_char_boundary(span.end).max(start);
@@ -113,8 +116,8 @@ impl SceneError {
         {
             let before = text.get(..first.offset()).unwrap_or_default();
             let line = before.matches('\n').count() + 1;
-            let column = before.rsplit('\n').next().unwrap_or_default();
-            let column = column.chars().count() + 1;
+            let in_line = before.rsplit('\n').next().unwrap_or_default();
+            let column = in_line.chars().count() + 1;
             let position = format!("{}, line {line}, column {column}", source.name());
             return Self::without_labels(format!("{message} ({position})"), help);
         }

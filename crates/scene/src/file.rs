@@ -33,8 +33,10 @@ pub struct SceneFile {
 impl SceneFile {
     /// A file that has been read without errors.
     pub(crate) fn new(
-        (name, source): (String, &Source),
-        (title, note): (Option<String>, Option<String>),
+        name: String,
+        source: &Source,
+        title: Option<String>,
+        note: Option<String>,
         fields: &TableReader<'_>,
         body_numbers: Vec<SceneNumber>,
     ) -> Self {

@@ -60,14 +60,14 @@ fn add_loads(
             LoadKind::rotational_damper(bodies),
         ],
     };
-    let friction = friction.map(|friction| Friction {
+    let in_joint = |friction| Friction {
         joint: id,
         ..friction
-    });
-    let friction = friction.map(Magnitude::Friction);
+    };
+    let dry = friction.map(in_joint).map(Magnitude::Friction);
     let viscous = viscous.map(Magnitude::Constant);
     let both = [
-        ("coefficient", "friction", force, friction),
+        ("coefficient", "friction", force, dry),
         ("viscous", "viscous", damper, viscous),
     ];
     push_loads(fields, &joint.name, both, loads);
@@ -104,9 +104,10 @@ fn read_friction<'a>(
     let fields = TableReader::open(entry, format!("friction of `{name}`"))?;
     let is_revolute = has_pin(entry, kind)?;
     let form = FrictionForm {
-        table: match is_revolute {
-            true => table("revolute-friction"),
-            false => table("prismatic-friction"),
+        table: if is_revolute {
+            table("revolute-friction")
+        } else {
+            table("prismatic-friction")
         },
         joint_kind: kind.name(),
         is_angular: is_revolute,
@@ -229,12 +230,13 @@ impl FrictionForm<'_> {
         // What seems to be missing may be a key that is misspelt.
         let misspelt = fields.unknown_entries(table).next().is_some();
         if dry.is_none() && fields.get("viscous").is_none() && !misspelt {
-            let (missing, help) = match table.contains_key("viscous") {
-                true => (
+            let (missing, help) = if table.contains_key("viscous") {
+                (
                     "neither `coefficient` nor `viscous`",
                     "add a `coefficient` of dry friction, or `viscous`",
-                ),
-                false => ("no `coefficient`", "add a `coefficient` of dry friction"),
+                )
+            } else {
+                ("no `coefficient`", "add a `coefficient` of dry friction")
             };
             let message = format!("{} has {missing}", fields.what);
             let labels = [(&fields.span, "no friction is given")];

@@ -62,10 +62,10 @@ fn report_missing_kind(fields: &TableReader<'_>, thing: &str, kinds: &[&'static 
     }
     let first = kinds.iter().take(1).flat_map(|t| &t.keys);
     let needed = first.filter(|k| k.presence.is_none());
-    let example: Vec<_> = needed
+    let keys: Vec<_> = needed
         .map(|k| format!("{} = {}", k.name, k.example))
         .collect();
-    let example = example.join(", ");
+    let example = keys.join(", ");
     let list = list(kind_names).unwrap_or_default();
     let help = format!("write it as `{{ {example} }}`; the kinds are {list}");
     let message = format!("{} has no kind", fields.what);

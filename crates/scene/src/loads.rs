@@ -79,13 +79,15 @@ pub(crate) trait LoadReader: Sized {
     /// The k-th load without its name, of a kind other than gravity.
     fn kind_and_size(
         &self,
-        (kind, entry): (&str, &Entry<'_>),
-        (fields, k): (&TableReader<'_>, usize),
+        kind: &str,
+        entry: &Entry<'_>,
+        fields: &TableReader<'_>,
+        k: usize,
     ) -> Option<(KindOf<Self>, Magnitude<Self::Coordinate>)> {
         let Some(&(_, place, law)) = KINDS.iter().find(|(name, ..)| *name == kind) else {
             return reject_unread_kind(entry);
         };
-        let load_kind = self.load_kind((place, law), entry, fields);
+        let load_kind = self.load_kind(place, law, entry, fields);
         let words = law.words();
         let (size, is_couple) = (
             words.magnitude,
@@ -104,7 +106,8 @@ pub(crate) trait LoadReader: Sized {
 
     fn load_kind(
         &self,
-        (place, law): (Place, Strength),
+        place: Place,
+        law: Strength,
         entry: &Entry<'_>,
         fields: &TableReader<'_>,
     ) -> Option<KindOf<Self>> {
@@ -210,7 +213,7 @@ impl Names<'_> {
             fields.place(kind, SceneLocation::Magnitude(k));
             return gravity(entry.value, &fields.name_of(entry));
         }
-        self.kind_and_size((kind, entry), (fields, k))
+        self.kind_and_size(kind, entry, fields, k)
     }
 
     fn two_bodies(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<[BodyId; 2]> {
@@ -259,9 +262,10 @@ impl LoadReader for Names<'_> {
         Some(LoadKind::Force {
             body,
             point,
-            direction: match body_fixed {
-                true => Direction::Body(direction),
-                false => Direction::Ground(direction),
+            direction: if body_fixed {
+                Direction::Body(direction)
+            } else {
+                Direction::Ground(direction)
             },
         })
     }

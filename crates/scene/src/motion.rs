@@ -123,8 +123,8 @@ impl<'a> ParsedMotion<'a> {
         };
         for (k, actuator) in actuators.iter().enumerate() {
             if let Some(entry) = &self.prescribed[k] {
-                let range = (assembly_coordinates[k], end);
-                self.laws[k] = law_of(entry, "[motion.prescribed]", actuator, range);
+                let start = assembly_coordinates[k];
+                self.laws[k] = law_of(entry, "[motion.prescribed]", actuator, start, end);
             }
         }
     }
@@ -231,9 +231,10 @@ impl PerActuator<'_, '_> {
         let each = free.iter().map(|&k| self.actuators[k].name);
         let each: Vec<_> = each.map(|name| format!("{name} = 0.0")).collect();
         let example = shorten(&each.join(", "));
-        let kind = match free.len() == all {
-            true => "actuators",
-            false => "free actuators",
+        let kind = if free.len() == all {
+            "actuators"
+        } else {
+            "free actuators"
         };
         let message = format!("{what} is one number for {} {kind}", free.len());
         let help = format!("write `{} = {{ {example} }}`", self.key);

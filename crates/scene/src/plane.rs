@@ -58,8 +58,8 @@ fn read_actuator(entry: &Entry<'_>, bodies: &Bodies<'_>, joints: &Joints<'_>) ->
     let fields = TableReader::open(entry, what)?;
     fields.reject_unknown_keys(table("actuator"));
     let help = "add `angle = [\"ground\", \"crank\"]`: the angle of the second body from the first; or `length` with the name of a sliding joint or with two points";
-    let lacks = ("has no coordinate", "which angle or length?");
-    let chosen = fields.alternative(table("actuator"), lacks, help)?;
+    let (lacks, label) = ("has no coordinate", "which angle or length?");
+    let chosen = fields.alternative(table("actuator"), lacks, label, help)?;
     let (bodies, kind) = match (chosen.name, chosen.value.get()) {
         ("angle", _) => {
             let bodies = angle(chosen, &fields, "drives", bodies)?;
@@ -72,7 +72,7 @@ fn read_actuator(entry: &Entry<'_>, bodies: &Bodies<'_>, joints: &Joints<'_>) ->
         }
         _ => {
             let expected = "a sliding joint, or two points [\"body.point\", \"body.point\"]";
-            let (bodies, points) = length(chosen, &fields, ("drives", expected), bodies)?;
+            let (bodies, points) = length(chosen, &fields, "drives", expected, bodies)?;
             (bodies, ActuatorKind::Length(points))
         }
     };

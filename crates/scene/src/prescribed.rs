@@ -100,7 +100,7 @@ pub(crate) fn prescribed_motion(
         let entry = (*entry)?;
         let location = SceneLocation::PrescribedLaw(ActuatorId(k));
         entry.place(location);
-        law_of(entry, "[prescribed]", &actuators[k], (start[k], end))
+        law_of(entry, "[prescribed]", &actuators[k], start[k], end)
     };
     // All are read before one is missed, so that each error is reported.
     let laws: Vec<Option<Law>> = entries.iter().enumerate().map(law).collect();
@@ -116,13 +116,14 @@ pub(crate) fn law_of(
     entry: &Entry<'_>,
     section: &str,
     actuator: &NamedActuator<'_>,
-    (start, end): (f64, f64),
+    start: f64,
+    end: f64,
 ) -> Option<Law> {
     let fields = TableReader::open(entry, format!("`{}` in {section}", shorten(entry.name)))?;
     fields.reject_unknown_keys(table("law"));
     let laws = list(table("law").alternatives().into_iter()).unwrap_or_default();
     let help = format!("write it as `{{ speed = 1.0 }}`; the laws are {laws}");
-    let chosen = fields.alternative(table("law"), ("has no law", "no motion law"), help)?;
+    let chosen = fields.alternative(table("law"), "has no law", "no motion law", help)?;
     let domain = LawDomain {
         variable: "t",
         x_unit: &SI,

@@ -76,9 +76,10 @@ fn bytes(path: &Path, display_path: &str) -> Result<Vec<u8>, SceneError> {
     let error = SceneError::without_labels;
     if path.is_dir() {
         let inside = path.join("scene.toml");
-        let help = match inside.is_file() {
-            true => format!("did you mean `{}`?", inside.display()),
-            false => "give the scene file itself".to_owned(),
+        let help = if inside.is_file() {
+            format!("did you mean `{}`?", inside.display())
+        } else {
+            "give the scene file itself".to_owned()
         };
         return Err(error(format!("`{display_path}` is a folder"), Some(help)));
     }

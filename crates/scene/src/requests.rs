@@ -98,8 +98,8 @@ pub(crate) fn one_reaction<D: ReactionNotation>(
         .iter()
         .map(|r| D::name_of_reaction(*r, parts.joints))
         .collect();
-    let names = list(names.iter().map(String::as_str)).unwrap_or_default();
-    let help = format!("name one of {names}");
+    let choices = list(names.iter().map(String::as_str)).unwrap_or_default();
+    let help = format!("name one of {choices}");
     fields
         .log()
         .reject(message, &[(at, "which of them?")], help)

@@ -25,7 +25,7 @@ pub(crate) fn read_root<S>(
 ) -> Result<S, SceneError> {
     let fields = |units| {
         let context = Context { units, log };
-        TableReader::new("the scene", (0..0, 0..0), root, context)
+        TableReader::new("the scene", 0..0, 0..0, root, context)
     };
     let si = Units::default();
     let units = Units::read(fields(&si).get("units"));

@@ -100,7 +100,7 @@ impl Doubtful for Plane {
         Figures {
             file: &scene.file,
             size: mechanism.size(),
-            bodies: body_figures(names, (BodyId(mechanism.ground), joints), body),
+            bodies: body_figures(names, BodyId(mechanism.ground), joints, body),
             gravities: constant(gravities),
             angles: of_bodies
                 .chain(starting_angles(actuators, &scene.assembly.coordinates))
@@ -133,7 +133,7 @@ impl Doubtful for Space {
         Figures {
             file: &scene.file,
             size: mechanism.size(),
-            bodies: body_figures(names, (BodyId(mechanism.ground), joints), body),
+            bodies: body_figures(names, BodyId(mechanism.ground), joints, body),
             gravities: constant(gravities),
             angles: starting_angles(actuators, &scene.assembly.q).collect(),
         }
@@ -143,7 +143,8 @@ impl Doubtful for Space {
 /// The bodies without the ground; `of` returns mass and inertia, centre of mass and points of one.
 fn body_figures<'s>(
     names: impl Iterator<Item = &'s str>,
-    (ground, joints): (BodyId, impl Iterator<Item = [BodyId; 2]>),
+    ground: BodyId,
+    joints: impl Iterator<Item = [BodyId; 2]>,
     of: impl Fn(usize) -> ([f64; 2], [f64; 3], Vec<[f64; 3]>),
 ) -> Vec<BodyFigures<'s>> {
     let held = joints.filter(|pair| pair.contains(&ground)).flatten();
@@ -206,7 +207,8 @@ impl Figures<'_> {
         let mut all: Vec<SceneWarning> = gravities
             .filter_map(|&(k, value)| self.gravity(k, value))
             .collect();
-        all.extend(self.angles.iter().filter_map(|angle| self.angle(angle)));
+        let angles = self.angles.iter();
+        all.extend(angles.filter_map(|&(at, name, angle)| self.angle(at, name, angle)));
         match self.size() {
             // Lengths in another unit make every inertia look wrong, too.
             Some(size) => all.push(size),
@@ -236,17 +238,17 @@ impl Figures<'_> {
         (is(1e3) || is(1e-3)).then(|| self.warning(message, "an acceleration of gravity", at))
     }
 
-    /// Warns of an angle at the start of many revolutions in radians, which is probably in degrees.
-    fn angle(&self, (at, name, angle): &(SceneLocation, &str, f64)) -> Option<SceneWarning> {
+    /// An angle at the start of many revolutions in radians: meant in degrees.
+    fn angle(&self, at: SceneLocation, name: &str, angle: f64) -> Option<SceneWarning> {
         let is_suspicious =
             self.file.to_scene_unit(1.0, true).0 == 1.0 && angle.abs() > REVOLUTIONS * TAU;
         let message = format!(
             "is a unit meant otherwise? `{}` is at {} rad at the start, {} revolutions; [units] angle = \"deg\" gives degrees",
             shorten(name),
-            short(*angle),
+            short(angle),
             short(angle / TAU)
         );
-        is_suspicious.then(|| self.warning(message, "an angle in rad", *at))
+        is_suspicious.then(|| self.warning(message, "an angle in rad", at))
     }
 
     /// A size that the masses contradict: metres for millimetres, or the reverse.
@@ -275,9 +277,10 @@ impl Figures<'_> {
             let radius = body.radius_of_gyration();
             let size = self.size.max(body.size);
             let narrowest = (NARROWEST[0] * size).max(NARROWEST[1] * body.size);
-            match is_large {
-                true => size > 0.0 && radius > WIDEST * size,
-                false => radius > 0.0 && radius < narrowest,
+            if is_large {
+                size > 0.0 && radius > WIDEST * size
+            } else {
+                radius > 0.0 && radius < narrowest
             }
         };
         let suspicious = || self.bodies.iter().filter(is_suspicious);
@@ -285,9 +288,10 @@ impl Figures<'_> {
         let names = list(suspicious().map(|body| body.name)).unwrap_or_default();
         let size = self.size.max(body.size);
         let (radius, unit) = self.file.to_scene_unit(body.radius_of_gyration(), false);
-        let (what, extent) = match body.size > 0.0 {
-            true => ("its points are within", body.size),
-            false => ("links are up to", size),
+        let (what, extent) = if body.size > 0.0 {
+            ("its points are within", body.size)
+        } else {
+            ("links are up to", size)
         };
         let message = format!(
             "is a unit meant otherwise? By its inertia and mass `{}` has a radius of gyration of {} {unit}, but {what} {} {unit}: {} Check {names}",

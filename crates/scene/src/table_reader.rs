@@ -64,7 +64,8 @@ pub(crate) struct TableReader<'a> {
 impl<'a> TableReader<'a> {
     pub(crate) fn new(
         what: impl Into<String>,
-        (key, span): (Span, Span),
+        key: Span,
+        span: Span,
         table: &'a DeTable<'a>,
         context: Context<'a>,
     ) -> Self {
@@ -94,9 +95,7 @@ impl<'a> TableReader<'a> {
     pub(crate) fn of_value(value: Value<'a>, key: Span, what: impl Into<String>) -> Option<Self> {
         let what = what.into();
         match value.get() {
-            DeValue::Table(table) => {
-                Some(Self::new(what, (key, value.span()), table, value.context))
-            }
+            DeValue::Table(table) => Some(Self::new(what, key, value.span(), table, value.context)),
             _ => value.mismatch("a table", what),
         }
     }
@@ -207,7 +206,8 @@ impl<'a> TableReader<'a> {
     pub(crate) fn alternative(
         &self,
         table: &'static TableSchema,
-        (lacks, label): (&str, &str),
+        lacks: &str,
+        label: &str,
         help: impl Into<String>,
     ) -> Option<&Entry<'a>> {
         let alternatives = table.alternatives();

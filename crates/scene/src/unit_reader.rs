@@ -64,10 +64,10 @@ fn find_inertia(name: &str) -> Option<Unit> {
     let mut parts = name.split([' ', '·', '*']).filter(|part| !part.is_empty());
     let mass = find(&MASSES, parts.next()?)?;
     let squared = parts.next()?;
-    let length = squared
+    let length_name = squared
         .strip_suffix("^2")
         .or_else(|| squared.strip_suffix(['2', '²']))?;
-    let length = find(&LENGTHS, length)?;
+    let length = find(&LENGTHS, length_name)?;
     if parts.next().is_some() {
         return None;
     }

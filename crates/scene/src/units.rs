@@ -86,9 +86,6 @@ impl Default for Units {
 impl Units {
     /// The unit of an angle, or of a length.
     pub(crate) fn coordinate_unit(&self, is_angle: bool) -> &Unit {
-        match is_angle {
-            true => &self.angle,
-            false => &self.length,
-        }
+        if is_angle { &self.angle } else { &self.length }
     }
 }

@@ -167,10 +167,10 @@ impl<'a> Value<'a> {
     /// A number in SI.
     pub(crate) fn quantity(self, unit: &Unit, what: impl Display) -> Option<f64> {
         let si = unit.to_si(self.number(&what)?);
-        match si.abs() <= MAX_NUMBER {
-            true => Some(si),
-            false => self.too_large(what),
+        if si.abs() <= MAX_NUMBER {
+            return Some(si);
         }
+        self.too_large(what)
     }
 
     /// A point, m.
@@ -194,9 +194,10 @@ impl<'a> Value<'a> {
 
     /// A coordinate or its speed, in SI: an angle does not have too many revolutions.
     pub(crate) fn coordinate(self, is_angle: bool, what: impl Display) -> Option<f64> {
-        match is_angle {
-            true => self.angle(what),
-            false => self.quantity(&self.units().length, what),
+        if is_angle {
+            self.angle(what)
+        } else {
+            self.quantity(&self.units().length, what)
         }
     }
 
@@ -217,10 +218,10 @@ impl<'a> Value<'a> {
             ),
             SignRule::NotZero => (si != 0.0, "is zero", "expected a number other than 0"),
         };
-        match good {
-            true => Some(si),
-            false => self.reject(format!("{what} {wrong}"), expected, rule.why),
+        if good {
+            return Some(si);
         }
+        self.reject(format!("{what} {wrong}"), expected, rule.why)
     }
 
     /// A count of at least two and at most a million.

@@ -41,7 +41,9 @@ pub(crate) fn varying_inertia<'a>(
     curves.check(
         &fields,
         entry,
-        (&inertia, half_slope.as_deref(), &inertia_curve),
+        &inertia,
+        half_slope.as_deref(),
+        &inertia_curve,
     )?;
     let reactions = match fields.get("reactions") {
         Some(entry) => reactions(entry, &curves, count)?,
@@ -119,9 +121,10 @@ impl Curves {
     }
 
     fn plain(&self, values: &[f64]) -> SampledCurve {
-        match self.by_series {
-            true => SampledCurve::series(&values[..self.rows]),
-            false => self.positions.cubic(values[..self.rows].to_vec()),
+        if self.by_series {
+            SampledCurve::series(&values[..self.rows])
+        } else {
+            self.positions.cubic(values[..self.rows].to_vec())
         }
     }
 
@@ -143,7 +146,9 @@ impl Curves {
         &self,
         fields: &TableReader<'_>,
         entry: &Entry<'_>,
-        (inertia, half_slope, curve): (&[f64], Option<&[f64]>, &SampledCurve),
+        inertia: &[f64],
+        half_slope: Option<&[f64]>,
+        curve: &SampledCurve,
     ) -> Option<()> {
         if let Some(k) = inertia.iter().position(|&i| i <= 0.0) {
             let message = format!(

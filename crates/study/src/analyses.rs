@@ -385,13 +385,13 @@ pub fn symbolic<S: StudyScene>(
     format: FormulaFormat,
     reaction: Option<&str>,
 ) -> Result<Outcome, StudyError> {
-    let found = scene.closed_form(reaction)?;
+    let (form, findings) = scene.closed_form(reaction)?;
     let written = WrittenForm {
         file: scene,
         coordinate: scene.actuator(0).unwrap_or_default().0,
-        notes: &scene.closed_form_notes(&found.0),
+        notes: &scene.closed_form_notes(&form),
     };
-    Ok(closed_form_outcome(&written, found, format))
+    Ok(closed_form_outcome(&written, form, findings, format))
 }
 
 /// Fits the functions of a scene's machine for export.

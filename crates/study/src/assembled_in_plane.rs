@@ -24,9 +24,10 @@ impl AskedScene for PlaneScene {
     }
 
     fn unit_models(&self, reactions: &[Reaction]) -> Result<UnitModels<Model>, StudyError> {
-        let loaded = match self.loads.is_empty() {
-            true => None,
-            false => Some(with_loads(self, compile_model(self, reactions)?)?),
+        let loaded = if self.loads.is_empty() {
+            None
+        } else {
+            Some(with_loads(self, compile_model(self, reactions)?)?)
         };
         Ok(UnitModels {
             exact: reduced_model(self, reactions)?,

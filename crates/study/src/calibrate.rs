@@ -149,9 +149,10 @@ impl BracketSearch {
             [shortest, longest] if shortest == longest => format!("the period stays {shortest} s"),
             [shortest, longest] => format!("it gives periods from {shortest} to {longest} s"),
         };
-        let help = match self.left_range {
-            true => "beyond these values the motion has no period",
-            false => "calibrate another value, or require a period within this interval",
+        let help = if self.left_range {
+            "beyond these values the motion has no period"
+        } else {
+            "calibrate another value, or require a period within this interval"
         };
         (format!("from {from} to {to} {unit} {periods}"), help)
     }
@@ -288,15 +289,15 @@ impl CalibratedScene for SpaceScene {
 }
 
 fn refuse_drives(scene: &impl MachineScene) -> Result<(), StudyError> {
-    match scene.drives().is_empty() {
-        true => Ok(()),
-        false => Err(scene_error(
-            scene,
-            "calibration needs the period of a motion without drives",
-            "remove the drives, or try values with `dwell simulate` or `dwell sweep --result cycle`",
-            [(SceneLocation::Drive(0), "this drive would be ignored")],
-        )),
+    if scene.drives().is_empty() {
+        return Ok(());
     }
+    Err(scene_error(
+        scene,
+        "calibration needs the period of a motion without drives",
+        "remove the drives, or try values with `dwell simulate` or `dwell sweep --result cycle`",
+        [(SceneLocation::Drive(0), "this drive would be ignored")],
+    ))
 }
 
 fn without_potential(scene: &impl MachineScene, load: usize) -> StudyError {

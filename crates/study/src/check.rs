@@ -23,7 +23,7 @@ pub(crate) fn description(scene: &PlaneScene, record: &mut Record) -> Result<Str
     let actuators = mechanism.actuators.iter().map(|a| a.name.as_str());
     let mut text = describe_parts(scene, "", parts, actuators, record);
     text += &describe_freedom(scene, plan, record);
-    text += &describe_range((scene, mechanism), plan, record);
+    text += &describe_range(scene, mechanism, plan, record);
     text += &describe_groups(mechanism, plan, record);
     text += &(describe_branch(scene, plan, record) + &branch_note(scene, plan));
     text += &describe_contents(scene, plan, record);
@@ -127,7 +127,8 @@ pub(crate) fn describe_redundant(
 /// The range of an actuator; `note` describes its ends.
 pub(crate) fn range_text(
     file: &SceneFile,
-    (name, is_angle): (&str, bool),
+    name: &str,
+    is_angle: bool,
     range: Range,
     note: &str,
     record: &mut Record,
@@ -154,7 +155,8 @@ pub(crate) fn range_text(
 
 /// The range of the actuator.
 fn describe_range(
-    (file, mechanism): (&SceneFile, &Mechanism),
+    file: &SceneFile,
+    mechanism: &Mechanism,
     plan: &Plan,
     record: &mut Record,
 ) -> String {
@@ -177,7 +179,7 @@ fn describe_range(
         Range::Unbounded if is_angle => {
             format!("  {name} is unlimited; the mechanism is not periodic within 8 revolutions\n")
         }
-        range => range_text(file, (name, is_angle), range, note, record),
+        range => range_text(file, name, is_angle, range, note, record),
     };
     let limits = plan.range_limits().into_iter().flatten();
     let limits = limits.map(|limit| {
@@ -191,7 +193,7 @@ fn describe_range(
         };
         format!(
             "    {}{beyond}\n",
-            describe_limit((file, mechanism), plan, limit, 0.0)
+            describe_limit(file, mechanism, plan, limit, 0.0)
         )
     });
     text + &limits.collect::<String>()
@@ -221,7 +223,7 @@ fn describe_groups(mechanism: &Mechanism, plan: &Plan, record: &mut Record) -> S
                 _ => "other assembly mode:",
             };
             let mode_name = format!("group.{}.mode.{}", g + 1, k + 1);
-            let mode = describe_mode(mechanism, found, mode, (&mode_name, record));
+            let mode = describe_mode(mechanism, found, mode, &mode_name, record);
             text += &format!("       {label} {mode}\n");
         }
     }
@@ -233,7 +235,8 @@ fn describe_mode(
     mechanism: &Mechanism,
     found: &GroupModes,
     mode: &[f64],
-    (mode_name, record): (&str, &mut Record),
+    mode_name: &str,
+    record: &mut Record,
 ) -> String {
     let (angles, values) = mode.split_at(found.bodies.len().min(mode.len()));
     let angles = found.bodies.iter().zip(angles).map(|(body, angle)| {
@@ -308,12 +311,12 @@ fn describe_pruning(scene: &PlaneScene, model: &Model) -> String {
         let requested = requested_reaction_bodies(scene);
         let unloaded = Model::clone(model).with_loads(Vec::new());
         let pruned = unloaded.map(|model| model.pruned_for(&requested).plan().pruned_groups());
-        let pruned = pruned.unwrap_or_default().into_iter().enumerate();
-        let pruned: Vec<String> = pruned.filter(|s| s.1).map(|(g, _)| group(g)).collect();
-        if !pruned.is_empty() {
-            let pruned = pruned.join("; ");
+        let groups = pruned.unwrap_or_default().into_iter().enumerate();
+        let skipped: Vec<String> = groups.filter(|s| s.1).map(|(g, _)| group(g)).collect();
+        if !skipped.is_empty() {
             text += &format!(
-                "  skipped by `reduce` and `simulate`, as they affect no inertia or requested reaction: {pruned}\n"
+                "  skipped by `reduce` and `simulate`, as they affect no inertia or requested reaction: {}\n",
+                skipped.join("; ")
             );
         }
     }
@@ -322,9 +325,9 @@ fn describe_pruning(scene: &PlaneScene, model: &Model) -> String {
         let varies = scene.varying_inertias.iter().any(|v| v.body.0 == b);
         !varies && mass.is_some_and(|mass| mass.mass == 0.0 && mass.inertia == 0.0)
     };
-    let massless = plan.moving_bodies().iter().map(|c| c.body);
-    let massless = massless.filter(is_massless).map(BodyId);
-    let massless = list(massless.map(|b| mechanism.body_name(b)));
+    let moving = plan.moving_bodies().iter().map(|c| c.body);
+    let bodies = moving.filter(is_massless).map(BodyId);
+    let massless = list(bodies.map(|b| mechanism.body_name(b)));
     if !massless.is_empty() {
         text += &format!("  massless, so without inertia forces: {massless}\n");
     }

@@ -34,7 +34,7 @@ pub(crate) fn describe_contents(scene: &PlaneScene, plan: &Plan, record: &mut Re
     }
     text + &describe_masses(scene, frames.as_deref(), record)
         + &describe_varying_inertias(scene, record)
-        + &describe_actions(scene, (&scene.loads, &names), &motions, record)
+        + &describe_actions(scene, &scene.loads, &names, &motions, record)
 }
 
 /// The motions of a scene in the plane or in space.
@@ -171,28 +171,26 @@ fn describe_varying_inertias(scene: &PlaneScene, record: &mut Record) -> String 
     scene.varying_inertias.iter().map(one).collect()
 }
 
-/// The loads of a scene in the plane or in space, its drives, its stops and its
-/// motions.
+/// The loads of a scene in the plane or in space, by the names of what they act on, its drives, its stops and its motions.
 pub(crate) fn describe_actions<S: MachineScene, R>(
     scene: &S,
-    loads: NamedLoads<'_, S::Model>,
+    loads: &[ModelLoad<S::Model>],
+    names: &LoadNames<'_>,
     motions: &ScheduledMotions<'_, CoordinateOf<S>, R>,
     record: &mut Record,
 ) -> String {
-    describe_loads(scene, loads, record)
+    describe_loads(scene, loads, names, record)
         + &describe_drives(scene, record)
         + &describe_stops(scene, record)
         + &describe_motions(scene, motions, record)
 }
 
-/// The loads of a model, and the names of the bodies and joints on which they act.
-type NamedLoads<'a, M> = (&'a [ModelLoad<M>], &'a LoadNames<'a>);
-
-/// A description of a magnitude: its constant, or its signals.
+/// A constant, or what a magnitude depends on.
 fn magnitude<S: MachineScene>(
     scene: &S,
     of: &Magnitude<CoordinateOf<S>>,
-    (name, unit): (&str, &str),
+    name: &str,
+    unit: &str,
     record: &mut Record,
 ) -> String {
     match of {
@@ -210,9 +208,10 @@ fn magnitude<S: MachineScene>(
             };
             let mut names: Vec<String> = other.signals().iter().map(name_of).collect();
             names.dedup();
-            match names.is_empty() {
-                true => format!("in {unit}"),
-                false => format!("a function of {}, in {unit}", names.join(", ")),
+            if names.is_empty() {
+                format!("in {unit}")
+            } else {
+                format!("a function of {}, in {unit}", names.join(", "))
             }
         }
     }
@@ -220,7 +219,8 @@ fn magnitude<S: MachineScene>(
 
 fn describe_loads<S: MachineScene>(
     scene: &S,
-    (loads, names): NamedLoads<'_, S::Model>,
+    loads: &[ModelLoad<S::Model>],
+    names: &LoadNames<'_>,
     record: &mut Record,
 ) -> String {
     if loads.is_empty() {
@@ -229,7 +229,7 @@ fn describe_loads<S: MachineScene>(
     let lines = loads.iter().map(|load| {
         let (kind, unit) = (load.kind.label(names), load.kind.unit().replace('2', "²"));
         let name = format!("load.{}", load.name);
-        let magnitude = magnitude(scene, &load.magnitude, (&name, &unit), record);
+        let magnitude = magnitude(scene, &load.magnitude, &name, &unit, record);
         format!("    {}: {kind}, {magnitude}\n", load.name)
     });
     "  loads:\n".to_owned() + &lines.collect::<String>()
@@ -243,7 +243,7 @@ fn describe_drives<S: MachineScene>(scene: &S, record: &mut Record) -> String {
         let is_angle = S::is_angle(drive.coordinate);
         let words = drive.kind.words(is_angle);
         let name = format!("drive.{}", drive.name);
-        let input = magnitude(scene, drive.kind.input(), (&name, words.input_unit), record);
+        let input = magnitude(scene, drive.kind.input(), &name, words.input_unit, record);
         let on = scene.name_of_coordinate(drive.coordinate);
         format!("    {}: {} on {on}, {input}\n", drive.name, words.kind)
     });
@@ -301,9 +301,10 @@ fn describe_motions<C, R>(
     if let Some(motion) = motions.motion {
         text += &describe_free_motion(scene, motion, record);
     }
-    match text.is_empty() {
-        true => "  no motion: add [prescribed], [coordinate-sweep] or [motion]\n".to_owned(),
-        false => text,
+    if text.is_empty() {
+        "  no motion: add [prescribed], [coordinate-sweep] or [motion]\n".to_owned()
+    } else {
+        text
     }
 }
 

@@ -8,9 +8,12 @@ pub fn digits(value: f64, count: usize) -> String {
         return text;
     };
     let power: i32 = exponent.parse().unwrap_or(0);
-    let trimmed = |text: &str| match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text.to_owned(),
+    let trimmed = |text: &str| {
+        if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        } else {
+            text.to_owned()
+        }
     };
     let max_exponent = i32::try_from(count).unwrap_or(i32::MAX).max(6);
     if value == 0.0 {
@@ -27,9 +30,10 @@ pub fn digits(value: f64, count: usize) -> String {
 /// `value` with the digits that its `error` leaves, at most `count`; zero if it leaves none.
 pub(crate) fn digits_within(value: f64, error: f64, count: usize) -> String {
     if !(value.abs() > error && value.is_finite()) {
-        return match value.is_finite() && error.is_finite() {
-            true => "0".to_owned(),
-            false => digits(value, count),
+        return if value.is_finite() && error.is_finite() {
+            "0".to_owned()
+        } else {
+            digits(value, count)
         };
     }
     let known = value.abs().log10().floor() - error.log10().ceil() + 1.0;

@@ -86,7 +86,7 @@ impl DenseMechanism {
         for step in 1..=MAX_NEWTON_STEPS {
             let lu = self.factor(&poses, &rows)?;
             self.rows.residual(&poses, since, row_values, &mut residual);
-            let mut correction = self.solve((&lu, &rows), &residual);
+            let mut correction = self.solve(&lu, &rows, &residual);
             let norm = self.scaled_norm(&correction);
             if norm.is_nan() || norm >= MAX_NEWTON_STEP {
                 return not_closed(step, norm);
@@ -249,7 +249,7 @@ impl DenseMechanism {
                 .zip(&here.row_values)
                 .map(|(t, h)| t - h)
                 .collect();
-            let velocity = self.solve((&here.lu, &here.rows), &remaining);
+            let velocity = self.solve(&here.lu, &here.rows, &remaining);
             let mut part = (MAX_FOLLOW_STEP / self.scaled_norm(&velocity)).min(1.0);
             let mut halvings = 0;
             here = loop {
@@ -308,7 +308,7 @@ impl DenseMechanism {
     pub fn unit_velocity(&self, at: &Configuration, row: usize) -> Vec<f64> {
         let mut rates = vec![0.0; self.rows.len()];
         rates[row] = 1.0;
-        self.solve((&at.lu, &at.rows), &rates)
+        self.solve(&at.lu, &at.rows, &rates)
     }
 
     /// The unit velocities of every row.
@@ -337,7 +337,7 @@ impl DenseMechanism {
         for (r, rate) in right.iter_mut().zip(rates) {
             *r = rate - *r;
         }
-        self.solve((&at.lu, &at.rows), &right)
+        self.solve(&at.lu, &at.rows, &right)
     }
 
     /// The largest residual of some rows, in sizes or rad.
@@ -398,9 +398,9 @@ impl DenseMechanism {
         Ok(multipliers)
     }
 
-    fn solve(&self, (lu, rows): (&Lu, &[usize]), right: &[f64]) -> Vec<f64> {
-        let scaled = |i: usize| right[rows[i]] * self.row_scale[rows[i]];
-        let mut scaled = Mat::from_fn(rows.len(), 1, |i, _| scaled(i));
+    fn solve(&self, lu: &Lu, rows: &[usize], right: &[f64]) -> Vec<f64> {
+        let entry = |i: usize| right[rows[i]] * self.row_scale[rows[i]];
+        let mut scaled = Mat::from_fn(rows.len(), 1, |i, _| entry(i));
         lu.solve(&mut scaled);
         let unscaled = (0..rows.len()).map(|c| scaled[(c, 0)] * self.column_scale(c));
         unscaled.collect()

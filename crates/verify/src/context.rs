@@ -120,9 +120,10 @@ impl<'a> CheckContext<'a> {
 
     /// Unit of the coordinate.
     pub(crate) fn unit(&self) -> &'static str {
-        match self.dense.is_angle_driven() {
-            true => "rad",
-            false => "m",
+        if self.dense.is_angle_driven() {
+            "rad"
+        } else {
+            "m"
         }
     }
 
@@ -149,9 +150,10 @@ impl<'a> CheckContext<'a> {
         for joint in &dense.joints {
             let given = &reactions[joint.reactions.clone()];
             for (k, row) in joint.rows.clone().enumerate() {
-                rows[row] = match joint.is_wrench {
-                    true => dense.power_of(joint, poses, given, &at.unit_velocities[row]),
-                    false => given[k],
+                rows[row] = if joint.is_wrench {
+                    dense.power_of(joint, poses, given, &at.unit_velocities[row])
+                } else {
+                    given[k]
                 };
             }
         }
@@ -307,9 +309,10 @@ fn scales(dense: &DenseMechanism, positions: &[CheckedPosition], varying: &[usiz
     let varying_or_all = if s.m_varying > 0.0 { s.m_varying } else { s.m };
     s.half_dm = s.half_dm.max(B_MIN_SHARE * varying_or_all);
     // τ is a moment, or a force if the coordinate is a length; the other unit has a floor.
-    let (tau, other, arm) = match dense.is_angle_driven() {
-        true => (1, 0, dense.size()),
-        false => (0, 1, 1.0 / dense.size()),
+    let (tau, other, arm) = if dense.is_angle_driven() {
+        (1, 0, dense.size())
+    } else {
+        (0, 1, 1.0 / dense.size())
     };
     s.a[tau] = s.a[tau].max(s.m);
     s.b[tau] = s.b[tau].max(s.half_dm);

@@ -225,9 +225,10 @@ impl DenseMechanism {
     /// space.
     pub(crate) fn whole(&self) -> Columns {
         let in_space = |body: &DenseBody| matches!(body.columns, Columns::Space(_));
-        match self.bodies.iter().any(in_space) {
-            true => Columns::Space(0),
-            false => Columns::Plane(0),
+        if self.bodies.iter().any(in_space) {
+            Columns::Space(0)
+        } else {
+            Columns::Plane(0)
         }
     }
 

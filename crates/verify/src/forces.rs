@@ -12,9 +12,10 @@ impl DenseMechanism {
         let ground = self.bodies[self.ground].shift;
         let shifted = wrenches.iter().map(|wrench| BodyWrench {
             // A pure couple acts nowhere, and its point, wherever it was put, must not cost digits.
-            point: match wrench.force == Vec3::ZERO {
-                true => Vec3::ZERO,
-                false => wrench.point - ground,
+            point: if wrench.force == Vec3::ZERO {
+                Vec3::ZERO
+            } else {
+                wrench.point - ground
             },
             ..*wrench
         });

@@ -199,14 +199,14 @@ impl<'a, R: ReducedModel> Motion<'a, R> {
         };
         let (mut wall_time, solution) = timed()?;
         // The last step ends at the last revolution, on the dense output: its error is not that of a step.
-        let steps: Vec<ReducedState> = solution.steps.iter().map(ReducedState::from).collect();
-        let steps = &steps[..steps.len().max(2) - 1];
+        let mut steps: Vec<ReducedState> = solution.steps.iter().map(ReducedState::from).collect();
+        steps.truncate(steps.len().max(2) - 1);
         for _ in 1..TIMED_RUNS {
             wall_time = wall_time.min(timed()?.0);
         }
         let mut equation = ReducedOde::new(self.model);
         let mut drift_over_time = Vec::with_capacity(steps.len());
-        for state in steps {
+        for state in &steps {
             let energy = equation.kinetic_energy(state.q, state.q_dot)?;
             drift_over_time.push([state.t, (energy / self.orbit.energy - 1.0).abs()]);
         }

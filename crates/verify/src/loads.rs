@@ -28,13 +28,14 @@ pub fn load_wrenches(
         poses: bodies,
         velocities,
     };
-    Some(placed(kind, (ground, masses), motion)?.wrenches(magnitude))
+    Some(placed(kind, ground, masses, motion)?.wrenches(magnitude))
 }
 
 /// A load where the bodies are; none if it names a body that is not there.
 pub(crate) fn placed(
     kind: &LoadKind,
-    (ground, masses): (usize, &[Mass]),
+    ground: usize,
+    masses: &[Mass],
     motion: BodyMotion<'_>,
 ) -> Option<PlacedLoad> {
     Some(match *kind {

@@ -180,9 +180,10 @@ impl DenseMechanism {
         });
         let mut of_bodies = all.chunks_exact(6);
         let of_body = |body: &DenseBody| {
-            let estimates = match body.columns.is_fixed() {
-                true => None,
-                false => of_bodies.next(),
+            let estimates = if body.columns.is_fixed() {
+                None
+            } else {
+                of_bodies.next()
             };
             estimates.map_or([NO_ESTIMATE; 6], |six| std::array::from_fn(|k| six[k]))
         };

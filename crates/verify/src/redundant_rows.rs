@@ -34,10 +34,10 @@ impl DenseMechanism {
             return Ok(Arc::clone(&self.assembly_rows));
         }
         let independent = self.select_independent_rows(poses);
-        match independent.len() == columns {
-            true => Ok(independent.into()),
-            false => Err(DenseError::NotSquare { rows, columns }),
+        if independent.len() == columns {
+            return Ok(independent.into());
         }
+        Err(DenseError::NotSquare { rows, columns })
     }
 
     /// The rows that are solved where rows repeat each other, the actuators' among them.

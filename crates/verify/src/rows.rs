@@ -89,7 +89,7 @@ impl Rows {
         out: &mut [f64],
     ) {
         for (k, (row, out)) in self.rows.iter().zip(out).enumerate() {
-            *out = row.residual(poses, since, (k, imposed[k]));
+            *out = row.residual(poses, since, k, imposed[k]);
         }
     }
 

@@ -17,7 +17,6 @@ pub use joints::{closure_error, mesh_error};
 use crate::dense::DenseMechanism;
 use crate::error::{DenseError, Result};
 use crate::pose::{Columns, Pose, centripetal};
-use crate::wrenches::BodyWrench;
 use dwell_geometry::space::{BodyMotion, Mechanism, Placement, Vec3, Wrench};
 use dwell_kinetostatics::space::{LoadKind, Mass};
 use faer::Mat;
@@ -146,8 +145,8 @@ impl<'a> DensePose<'a> {
         let motions = self.motions([&x_dot, &x_ddot]);
         let inertia = dense.inertia_wrenches(&self.poses, [&x_dot, &x_ddot]);
         let bodies = (self.mechanism, self.masses, self.placements);
-        let loads: Vec<BodyWrench> = forces::load_wrenches(bodies, &motions, loads);
-        let loads = dense.shifted_wrenches(&loads);
+        let wrenches = load_wrenches(bodies, &motions, loads);
+        let loads = dense.shifted_wrenches(&wrenches);
         let mut required = vec![0.0; dense.rows.columns()];
         dense.add_wrenches(
             &self.poses,

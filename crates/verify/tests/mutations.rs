@@ -274,8 +274,10 @@ fn a_subject_without_answers() {
     let short = MutatedSubject::new(&subject)
         .coefficients(|c| c.a.truncate(3))
         .inverse_dynamics(|a, _, _| a.reactions.truncate(3));
-    let short = failing(&case, &short);
-    assert!(short.contains(&"a-released".to_owned()) && short.contains(&"newton-force".to_owned()));
+    let failed = failing(&case, &short);
+    assert!(
+        failed.contains(&"a-released".to_owned()) && failed.contains(&"newton-force".to_owned())
+    );
     let lost = MutatedSubject::new(&subject).poses(|_, poses| poses[2][0] = f64::INFINITY);
     assert!(failing(&case, &lost).contains(&"closure".to_owned()));
 

@@ -62,34 +62,37 @@ pub(super) struct HeldContacts<T> {
 }
 
 impl<T: Scalar, M: MachineModel> ContactProblem<'_, '_, T, M> {
-    /// Finds the undecided modes, solves for all forces, and sets the magnitudes of their loads. `accelerations` are those of the
-    /// coordinates without the loads that depend on reactions, and, by load, the contribution of a unit of it.
+    /// Finds the modes that are open, and solves for all forces: they become the magnitudes of their loads. The accelerations of the
+    /// coordinates are `frictionless` without the loads that depend on reactions; `by_load` is what a unit of each load adds.
     ///
     /// # Errors
     /// [`KinetostaticsError::SelfLocking`](dwell_kinetostatics::KinetostaticsError::SelfLocking) where surfaces that slide have
     /// no unique force, [`DynamicsError::NoContactMode`](crate::DynamicsError::NoContactMode) where no mode agrees with the forces.
     pub(crate) fn solve(
         &mut self,
-        accelerations: (&[T], &[Vec<T>]),
+        frictionless: &[T],
+        by_load: &[Vec<T>],
         freedoms: usize,
     ) -> Result<()> {
         let workspace = &mut *self.workspace;
-        workspace.collect(self.contacts, self.state, accelerations);
+        workspace.collect(self.contacts, self.state, frictionless, by_load);
         for (mode, speed) in workspace.modes.iter_mut().zip(&workspace.speeds) {
             if *mode == ContactMode::Undecided {
-                *mode = match *speed == 0.0 {
-                    true => ContactMode::AtRest { at_limit: false },
-                    false => ContactMode::Slides {
+                *mode = if *speed == 0.0 {
+                    ContactMode::AtRest { at_limit: false }
+                } else {
+                    ContactMode::Slides {
                         forward: *speed > 0.0,
-                    },
+                    }
                 };
             }
         }
         let is_open = |mode: &ContactMode| matches!(mode, ContactMode::AtRest { .. });
         let mut held = std::mem::take(&mut workspace.held);
-        let solved = match workspace.modes.iter().any(is_open) {
-            true => self.find_modes(&mut held),
-            false => self.solve_at_modes(&mut held),
+        let solved = if workspace.modes.iter().any(is_open) {
+            self.find_modes(&mut held)
+        } else {
+            self.solve_at_modes(&mut held)
         };
         let workspace = &mut *self.workspace;
         // Nothing that could accelerate is free of them.
@@ -260,9 +263,10 @@ impl<T: Scalar> HeldContacts<T> {
     fn set_next_weights(&mut self, of: impl Fn(usize) -> T, workspace: &ContactWorkspace<T>) {
         let weight = |&i: &usize| {
             let own = workspace.of_two(i, i).value();
-            match own > 0.0 {
-                true => of(i) * T::from_f64(1.0 / own.sqrt()),
-                false => T::from_f64(0.0),
+            if own > 0.0 {
+                of(i) * T::from_f64(1.0 / own.sqrt())
+            } else {
+                T::from_f64(0.0)
             }
         };
         self.next_weights.clear();
@@ -295,13 +299,17 @@ impl<T: Scalar> HeldContacts<T> {
             by_other,
             ..
         } = self;
-        let of = (&held[..], &basis[..], &coefficients[..]);
-        equations.compose(workspace, of, weights);
+        let rows = HeldRows {
+            held,
+            basis,
+            coefficients,
+        };
+        equations.compose(workspace, rows, weights);
         own.clear();
         by_other.clear();
-        equations.add_forces(of, |i| workspace.free[i], own);
+        equations.add_forces(rows, |i| workspace.free[i], own);
         for &j in others.iter() {
-            equations.add_forces(of, |i| workspace.compliance[i][j], by_other);
+            equations.add_forces(rows, |i| workspace.compliance[i][j], by_other);
         }
     }
 
@@ -325,45 +333,47 @@ struct HoldingEquations<T> {
     right_hand_side: Vec<T>,
 }
 
-/// The sticking contacts, the independent ones, and the rows of the former as sums of those of the latter.
-type HeldRows<'h, T> = (&'h [usize], &'h [usize], &'h [T]);
+/// The contacts that hold, the independent ones (`basis`), and the rows of the first as sums of those of the others.
+#[derive(Clone, Copy)]
+struct HeldRows<'h, T> {
+    held: &'h [usize],
+    basis: &'h [usize],
+    coefficients: &'h [T],
+}
 
 impl<T: Scalar> HoldingEquations<T> {
-    /// Composes and factors the equations; if they are singular, no weight is far below the largest.
-    fn compose(&mut self, workspace: &ContactWorkspace<T>, of: HeldRows<'_, T>, weights: &[T]) {
+    /// Composes and factors them; where they are singular, no weight is far below the largest.
+    fn compose(&mut self, workspace: &ContactWorkspace<T>, rows: HeldRows<'_, T>, weights: &[T]) {
         self.weights.clear();
         self.weights.extend_from_slice(weights);
-        if self.factor(workspace, of) {
+        if self.factor(workspace, rows) {
             return;
         }
         let largest = weights.iter().fold(0.0, |max, w| w.value().max(max));
-        let least = match largest > 0.0 {
-            true => SMALL_WEIGHT * largest,
-            false => 1.0,
+        let least = if largest > 0.0 {
+            SMALL_WEIGHT * largest
+        } else {
+            1.0
         };
         for weight in &mut self.weights {
             if weight.value() < least {
                 *weight = T::from_f64(least);
             }
         }
-        self.factor(workspace, of);
+        self.factor(workspace, rows);
     }
 
     /// Composes and factors the matrix; whether it is regular.
-    fn factor(
-        &mut self,
-        workspace: &ContactWorkspace<T>,
-        (held, basis, coefficients): HeldRows<'_, T>,
-    ) -> bool {
-        let r = basis.len();
+    fn factor(&mut self, workspace: &ContactWorkspace<T>, rows: HeldRows<'_, T>) -> bool {
+        let r = rows.basis.len();
         self.matrix.clear();
         self.matrix.resize(r * r, T::from_f64(0.0));
         self.pivots.clear();
         self.pivots.resize(r, 0);
-        for (h, &j) in held.iter().enumerate() {
-            for (row, &i) in basis.iter().enumerate() {
+        for (h, &j) in rows.held.iter().enumerate() {
+            for (row, &i) in rows.basis.iter().enumerate() {
                 let entry = workspace.of_two(i, j) * self.weights[h];
-                for (k, t) in coefficients[h * r..(h + 1) * r].iter().enumerate() {
+                for (k, t) in rows.coefficients[h * r..(h + 1) * r].iter().enumerate() {
                     self.matrix[row * r + k] += entry * *t;
                 }
             }
@@ -375,17 +385,17 @@ impl<T: Scalar> HoldingEquations<T> {
     /// Adds to a list, by contact that holds, the force that takes these accelerations off.
     fn add_forces(
         &mut self,
-        (held, basis, coefficients): HeldRows<'_, T>,
+        rows: HeldRows<'_, T>,
         acceleration: impl Fn(usize) -> T,
         to: &mut Vec<T>,
     ) {
-        let r = basis.len();
+        let r = rows.basis.len();
         let solution = &mut self.right_hand_side;
         solution.clear();
-        solution.extend(basis.iter().map(|&i| acceleration(i)));
+        solution.extend(rows.basis.iter().map(|&i| acceleration(i)));
         lu::solve(&self.matrix, &self.pivots, solution);
-        for (h, weight) in self.weights[..held.len()].iter().enumerate() {
-            let terms = coefficients[h * r..(h + 1) * r].iter().zip(&*solution);
+        for (h, weight) in self.weights[..rows.held.len()].iter().enumerate() {
+            let terms = rows.coefficients[h * r..(h + 1) * r].iter().zip(&*solution);
             let sum = terms.fold(T::from_f64(0.0), |sum, (t, eta)| sum + *t * *eta);
             to.push(-(*weight * sum));
         }

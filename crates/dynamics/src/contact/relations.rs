@@ -72,13 +72,14 @@ impl<T: Scalar> ContactWorkspace<T> {
         }
     }
 
-    /// Collects them at a state, whose bodies have the accelerations of prescribed coordinates alone; `accelerations` are
-    /// q̈⁰, and, by load, the contribution of a unit of it.
+    /// Collects them at a state, whose bodies have the accelerations of prescribed coordinates alone; `frictionless` is
+    /// q̈⁰, and `by_load` what a unit of each load adds.
     pub(super) fn collect<M: MachineModel>(
         &mut self,
         contacts: &[Contact<M::CoordinateFunction>],
         state: &mut ForceState<'_, T, M>,
-        (frictionless, by_load): (&[T], &[Vec<T>]),
+        frictionless: &[T],
+        by_load: &[Vec<T>],
     ) {
         state.update_bodies();
         for (i, contact) in contacts.iter().enumerate() {

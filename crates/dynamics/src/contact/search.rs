@@ -93,10 +93,11 @@ impl<T: Scalar, M: MachineModel> ContactProblem<'_, '_, T, M> {
             let [acceleration, terms] = workspace.acceleration(i);
             let moves = acceleration.abs() > ACCELERATION_TOLERANCE * terms
                 && !held.hold_still(i, workspace);
-            match moves || workspace.shares[i].is_nan() {
+            if moves || workspace.shares[i].is_nan() {
                 // What is no number is beyond every limit.
-                true => f64::INFINITY,
-                false => workspace.shares[i],
+                f64::INFINITY
+            } else {
+                workspace.shares[i]
             }
         };
         let all: Vec<(f64, usize)> = self.holding(open).map(|i| (excess(i), i)).collect();
@@ -125,9 +126,10 @@ impl<T: Scalar, M: MachineModel> ContactProblem<'_, '_, T, M> {
             if let ContactMode::Slides { forward } | ContactMode::AtLimit { forward } =
                 workspace.modes[i]
             {
-                workspace.modes[i] = match held.hold_still(i, workspace) {
-                    true => ContactMode::AtLimit { forward },
-                    false => ContactMode::Slides { forward },
+                workspace.modes[i] = if held.hold_still(i, workspace) {
+                    ContactMode::AtLimit { forward }
+                } else {
+                    ContactMode::Slides { forward }
                 };
             }
         }

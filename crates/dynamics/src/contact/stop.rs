@@ -58,9 +58,10 @@ impl Stop {
     pub(crate) fn yielding_margin(&self, is_touched: bool, q: f64, speed: f64) -> Option<f64> {
         let push = self.push(q, speed)? / self.yielding?.stiffness;
         let distance = self.side * (q - self.at);
-        Some(match is_touched {
-            true => push,
-            false => distance.max(-push),
+        Some(if is_touched {
+            push
+        } else {
+            distance.max(-push)
         })
     }
 }

@@ -37,9 +37,10 @@ impl<M: MovingModel> Passage<'_, M> {
             let is_touched = self.rests(k);
             if is_touched || stop.yielding.is_some() {
                 // The force of one that does not yield would pull.
-                let (mode, change) = match is_touched {
-                    true => (ContactMode::Undecided, StopChange::Leaves),
-                    false => (ContactMode::Holds, StopChange::Touches),
+                let (mode, change) = if is_touched {
+                    (ContactMode::Undecided, StopChange::Leaves)
+                } else {
+                    (ContactMode::Holds, StopChange::Touches)
                 };
                 self.set_stop_mode(k, mode);
                 touched[k] = false;
@@ -123,9 +124,8 @@ impl<M: MovingModel> Passage<'_, M> {
         for change in &mut changes {
             *change *= impulse;
         }
-        let of_impact = (stop, impulse, &changes[..]);
         self.machine
-            .add_impact_works(self.workspace, self.y, of_impact);
+            .add_impact_works(self.workspace, self.y, stop, impulse, &changes);
         for (speed, change) in self.y[n..2 * n].iter_mut().zip(&changes) {
             *speed += change;
         }

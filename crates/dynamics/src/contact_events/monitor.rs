@@ -107,15 +107,12 @@ impl ContactMonitor {
         let before = step.before;
         // Most steps begin where the last one has ended, whose margins are known.
         let is_known = |margin: &Margin| margin.points[0].0 == before.t;
-        match self.margins.iter().all(is_known) {
-            true => {
-                for (value, margin) in self.values.iter_mut().zip(&self.margins) {
-                    *value = margin.points[0].1;
-                }
+        if self.margins.iter().all(is_known) {
+            for (value, margin) in self.values.iter_mut().zip(&self.margins) {
+                *value = margin.points[0].1;
             }
-            false => {
-                system.contact_margins(before.t, &before.y, &mut self.values)?;
-            }
+        } else {
+            system.contact_margins(before.t, &before.y, &mut self.values)?;
         }
         for (margin, &value) in self.margins.iter_mut().zip(&self.values) {
             margin.points = [(before.t, value), (f64::NAN, f64::NAN)];

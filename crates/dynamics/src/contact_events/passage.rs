@@ -31,7 +31,8 @@ pub(super) struct Passage<'a, M: MovingModel> {
 pub(crate) fn pass<M: MovingModel>(
     machine: &Machine<M>,
     workspace: &mut MachineWorkspace<f64, M>,
-    (t, y): (f64, &mut [f64]),
+    t: f64,
+    y: &mut [f64],
     step: &ContactStep<'_>,
 ) -> Result<Vec<ContactEvent>> {
     let mut passage = Passage {
@@ -109,11 +110,12 @@ impl<M: MovingModel> Passage<'_, M> {
         let largest = speeds.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
         let modes = self.machine.contact_states();
         for (code, speed) in self.y[modes].iter_mut().zip(speeds) {
-            let next = match speed.abs() <= ROUNDING * largest {
-                true => ContactMode::AtRest { at_limit: false },
-                false => ContactMode::Slides {
+            let next = if speed.abs() <= ROUNDING * largest {
+                ContactMode::AtRest { at_limit: false }
+            } else {
+                ContactMode::Slides {
                     forward: *speed > 0.0,
-                },
+                }
             };
             *code = next.code();
         }

@@ -39,9 +39,10 @@ pub fn initial_transient<M: MovingModel>(
         if (now.y[0] - from).abs() < distance {
             let at_rest = rest.is_at_rest(now)?;
             came_to_rest = at_rest.then_some(now.y[0]);
-            return Ok(match at_rest {
-                true => StepControl::Stop,
-                false => StepControl::Continue,
+            return Ok(if at_rest {
+                StepControl::Stop
+            } else {
+                StepControl::Continue
             });
         }
         let mut step = Step { before, now, dense };

@@ -48,9 +48,10 @@ impl Interpolant {
         [from, to]: [&OdeState; 2],
         stiffness: f64,
     ) -> Result<()> {
-        self.parts = match stiffness > MIN_STIFFNESS {
-            true => ((stiffness / PART_STIFFNESS).ceil() as usize).clamp(2, MAX_PARTS),
-            false => 1,
+        self.parts = if stiffness > MIN_STIFFNESS {
+            ((stiffness / PART_STIFFNESS).ceil() as usize).clamp(2, MAX_PARTS)
+        } else {
+            1
         };
         self.shift.fill(0.0);
         if self.parts == 1 {
@@ -196,7 +197,7 @@ mod tests {
         to.t = 0.035;
         let mut stages = Stages::new(&mut system, &rates);
         stages.take_step(&from, to.t, &mut to).expect("a step");
-        let stiffness = stages.stiffness(to.t, (&[1e-8; 2], &to.y));
+        let stiffness = stages.stiffness(to.t, &[1e-8; 2], &to.y);
         assert!((stiffness - RATE * to.t).abs() < 0.1, "{stiffness}");
         let ends = [&from, &to];
         let mut error = |stiffness: f64| {

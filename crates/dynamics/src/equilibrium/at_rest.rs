@@ -190,9 +190,10 @@ impl<'m, M: MovingModel> AtRest<'m, M> {
     pub(super) fn acceleration(&mut self, q: f64) -> Result<f64> {
         self.y[0] = q;
         let drive_states: Vec<usize> = self.machine.drive_states().collect();
-        match drive_states.is_empty() {
-            true => self.evaluate()?,
-            false => self.solve(&drive_states, &drive_states)?,
+        if drive_states.is_empty() {
+            self.evaluate()?;
+        } else {
+            self.solve(&drive_states, &drive_states)?;
         }
         Ok(self.rates[1])
     }
@@ -316,9 +317,10 @@ impl<'m, M: MovingModel> AtRest<'m, M> {
         rounding.resize(self.machine.drive_states().end - n, 0.0);
         for (row, i) in rounding.iter_mut().zip(self.equations()) {
             for &j in &self.unknowns() {
-                let size = match j < n {
-                    true => self.y[j].abs().max(self.arms[j]),
-                    false => self.y[j].abs(),
+                let size = if j < n {
+                    self.y[j].abs().max(self.arms[j])
+                } else {
+                    self.y[j].abs()
                 };
                 *row += coordinate * self.entry(i, j).abs() * size;
             }
@@ -396,14 +398,11 @@ impl<'m, M: MovingModel> AtRest<'m, M> {
         let first = 2 * self.free();
         for &i in rows.iter().filter(|i| **i >= first) {
             if columns.iter().all(|&j| self.entry(i, j) == 0.0) {
-                return match self.rates[i] == 0.0 {
-                    true => none(
-                        "a speed controller that integrates can hold every position, each with another force",
-                    ),
-                    false => none(
-                        "a speed controller integrates towards a speed, so that it never settles at rest",
-                    ),
-                };
+                return none(if self.rates[i] == 0.0 {
+                    "a speed controller that integrates can hold every position, each with another force"
+                } else {
+                    "a speed controller integrates towards a speed, so that it never settles at rest"
+                });
             }
         }
         Ok(())
@@ -451,19 +450,19 @@ impl<'m, M: MovingModel> AtRest<'m, M> {
                 // Rounding if the whole step was small, else Newton's method fails.
                 self.y = from;
                 self.evaluate()?;
-                return match relative_step <= STEP_TOLERANCE || self.are_zero(rows)? {
-                    true => Ok(()),
-                    false => none(NOT_FROM_THERE),
-                };
+                if relative_step <= STEP_TOLERANCE || self.are_zero(rows)? {
+                    return Ok(());
+                }
+                return none(NOT_FROM_THERE);
             }
             if relative_step <= 4.0 * f64::EPSILON {
                 return Ok(());
             }
         }
-        match self.are_zero(rows)? {
-            true => Ok(()),
-            false => none(NOT_FROM_THERE),
+        if self.are_zero(rows)? {
+            return Ok(());
         }
+        none(NOT_FROM_THERE)
     }
 
     /// Whether these rates are zero within rounding at the last evaluation.

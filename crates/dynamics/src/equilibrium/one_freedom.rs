@@ -235,9 +235,10 @@ impl<'m, M: MovingModel> Search<'m, M> {
         let mut outside = next.q;
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (inside + outside);
-            match self.sample(middle)?.is_zero() {
-                true => inside = middle,
-                false => outside = middle,
+            if self.sample(middle)?.is_zero() {
+                inside = middle;
+            } else {
+                outside = middle;
             }
         }
         Ok(inside)
@@ -269,9 +270,10 @@ impl<'m, M: MovingModel> Search<'m, M> {
                 let found = root::find(|q| self.at_rest.acceleration(q), a.q, b.q)?;
                 let Some(q) = found else { continue };
                 let found = self.sample(q)?;
-                zeros.push(match self.sticks && found.is_zero() {
-                    true => self.around(found, before, now)?,
-                    false => Zero::At(q),
+                zeros.push(if self.sticks && found.is_zero() {
+                    self.around(found, before, now)?
+                } else {
+                    Zero::At(q)
                 });
             }
         }

@@ -72,9 +72,7 @@ impl Impasse {
         if self.slow.0 == FAILED_AT_A_PACE {
             let (t, steps) = (ends[1].t, self.pace.steps());
             let (_, before, from) = std::mem::replace(&mut self.slow, (0, steps, t));
-            self.is_slow = self
-                .pace
-                .is_too_slow((t, 1.0), steps + 1 - before, t - from);
+            self.is_slow = self.pace.is_too_slow(t, 1.0, steps + 1 - before, t - from);
         }
     }
 

@@ -23,19 +23,21 @@ impl<M: MovingModel> Machine<M> {
     /// The values of all switching functions on the pieces that are held, and the variables of the loads: for them no force is computed.
     pub(crate) fn switch_values(
         &self,
-        (t, y): (f64, &[f64]),
+        t: f64,
+        y: &[f64],
         workspace: &mut MachineWorkspace<f64, M>,
-        kept: (&[HeldSource], &mut Vec<f64>),
+        held: &[HeldSource],
+        seen: &mut Vec<f64>,
         out: &mut [f64],
     ) -> Result<()> {
-        let values = |state: &KinematicState<'_, f64, M>| {
+        let mut values = |state: &KinematicState<'_, f64, M>| {
             let source_state = |load: usize, signals: &mut Vec<f64>| {
                 let of_load = self.model.compiled_signals(load).iter();
                 let value = |&signal| signal_value(signal, t, |c| state.coordinate(c));
                 signals.extend(of_load.map(value));
                 self.source_state(load, state, y)
             };
-            self.state_switches.values(kept, source_state, out);
+            self.state_switches.values(held, seen, source_state, out);
         };
         self.set_actuator_motion(t, y, &mut workspace.equation);
         if self.fit_at(workspace.equation.q.first()).is_some() {
@@ -74,7 +76,8 @@ impl<M: MovingModel> Machine<M> {
     /// the workspace and in `held`.
     pub(crate) fn switch_rates(
         &self,
-        (t, y): (f64, &[f64]),
+        t: f64,
+        y: &[f64],
         rates: &[f64],
         workspace: &mut MachineWorkspace<f64, M>,
         held: &[HeldSource],

@@ -17,7 +17,8 @@ pub trait EvaluatedIn<T: Scalar>: Sized {
     #[doc(hidden)]
     fn evaluate_machine<'a>(
         machine: &'a Machine<Self>,
-        at: (f64, &[T]),
+        t: f64,
+        y: &[T],
         workspace: &'a mut MachineWorkspace<T, Self>,
     ) -> Result<MachineState<'a, T, Self>>
     where
@@ -50,7 +51,8 @@ macro_rules! evaluated_in {
         impl EvaluatedIn<$number> for $model {
             fn evaluate_machine<'a>(
                 machine: &'a Machine<Self>,
-                (t, y): (f64, &[$number]),
+                t: f64,
+                y: &[$number],
                 workspace: &'a mut MachineWorkspace<$number, Self>,
             ) -> Result<MachineState<'a, $number, Self>> {
                 machine.evaluate_in(t, y, workspace)

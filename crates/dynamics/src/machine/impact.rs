@@ -56,7 +56,9 @@ impl<M: MovingModel> Machine<M> {
         &self,
         workspace: &MachineWorkspace<f64, M>,
         y: &mut [f64],
-        (stop, impulse, changes): (&Stop, f64, &[f64]),
+        stop: &Stop,
+        impulse: f64,
+        changes: &[f64],
     ) {
         let n = self.free.len();
         let equation = &workspace.equation;

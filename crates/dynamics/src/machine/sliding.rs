@@ -46,7 +46,7 @@ impl<M: MovingModel> Machine<M> {
             let state = self.evaluate(at.t, &at.y, workspace)?;
             state.derivative(&mut rates);
             lower.get_or_insert_with(|| (state.equation.clone(), state.magnitudes().to_vec()));
-            self.switch_rates((at.t, &at.y), &rates, workspace, &held, &mut functions)?;
+            self.switch_rates(at.t, &at.y, &rates, workspace, &held, &mut functions)?;
             *first = functions[sliding.switches[0]];
         }
         let part = SideRates { sides: first }.upper_part();

@@ -104,7 +104,7 @@ impl<'s, O: Observed> Search<'s, O> {
             relative: options.rtol,
         };
         let before = OdeState::from(orbit.initial_state());
-        let tracker = |found| EventTracker::new(found, tolerance, &mut observed, &before);
+        let tracker = |(i, event)| EventTracker::new(i, event, tolerance, &mut observed, &before);
         let trackers: Vec<_> = events
             .iter()
             .copied()
@@ -316,15 +316,13 @@ impl<'s, O: Observed> Search<'s, O> {
         }
         let mut before = point(self.orbit, begin);
         let near = self.values[window][e] + first * growth;
-        let found = (
-            e,
-            Event {
-                terminal: None,
-                ..event
-            },
-        );
-        let mut tracker = EventTracker::new(found, self.tolerance, &mut self.observed, &before)?;
-        tracker = tracker.with_value_near(near);
+        let event = Event {
+            terminal: None,
+            ..event
+        };
+        let (tolerance, observed) = (self.tolerance, &mut self.observed);
+        let mut tracker =
+            EventTracker::new(e, event, tolerance, observed, &before)?.with_value_near(near);
         let mut passages = Vec::new();
         let mut windows = first;
         while windows <= last_wanted && before.t < self.end {

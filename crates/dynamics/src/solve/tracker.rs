@@ -64,7 +64,8 @@ struct Passage {
 
 impl<C: Copy> EventTracker<C> {
     pub(super) fn new(
-        (index, event): (usize, Event<C>),
+        index: usize,
+        event: Event<C>,
         tolerance: TouchTolerance,
         observed: &mut impl Observed<Coordinate = C>,
         start: &OdeState,
@@ -219,7 +220,7 @@ impl<C: Copy> EventTracker<C> {
                 // It leaves the value that it began at.
                 self.take_side(points[k].1.value);
             }
-            while let Some(passage) = self.passage((&points, k), step, observed)? {
+            while let Some(passage) = self.passage(&points, k, step, observed)? {
                 let returns = passage.exit.is_some();
                 self.add(passage, found);
                 if found.len() > MAX_OCCURRENCES {
@@ -243,7 +244,8 @@ impl<C: Copy> EventTracker<C> {
     // Long because where a passage begins and ends depends on both points, and on what was passed before them.
     fn passage(
         &mut self,
-        (points, k): (&[(f64, ObservedValue)], usize),
+        points: &[(f64, ObservedValue)],
+        k: usize,
         step: &mut Step<'_>,
         observed: &mut impl Observed<Coordinate = C>,
     ) -> Result<Option<Passage>> {
@@ -284,13 +286,15 @@ impl<C: Copy> EventTracker<C> {
                 }
                 continue;
             };
-            let entry = match d0 > 0.0 {
-                true => root::find(&mut distance_at, t0, deep)?.unwrap_or(deep),
-                false => t0,
+            let entry = if d0 > 0.0 {
+                root::find(&mut distance_at, t0, deep)?.unwrap_or(deep)
+            } else {
+                t0
             };
-            let exit = match d1 > 0.0 {
-                true => root::find(&mut distance_at, deep, until)?,
-                false => None,
+            let exit = if d1 > 0.0 {
+                root::find(&mut distance_at, deep, until)?
+            } else {
+                None
             };
             let exit = exit.map(|t| step.state_at(t)).transpose()?;
             let exit = exit.map(|state| self.occurrence(state, target.side > 0.0));
@@ -341,9 +345,10 @@ impl<C: Copy> EventTracker<C> {
             let distance = target.distance(value);
             let [before, now] = self.expected_changes.map(|change| target.side * change);
             // A parabola with these slopes, one subinterval apart, turns back there.
-            let lowest = match now > before {
-                true => distance - 0.5 * now * now / (now - before),
-                false => f64::NEG_INFINITY,
+            let lowest = if now > before {
+                distance - 0.5 * now * now / (now - before)
+            } else {
+                f64::NEG_INFINITY
             };
             distance.abs() <= touch && now < 0.0 && lowest < -touch
         });

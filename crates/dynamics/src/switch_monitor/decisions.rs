@@ -76,7 +76,7 @@ impl SwitchMonitor {
         };
         moving.extend((0..all.len()).filter(is_on_bound));
         let moving = self.marked(moving.into_iter());
-        let agrees = self.settle((&moving, &[]), &mut changed, system, at)?;
+        let agrees = self.settle(&moving, &[], &mut changed, system, at)?;
         self.hold(system);
         Ok(agrees)
     }
@@ -103,7 +103,8 @@ impl SwitchMonitor {
     /// Where the state cannot be evaluated.
     pub(super) fn settle(
         &mut self,
-        (open, passed): (&[bool], &[(usize, bool)]),
+        open: &[bool],
+        passed: &[(usize, bool)],
         changed: &mut [bool],
         system: &mut dyn OdeSystem,
         at: &OdeState,

@@ -24,7 +24,7 @@ impl BothSides {
     }
 
     /// Puts a state exactly on a bound of a switch, along the difference of the rates.
-    fn put_on_switch(&self, (k, bound): (usize, f64), at: &mut OdeState) {
+    fn put_on_switch(&self, k: usize, bound: f64, at: &mut OdeState) {
         let [[value, lower], [_, upper]] = self.of(k).sides;
         let shift = (value - bound) / (lower - upper);
         let [lower, upper] = &self.rates;
@@ -57,7 +57,7 @@ impl SwitchMonitor {
             sides.reverse();
         }
         let switches = crossing.passed.iter().map(|(k, _)| *k).collect();
-        self.slide(sides, (switches, value), system, &mut crossing.state)
+        self.slide(sides, switches, value, system, &mut crossing.state)
     }
 
     /// If a passed switch has no rate after the passage, puts the state exactly on it, where comparisons hold by equality. Returns
@@ -85,7 +85,7 @@ impl SwitchMonitor {
                 break;
             }
             if value != bound {
-                both.put_on_switch((k, bound), &mut at);
+                both.put_on_switch(k, bound, &mut at);
                 continue;
             }
             if !self.decide(system, &at)? {
@@ -139,25 +139,26 @@ impl SwitchMonitor {
             self.take(side);
             let mut changed = self.marked(switches.iter().copied());
             let none = self.marked(std::iter::empty());
-            self.settle((&none, &[]), &mut changed, system, at)?;
+            self.settle(&none, &[], &mut changed, system, at)?;
             *side = self.pieces();
         }
         self.take(&before);
-        self.slide(sides, (switches, 0.0), system, &mut at.clone())
+        self.slide(sides, switches, 0.0, system, &mut at.clone())
     }
 
     /// Slides along switches, if both sides lead back to the first of them and the others stay with it.
     fn slide(
         &mut self,
         mut sides: [Vec<Option<f64>>; 2],
-        (switches, value): (Vec<usize>, f64),
+        switches: Vec<usize>,
+        value: f64,
         system: &mut dyn OdeSystem,
         at: &mut OdeState,
     ) -> Result<bool> {
         let Some(both) = BothSides::at(&sides, system, at)? else {
             return Ok(false);
         };
-        self.decide_by_values(&mut sides, (&switches, &both), system, at)?;
+        self.decide_by_values(&mut sides, &switches, &both, system, at)?;
         let Some(both) = BothSides::at(&sides, system, at)? else {
             return Ok(false);
         };
@@ -173,7 +174,7 @@ impl SwitchMonitor {
             value,
             decay: DECAY / self.span,
         };
-        both.put_on_switch((sliding.switches[0], value), at);
+        both.put_on_switch(sliding.switches[0], value, at);
         system.record_sliding(at, sliding.switches[0], Some(&sliding));
         self.watch_others(&sliding);
         self.hold(system);
@@ -186,7 +187,8 @@ impl SwitchMonitor {
     fn decide_by_values(
         &self,
         sides: &mut [Vec<Option<f64>>; 2],
-        (switches, both): (&[usize], &BothSides),
+        switches: &[usize],
+        both: &BothSides,
         system: &mut dyn OdeSystem,
         at: &OdeState,
     ) -> Result<()> {
@@ -351,7 +353,7 @@ impl SwitchMonitor {
             self.marked(std::iter::empty()),
             self.marked([k].into_iter()),
         );
-        self.settle((&none, &[]), &mut changed, system, at)?;
+        self.settle(&none, &[], &mut changed, system, at)?;
         sliding.sides[side] = self.pieces();
         self.slide_on(sliding, &[], system, at)
     }
@@ -393,7 +395,7 @@ impl SwitchMonitor {
             }
             self.take(side);
             let none = self.marked(std::iter::empty());
-            self.settle((&none, &[]), &mut passed.to_vec(), system, at)?;
+            self.settle(&none, &[], &mut passed.to_vec(), system, at)?;
             *side = self.pieces();
         }
         self.slide_on(sliding, &crossing.passed, system, at)
@@ -419,9 +421,10 @@ impl SwitchMonitor {
         };
         let rates = both.of(first);
         let (stays, leaves_upward) = (rates.margin() > 0.0, rates.leaves_upward());
-        let part = match stays {
-            true => rates.upper_part(),
-            false => f64::from(leaves_upward),
+        let part = if stays {
+            rates.upper_part()
+        } else {
+            f64::from(leaves_upward)
         };
         for &(k, upward) in passed {
             let [[_, lower], [_, upper]] = both.of(k).sides;
@@ -431,9 +434,10 @@ impl SwitchMonitor {
             }
         }
         self.sliding = Some(sliding);
-        match stays {
-            true => self.hold(system),
-            false => self.leave(leaves_upward, system, at),
+        if stays {
+            self.hold(system);
+        } else {
+            self.leave(leaves_upward, system, at);
         }
         Ok(())
     }

@@ -121,8 +121,7 @@ impl SwitchMonitor {
         let hidden = system.hidden_in(&between.samples, &pieces);
         let found = match hidden {
             Some(Hidden::Passage { switch, at }) => {
-                let about = (switch, from + at * length);
-                self.passage(about, system, step)?
+                self.passage(switch, from + at * length, system, step)?
             }
             // Stages of the step may have met the pulse, and those of its dense output: it is taken again.
             Some(Hidden::Pulse(_)) => Some(Crossing::begin_anew(step.before.clone())),
@@ -139,10 +138,11 @@ impl SwitchMonitor {
             between.fine = match hidden {
                 Some(Hidden::Pulse(pulse)) => {
                     let (rise, flat) = (pulse.width * length, (pulse.at - pulse.width) * length);
-                    Some(match flat > rise {
+                    Some(if flat > rise {
                         // Up to where it begins, to within rounding.
-                        true => (flat, from + flat - 0.5 * rise),
-                        false => (rise / STEPS_OF_A_RISE, from + flat.max(0.0) + 2.0 * rise),
+                        (flat, from + flat - 0.5 * rise)
+                    } else {
+                        (rise / STEPS_OF_A_RISE, from + flat.max(0.0) + 2.0 * rise)
                     })
                 }
                 _ => None,
@@ -155,7 +155,8 @@ impl SwitchMonitor {
     /// Where a switch is passed at about a time in a step, if it is.
     fn passage(
         &mut self,
-        (mut k, mut t): (usize, f64),
+        mut k: usize,
+        mut t: f64,
         system: &mut dyn OdeSystem,
         step: &mut Step<'_>,
     ) -> Result<Option<Crossing>> {

@@ -278,8 +278,8 @@ impl OdeSystem for TabulatedMachineOde<'_> {
                 drive: drive.map(|d| (d, columns[k] * y[1], d.state.map(|place| y[2 + place]))),
             }
         };
-        let kept = (&self.held[..], &mut self.seen);
-        machine.state_switches.values(kept, source_state, out);
+        let (held, seen) = (&self.held, &mut self.seen);
+        machine.state_switches.values(held, seen, source_state, out);
         Ok(())
     }
 

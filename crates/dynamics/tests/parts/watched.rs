@@ -22,7 +22,8 @@ pub(crate) struct Watched {
 impl Watched {
     fn new(
         name: &'static str,
-        (mut shape, guess): (Mechanism, &[f64]),
+        mut shape: Mechanism,
+        guess: &[f64],
         masses: &[Mass],
         loads: &[Load],
         [q, q_dot]: [f64; 2],
@@ -56,7 +57,8 @@ impl Watched {
         let masses = [Mass::default(), Mass::uniform_bar(2.0, 1.0)];
         Self::new(
             "pendulum",
-            (shape, &[0.0, q]),
+            shape,
+            &[0.0, q],
             &masses,
             &[gravity()],
             [q, q_dot],
@@ -74,7 +76,8 @@ impl Watched {
         let shape = four_bar([4.0, 1.0, 3.5, 3.0]);
         Self::new(
             "crank-rocker",
-            (shape, &[0.0, start[0], 0.6, 1.8]),
+            shape,
+            &[0.0, start[0], 0.6, 1.8],
             &masses,
             loads,
             start,
@@ -91,13 +94,7 @@ impl Watched {
         ];
         let shape = slider_crank(0.3, 1.0, 0.0);
         let guess = [0.0, start[0], -0.3 * start[0].sin(), 0.0];
-        Self::new(
-            "slider-crank",
-            (shape, &guess),
-            &masses,
-            &[gravity()],
-            start,
-        )
+        Self::new("slider-crank", shape, &guess, &masses, &[gravity()], start)
     }
 
     /// The angle of a body from the ground.

@@ -7,14 +7,15 @@ use std::fmt::Write as _;
 impl CWriter<'_, Export> {
     /// The counter of a sum of w F over the loads, and the sum, each with its initial text.
     pub(super) fn sum_over_loads(&self, sum: &str) -> (&'static str, String) {
-        match self.has_loads() {
-            true => (
+        if self.has_loads() {
+            (
                 "    int k;\n",
                 format!(
                     "    for (k = 0; k < @U@_LOAD_COUNT; k++) {{\n        {sum} f.f[k] * terms.w[k];\n    }}\n"
                 ),
-            ),
-            false => ("", String::new()),
+            )
+        } else {
+            ("", String::new())
         }
     }
 

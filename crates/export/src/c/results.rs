@@ -50,14 +50,11 @@ impl CWriter<'_, Export> {
                     );
                 }
             }
-            let loads = match self.has_loads() {
-                true => {
-                    "        int l;\n        @p@_real sum = of.a[k] * q_ddot + of.b[k] * speed2;\n        for (l = 0; l < @U@_LOAD_COUNT; l++) {\n            sum = sum + of.c[l * @U@_REACTION_COUNT + k] * f.f[l];\n        }\n"
-                }
-                false => {
-                    *text += "    (void)f;\n";
-                    "        const @p@_real sum = of.a[k] * q_ddot + of.b[k] * speed2;\n"
-                }
+            let loads = if self.has_loads() {
+                "        int l;\n        @p@_real sum = of.a[k] * q_ddot + of.b[k] * speed2;\n        for (l = 0; l < @U@_LOAD_COUNT; l++) {\n            sum = sum + of.c[l * @U@_REACTION_COUNT + k] * f.f[l];\n        }\n"
+            } else {
+                *text += "    (void)f;\n";
+                "        const @p@_real sum = of.a[k] * q_ddot + of.b[k] * speed2;\n"
             };
             _ = write!(
                 text,

@@ -58,13 +58,10 @@ impl CWriter<'_, Export> {
             text,
             "    for (row = 0; row < {rows}; row++) {{\n        const @p@_real *expected = exact[row] + 1;\n        @p@_real found[{values}];\n        int n = 0;\n"
         );
-        *text += match self.has_reactions() {
-            true => {
-                "        if (@p@_coefficients(exact[row][0], &terms, &reactions) != @U@_OK) {\n            return 1;\n        }\n"
-            }
-            false => {
-                "        if (@p@_motion_terms_at(exact[row][0], &terms) != @U@_OK) {\n            return 1;\n        }\n"
-            }
+        *text += if self.has_reactions() {
+            "        if (@p@_coefficients(exact[row][0], &terms, &reactions) != @U@_OK) {\n            return 1;\n        }\n"
+        } else {
+            "        if (@p@_motion_terms_at(exact[row][0], &terms) != @U@_OK) {\n            return 1;\n        }\n"
         };
         *text += "        found[n++] = terms.m;\n        found[n++] = terms.half_dm;\n";
         let mut copy = |array: &str, count: &str| {

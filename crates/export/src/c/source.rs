@@ -132,17 +132,14 @@ impl CWriter<'_, Export> {
         for (k, load) in self.loads.iter().enumerate() {
             let place = self.export.machine.place(k);
             let zero = "ZERO".to_owned();
-            let (w, v, dw) = match load.effect.is_conservative() {
-                true => {
-                    let [value, half_slope] = self.curve(place);
-                    let w = format!("{} * {half_slope}", self.number(-2.0));
-                    (w, value, zero)
-                }
-                false => {
-                    let (w, slope) = self.motion_column(place);
-                    let slope = slope.filter(|_| load.effect.has_rotor());
-                    (w, zero.clone(), slope.unwrap_or(zero))
-                }
+            let (w, v, dw) = if load.effect.is_conservative() {
+                let [value, half_slope] = self.curve(place);
+                let w = format!("{} * {half_slope}", self.number(-2.0));
+                (w, value, zero)
+            } else {
+                let (w, slope) = self.motion_column(place);
+                let slope = slope.filter(|_| load.effect.has_rotor());
+                (w, zero.clone(), slope.unwrap_or(zero))
             };
             _ = writeln!(text, "    terms->w[{k}] = {w};");
             if self.has_potentials() {
@@ -258,12 +255,11 @@ impl CWriter<'_, Export> {
         if assignments.contains("for (k = 0;") {
             *text += "    int k;\n";
         }
-        match self.has_cells(kind) {
-            true => {
-                let name = tables::NAMES[kind as usize];
-                _ = writeln!(text, "    const place at = place_in_{name}(q);");
-            }
-            false => *text += "    (void)q;\n",
+        if self.has_cells(kind) {
+            let name = tables::NAMES[kind as usize];
+            _ = writeln!(text, "    const place at = place_in_{name}(q);");
+        } else {
+            *text += "    (void)q;\n";
         }
         *text += &assignments;
     }

@@ -190,10 +190,10 @@ impl<R: Real> Evaluator<R> {
                 rates[place] = rate;
             }
         }
-        match rates.iter().all(|rate| rate.to_f64().is_finite()) {
-            true => Ok(rates),
-            false => Err(Status::NotFinite),
+        if rates.iter().all(|rate| rate.to_f64().is_finite()) {
+            return Ok(rates);
         }
+        Err(Status::NotFinite)
     }
 
     /// Every reaction at a state with an acceleration (rad/s² or m/s²), N or N m.

@@ -164,9 +164,12 @@ impl<R: Real> Range<R> {
 
     /// The coordinate within the domain.
     pub(crate) fn wrap(&self, q: R) -> Result<R, Status> {
-        let outside = || match q.to_f64().is_finite() {
-            true => Status::OutOfRange,
-            false => Status::NotFinite,
+        let outside = || {
+            if q.to_f64().is_finite() {
+                Status::OutOfRange
+            } else {
+                Status::NotFinite
+            }
         };
         let Some([per_period, coarse, fine, limit]) = self.wrapping else {
             let inside = (self.from.to_f64()..=self.to.to_f64()).contains(&q.to_f64());
@@ -179,9 +182,10 @@ impl<R: Real> Range<R> {
         // Truncated towards zero.
         let periods = R::of(f64::from((q * per_period).to_f64() as i32));
         let rest = (q - periods * coarse) - periods * fine;
-        Ok(match rest.to_f64() < 0.0 {
-            true => rest + self.to,
-            false => rest,
+        Ok(if rest.to_f64() < 0.0 {
+            rest + self.to
+        } else {
+            rest
         })
     }
 }

@@ -165,9 +165,10 @@ pub(crate) fn row(
     let columns = 2 * machine.curves(PartKind::Motion).len();
     let w = machine.loads.iter().enumerate().map(|(k, load)| {
         let place = machine.place(k);
-        match load.effect.is_conservative() {
-            true => by * motion[2 * place + 1],
-            false => motion[columns + place],
+        if load.effect.is_conservative() {
+            by * motion[2 * place + 1]
+        } else {
+            motion[columns + place]
         }
     });
     let rest = reactions.iter().chain(positions).copied();

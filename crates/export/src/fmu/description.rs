@@ -83,13 +83,13 @@ fn units(variables: &[Variable], text: &mut String) {
         let named = ["kg", "m", "s", "A", "rad"].iter().zip(exponents);
         let named = named.filter(|(_, exponent)| *exponent != 0);
         let base: String = named.map(|(name, e)| format!(" {name}=\"{e}\"")).collect();
-        let display = match unit {
+        let shown = match unit {
             "rad" => Some(("deg", 57.295_779_513_082_32)),
             "rad/s" => Some(("rpm", 9.549_296_585_513_72)),
             "m" => Some(("mm", 1000.0)),
             _ => None,
         };
-        let display = display.map_or_else(String::new, |(name, factor)| {
+        let display = shown.map_or_else(String::new, |(name, factor)| {
             format!("<DisplayUnit name=\"{name}\" factor=\"{factor}\"/>")
         });
         _ = writeln!(
@@ -167,9 +167,10 @@ fn variables_and_structure(version: FmiVersion, variables: &[Variable], text: &m
         let derivative =
             derivative.map_or_else(String::new, |s| format!(" derivative=\"{}\"", s + first));
         let is_count = variable.role == Role::Periods;
-        let unit = match is_count {
-            true => String::new(),
-            false => format!(" unit=\"{unit}\""),
+        let unit = if is_count {
+            String::new()
+        } else {
+            format!(" unit=\"{unit}\"")
         };
         _ = match (version, is_count) {
             (FmiVersion::Three, true) => writeln!(text, "    <Int32 {own}/>"),
@@ -209,9 +210,10 @@ fn variables_and_structure(version: FmiVersion, variables: &[Variable], text: &m
 
 /// `sources/buildDescription.xml` of FMI 3.0.
 pub(super) fn build_description(identifier: &str, needs_functions: bool) -> String {
-    let library = match needs_functions {
-        true => "    <Library name=\"m\" external=\"true\"/>\n",
-        false => "",
+    let library = if needs_functions {
+        "    <Library name=\"m\" external=\"true\"/>\n"
+    } else {
+        ""
     };
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n  <BuildConfiguration modelIdentifier=\"{identifier}\">\n    <SourceFileSet language=\"C99\">\n      <SourceFile name=\"{identifier}.c\"/>\n      <SourceFile name=\"fmi3.c\"/>\n    </SourceFileSet>\n{library}  </BuildConfiguration>\n</fmiBuildDescription>\n"

@@ -156,9 +156,10 @@ fn indicator_functions(export: &Export, text: &mut String) {
 /// The value of any variable.
 fn get(members: &Members<'_>, periodic: bool, variables: &[Variable], text: &mut String) {
     *text += "static int model_get(model *m, unsigned reference, double *value)\n{\n    const double *slot = model_slot(m, reference);\n";
-    *text += match periodic {
-        true => "    double rates[MODEL_STATES], energies[2], indicators[2];\n    int ok = 1;\n",
-        false => "    double rates[MODEL_STATES], energies[2];\n    int ok = 1;\n",
+    *text += if periodic {
+        "    double rates[MODEL_STATES], energies[2], indicators[2];\n    int ok = 1;\n"
+    } else {
+        "    double rates[MODEL_STATES], energies[2];\n    int ok = 1;\n"
     };
     if members.has_reactions() {
         *text += "    double reactions[@U@_REACTION_COUNT];\n";

@@ -70,7 +70,9 @@ impl List {
     fn add_state(
         &mut self,
         k: usize,
-        (name, member, start): (&str, &str, f64),
+        name: &str,
+        member: &str,
+        start: f64,
         [own, rate]: [(&str, &str); 2],
     ) {
         let code = format!("m->state.{member}");
@@ -126,13 +128,13 @@ fn states(export: &Export, members: &Members<'_>, list: &mut List) {
         format!("{}.velocity", machine.coordinate),
     );
     let meanings = [(unit, "coordinate"), (&rate, "its rate")];
-    list.add_state(0, (q, "q", start), meanings);
+    list.add_state(0, q, "q", start, meanings);
     let meanings = [(rate.as_str(), "speed"), (&second, "acceleration")];
-    list.add_state(1, (&velocity, "q_dot", speed), meanings);
+    list.add_state(1, &velocity, "q_dot", speed, meanings);
     for (load, member, place) in members.currents() {
         let name = format!("{}.current", machine.loads[load].name);
         let meanings = [("A", "current"), ("A/s", "its rate")];
-        list.add_state(place, (&name, &member, 0.0), meanings);
+        list.add_state(place, &name, &member, 0.0, meanings);
     }
 }
 

@@ -36,18 +36,19 @@ pub(super) fn evaluation(export: &Export, name: &str) -> String {
     let curves = export.parts[PartKind::Motion as usize].curves.len();
     for (k, load) in machine.loads.iter().enumerate() {
         let (number, place) = (k + 1, machine.place(k));
-        _ = match load.effect.is_conservative() {
-            true => writeln!(
+        _ = if load.effect.is_conservative() {
+            writeln!(
                 text,
                 "[out.v(:,{number}), half] = curve(cells, {}, x, width);\nout.w(:,{number}) = -2 * half;",
                 HEAD + CURVE * place
-            ),
-            false => writeln!(
+            )
+        } else {
+            writeln!(
                 text,
                 "out.w(:,{number}) = column(cells, x, {}, d.motion_places({column}), d.motion_constants({column}));",
                 HEAD + CURVE * curves,
                 column = place + 1
-            ),
+            )
         };
     }
     other_parts(export, &mut text);

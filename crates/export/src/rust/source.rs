@@ -276,12 +276,13 @@ impl RustWriter<'_> {
     }
 
     fn place(&self, kind: PartKind) -> String {
-        match self.part(kind).index.is_empty() {
-            true => "    let _ = q;\n".to_owned(),
-            false => format!(
+        if self.part(kind).index.is_empty() {
+            "    let _ = q;\n".to_owned()
+        } else {
+            format!(
                 "    let (cell, at) = place_in_{}(q);\n",
                 NAMES[kind as usize]
-            ),
+            )
         }
     }
 

@@ -43,10 +43,10 @@ impl<'a, R: Real> SeveralFreedomsEvaluator<'a, R> {
     /// The outputs of the motion's code at a state.
     fn motion(&self, y: &[R]) -> Result<Vec<R>, Status> {
         let terms = self.code[0].evaluate(&y[..self.freedoms]);
-        match terms.iter().all(|term| term.to_f64().is_finite()) {
-            true => Ok(terms),
-            false => Err(Status::OutOfRange),
+        if terms.iter().all(|term| term.to_f64().is_finite()) {
+            return Ok(terms);
         }
+        Err(Status::OutOfRange)
     }
 
     /// By coordinate Σ h q̇ᵢ q̇ⱼ.

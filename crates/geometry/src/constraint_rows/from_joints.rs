@@ -78,20 +78,21 @@ impl RowWriter<'_> {
                 coupling,
                 couplings: couplings.len(),
             })?;
-        let named_by = ("coupling", coupling);
-        let dependent = self.term(named_by, described.dependent)?;
-        let independent = self.term(named_by, described.independent)?;
+        let term = |coordinate| self.term("coupling", coupling, coordinate);
+        let dependent = term(described.dependent)?;
+        let independent = term(described.independent)?;
         let law = described.law.clone();
         Ok(ConstraintRow::Coupling([dependent, independent], law))
     }
 
-    /// The term of a coordinate; an error names its owner.
+    /// The term of a coordinate; `what` names it, of this number.
     pub(super) fn term(
         &self,
-        named_by: (&'static str, usize),
+        what: &'static str,
+        index: usize,
         coordinate: Coordinate,
     ) -> Result<ConstraintTerm, ConstraintRowsError> {
-        let check = |bodies| self.check_bodies(named_by, bodies);
+        let check = |bodies| self.check_bodies(what, index, bodies);
         match coordinate {
             Coordinate::Angle(bodies) => {
                 check(bodies)?;
@@ -116,11 +117,11 @@ impl RowWriter<'_> {
         }
     }
 
-    /// Rejects bodies that do not exist. `what` and the number identify the joint, actuator or coupling that refers to
-    /// them.
+    /// Refuses bodies that do not exist; `what` names them: a joint, an actuator or a coupling, of this number.
     pub(super) fn check_bodies(
         &self,
-        (what, index): (&'static str, usize),
+        what: &'static str,
+        index: usize,
         named: [BodyId; 2],
     ) -> Result<(), ConstraintRowsError> {
         let bodies = self.columns.len();

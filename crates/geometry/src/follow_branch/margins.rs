@@ -15,7 +15,7 @@ impl Plan {
         buffers: &mut StepBuffers,
     ) -> Option<Vec<Dual>> {
         if self.is_dyadic() {
-            self.closed_form_margins((at, at.q[0]), buffers, |_| true)
+            self.closed_form_margins(at, at.q[0], buffers, |_| true)
         } else {
             self.margins_by_duals(at, &mut buffers.with_slopes)
         }
@@ -26,7 +26,8 @@ impl Plan {
     /// of the operations of dual numbers.
     pub(super) fn closed_form_margins(
         &self,
-        (from, q): (&Pose<f64>, f64),
+        from: &Pose<f64>,
+        q: f64,
         StepBuffers {
             reached, motion, ..
         }: &mut StepBuffers,

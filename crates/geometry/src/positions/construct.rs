@@ -37,7 +37,7 @@ impl<C: Constant> Plan<C> {
                 let w2 = partial_gap(closure, pose, |f| class_of(f) == two);
                 let known = closure.fixed.cast()
                     + partial_gap(closure, pose, |f| class_of(f) != one && class_of(f) != two);
-                let [first, second] = triangle(known, w1, w2, branch, (group, pose))?;
+                let [first, second] = triangle(known, w1, w2, branch, group, pose)?;
                 pose.rotation[self.class_frame(one)] = rotation_between(w1, first);
                 pose.rotation[self.class_frame(two)] = rotation_between(w2, second);
             }
@@ -188,7 +188,8 @@ fn triangle<T: Scalar>(
     w1: Vec2<T>,
     w2: Vec2<T>,
     branch: T,
-    (group, pose): (usize, &Pose<T>),
+    group: usize,
+    pose: &Pose<T>,
 ) -> Result<[Vec2<T>; 2], PositionError> {
     let (half, square) = (T::from_f64(0.5), known.dot(known));
     let [one, two] = [w1.dot(w1).sqrt(), w2.dot(w2).sqrt()];

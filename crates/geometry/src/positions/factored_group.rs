@@ -275,10 +275,10 @@ impl<C: Constant> Plan<C> {
         let tolerance = REDUNDANT_RESIDUAL.max(64.0 * T::EPSILON) * angles.fold(1.0, f64::max);
         let residual = self.residual(group, pose);
         let q = pose.first_coordinate();
-        match residual <= tolerance * self.groups[group].size {
-            true => Ok(()),
-            false => Err(PositionError::NotConverged { group, q, residual }),
+        if residual <= tolerance * self.groups[group].size {
+            return Ok(());
         }
+        Err(PositionError::NotConverged { group, q, residual })
     }
 
     /// One step from zero, for equations that are linear in the unknowns.

@@ -56,9 +56,8 @@ impl Plan {
         center: f64,
         [half_width, radius]: [f64; 2],
     ) -> Result<BranchFit, PositionError> {
-        let scalars = self.unknowns().into_iter();
-        let scalars = scalars.filter(|f| self.tree.freedoms[*f] != FreedomKind::BallTurn);
-        let scalars: Vec<usize> = scalars.collect();
+        let mut scalars = self.unknowns();
+        scalars.retain(|f| self.tree.freedoms[*f] != FreedomKind::BallTurn);
         let above: Vec<f64> = chebyshev_nodes(half_width, radius, NODES).collect();
         let nodes: Vec<f64> = above
             .iter()
@@ -145,7 +144,7 @@ impl Plan {
             (each[0] + each[1] + each[2]).scaled(T::from_f64(0.5))
         };
         for (body, ball, first) in self.balls() {
-            let rate = self.to_ground(pose, (body, ball), turning(ball, 1).scaled(q_dot));
+            let rate = self.to_ground(pose, body, ball, turning(ball, 1).scaled(q_dot));
             set_three(&mut pose.motion.rates, first, rate);
         }
         self.fill_states(pose);
@@ -154,7 +153,7 @@ impl Plan {
             let rates = &pose.motion.rates[first..first + 3];
             let rate = vec3(rates[0], rates[1], rates[2]);
             let carried = pose.motion.states[body].angular_velocity - rate;
-            let turned = self.to_ground(pose, (body, ball), of_joint) + carried.cross(rate);
+            let turned = self.to_ground(pose, body, ball, of_joint) + carried.cross(rate);
             set_three(&mut pose.motion.accelerations, first, turned);
         }
         self.add_accelerations(pose);
@@ -178,7 +177,8 @@ impl Plan {
     fn to_ground<T: Scalar>(
         &self,
         pose: &Pose<T>,
-        (body, ball): (usize, usize),
+        body: usize,
+        ball: usize,
         v: Vec3<T>,
     ) -> Vec3<T> {
         let inner = pose.balls[ball].apply_inverse(v);

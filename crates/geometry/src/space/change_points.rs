@@ -44,7 +44,7 @@ impl Plan {
             for pair in stored.windows(2) {
                 let [one, other] = [0, 1].map(|k| (pair[k].0, of_group(group, pair[k].1)));
                 if is_between(group, one.1, other.1) {
-                    let q = self.change_point_between((group, one), other, unit);
+                    let q = self.change_point_between(group, [one, other], unit);
                     found.extend(q.map(|q| ChangePoint { q, group: g }));
                 }
             }
@@ -53,11 +53,11 @@ impl Plan {
         self.change_points = found;
     }
 
-    /// The change point of a group between two stored poses; `None` if its Jacobian is not singular there.
+    /// The change point of a group between two stored poses, by their coordinates and inverses; none where its Jacobian is not singular there.
     fn change_point_between(
         &self,
-        (group, (from, first)): (&Group, (f64, &[f64])),
-        (to, second): (f64, &[f64]),
+        group: &Group,
+        [(from, first), (to, second)]: [(f64, &[f64]); 2],
         unit: f64,
     ) -> Option<f64> {
         let smallest = [first, second].map(|p| 1.0 / norm(p));

@@ -107,7 +107,7 @@ pub(super) fn closures(mechanism: &Mechanism, tree: &Tree) -> Result<Vec<Closure
             return Err(StructureError::Malformed { reason });
         };
         let points = [sides[0].point, sides[1].point];
-        let mut closure = Closure::new(tree, Some(id), (bodies, points), kinds, [rows, entries]);
+        let mut closure = Closure::new(tree, Some(id), bodies, points, kinds, [rows, entries]);
         closure.on = on;
         if let Some((_, freedom)) = driven {
             closure.path.push((*freedom, 1.0));
@@ -123,7 +123,7 @@ pub(super) fn closures(mechanism: &Mechanism, tree: &Tree) -> Result<Vec<Closure
 pub(super) fn rows_of(joint: &Joint, [a, b]: &[Side; 2]) -> Option<Vec<RowKind>> {
     use RowKind::{InPlane, Length, Mesh, Parallel, Point};
     let across = a.axis.cross(a.normal);
-    let rows = |condition: &Condition| {
+    let of_condition = |condition: &Condition| {
         Some(match condition {
             Condition::Points => vec![Point(0), Point(1), Point(2)],
             Condition::OnLine => vec![InPlane(a.normal), InPlane(across)],
@@ -139,7 +139,8 @@ pub(super) fn rows_of(joint: &Joint, [a, b]: &[Side; 2]) -> Option<Vec<RowKind>>
             Condition::Thread => return None,
         })
     };
-    let rows: Option<Vec<Vec<RowKind>>> = joint.kind.conditions().iter().map(rows).collect();
+    let conditions = joint.kind.conditions().iter();
+    let rows: Option<Vec<Vec<RowKind>>> = conditions.map(of_condition).collect();
     Some(rows?.concat())
 }
 
@@ -169,7 +170,8 @@ impl Closure {
     pub(super) fn new(
         tree: &Tree,
         joint: Option<JointId>,
-        (bodies, points): ([usize; 2], [Vec3; 2]),
+        bodies: [usize; 2],
+        points: [Vec3; 2],
         kinds: Vec<RowKind>,
         [rows, entries]: [usize; 2],
     ) -> Self {

@@ -140,21 +140,25 @@ impl Plan {
         let bodies = joint.bodies;
         let sides = [0, 1].map(|k| joint.sides[k].in_frame(&self.tree.internal[bodies[k].0]));
         let axis = sides[0].axis;
-        match coordinate.is_angle() {
-            true if joint.kind.has_angle() => Ok(CoordinateFunction::Angle {
+        if coordinate.is_angle() {
+            if !joint.kind.has_angle() {
+                return Err("its joint has no angle about an axis");
+            }
+            return Ok(CoordinateFunction::Angle {
                 bodies,
                 axis,
                 normals: sides.map(|side| side.normal),
                 counting: counting(id)?,
-            }),
-            false if joint.kind.has_travel() => Ok(CoordinateFunction::Travel(Guide {
-                bodies,
-                points: sides.map(|side| side.point),
-                axis,
-            })),
-            true => Err("its joint has no angle about an axis"),
-            false => Err("its joint has no travel along an axis"),
+            });
         }
+        if !joint.kind.has_travel() {
+            return Err("its joint has no travel along an axis");
+        }
+        Ok(CoordinateFunction::Travel(Guide {
+            bodies,
+            points: sides.map(|side| side.point),
+            axis,
+        }))
     }
 
     /// A coordinate along which something acts, or whose rate alone is needed: the revolutions of an angle are counted if possible.
@@ -208,9 +212,10 @@ impl Plan {
             })
             .collect();
         let unit = if self.is_angle(0) { TAU } else { self.size };
-        let count = match stored.is_empty() {
-            true => 0,
-            false => ((last - first) / unit * ANGLES_PER_UNIT).ceil().max(1.0) as usize,
+        let count = if stored.is_empty() {
+            0
+        } else {
+            ((last - first) / unit * ANGLES_PER_UNIT).ceil().max(1.0) as usize
         };
         for k in 0..=count {
             let q = first + (last - first) * (k as f64 / count.max(1) as f64);
@@ -292,7 +297,8 @@ impl Plan {
         &self,
         pose: &Pose<T>,
         bodies: [BodyId; 2],
-        (axis, normals): (Vec3, [Vec3; 2]),
+        axis: Vec3,
+        normals: [Vec3; 2],
         counting: Counting,
     ) -> T {
         match counting {
@@ -357,7 +363,7 @@ impl Plan {
                 normals,
                 counting,
             } => {
-                let value = self.counted_angle(pose, bodies, (axis, normals), counting);
+                let value = self.counted_angle(pose, bodies, axis, normals, counting);
                 let [a, b] = bodies.map(|body| &pose.motion.states[body.0]);
                 let axis = pose.frames[bodies[0].0].rotation.apply(axis.cast());
                 let rate = axis.dot(b.angular_velocity - a.angular_velocity);

@@ -281,10 +281,9 @@ impl Plan {
 
     /// Stores the poses along the range, with the predictions between them.
     fn store(&mut self, nodes: &[Node]) {
-        let scalars = self.unknowns();
-        let scalars = scalars.into_iter();
-        let scalars = scalars.filter(|f| self.tree.freedoms[*f] != FreedomKind::BallTurn);
-        self.predictions = Predictions::new(nodes, scalars.collect());
+        let mut scalars = self.unknowns();
+        scalars.retain(|f| self.tree.freedoms[*f] != FreedomKind::BallTurn);
+        self.predictions = Predictions::new(nodes, scalars);
     }
 
     /// Continues from the last node to a coordinate, in steps that the prediction follows; whether it was reached.
@@ -298,13 +297,14 @@ impl Plan {
             }
             let ahead = left.signum() * step.min(left.abs());
             self.start_from(last, ahead, pose);
-            let predicted = (pose.coordinates.clone(), pose.balls.clone());
+            let (coordinates, balls) = (pose.coordinates.clone(), pose.balls.clone());
             let q = if left.abs() <= step {
                 to
             } else {
                 last.q + ahead
             };
-            if self.close(&[q], None, pose).is_ok() && self.missed_by(&predicted, pose) < MISS {
+            let is_closed = self.close(&[q], None, pose).is_ok();
+            if is_closed && self.missed_by(&coordinates, &balls, pose) < MISS {
                 let node = self.node(q, pose);
                 nodes.push(node);
                 step = (2.0 * step).min(largest);
@@ -318,8 +318,8 @@ impl Plan {
         false
     }
 
-    /// How far a pose is from its prediction.
-    fn missed_by(&self, (coordinates, balls): &(Vec<f64>, Vec<Rotation>), pose: &Pose) -> f64 {
+    /// How far a pose is from its prediction, by its coordinates and balls.
+    fn missed_by(&self, coordinates: &[f64], balls: &[Rotation], pose: &Pose) -> f64 {
         let driven = |f: usize| self.drivers.iter().any(|d| d.freedom == f);
         let ball = |f: usize| self.tree.freedoms[f] == FreedomKind::BallTurn;
         let scalar = (0..coordinates.len()).filter(|f| !driven(*f) && !ball(*f));

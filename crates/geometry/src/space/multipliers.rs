@@ -195,9 +195,10 @@ impl Plan {
             let sign = T::from_f64(link.sign);
             for (wrench, action) in wrenches.iter_mut().zip(actions) {
                 let action = pose.screws[driver.freedom].axis.scaled(action * sign);
-                match driver.is_force {
-                    true => wrench.force -= action,
-                    false => wrench.moment -= action,
+                if driver.is_force {
+                    wrench.force -= action;
+                } else {
+                    wrench.moment -= action;
                 }
             }
         }

@@ -211,15 +211,14 @@ impl Plan {
                 if let Some(rod) = &group.rod {
                     self.factor_rod(group, rod, pose);
                 }
-                return if residual <= open::<T>() {
-                    Ok(())
-                } else {
-                    Err(PositionError::NoAssembly {
-                        group: g,
-                        q,
-                        gap: residual * self.size,
-                    })
-                };
+                if residual <= open::<T>() {
+                    return Ok(());
+                }
+                return Err(PositionError::NoAssembly {
+                    group: g,
+                    q,
+                    gap: residual * self.size,
+                });
             }
             let step = self.newton_step(group, pose);
             if step.is_nan() {
@@ -233,9 +232,10 @@ impl Plan {
                 });
             }
             // Derivatives are exact after one step more than values.
-            settled = match T::HAS_DERIVATIVES {
-                true => step < 1e-14 * self.count_size(pose) / outcome.pivot_ratio,
-                false => step * step / outcome.pivot_ratio < no_step::<T>(),
+            settled = if T::HAS_DERIVATIVES {
+                step < 1e-14 * self.count_size(pose) / outcome.pivot_ratio
+            } else {
+                step * step / outcome.pivot_ratio < no_step::<T>()
             };
         }
         let residual = self.largest_residual(group, pose) * self.size;

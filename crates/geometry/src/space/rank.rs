@@ -148,9 +148,10 @@ impl Plan {
         StructureError::UnderActuated {
             degrees_of_freedom: self.actuators() + missing,
             actuators: self.actuators(),
-            bodies: match bodies.is_empty() {
-                true => all.collect(),
-                false => bodies,
+            bodies: if bodies.is_empty() {
+                all.collect()
+            } else {
+                bodies
             },
             redundant_joints: Vec::new(),
         }
@@ -194,8 +195,8 @@ impl Plan {
                 let rotation = self.placement(pose, body).rotation;
                 let axis = rotation.apply_inverse(w).unit().unwrap_or(Vec3::ZERO);
                 let nearest = w.cross(v).scaled(1.0 / w.dot(w).max(f64::MIN_POSITIVE));
-                let nearest = pose.frames[body].rotation.apply_inverse(nearest);
-                let point = self.tree.internal[body].point(nearest);
+                let in_body = pose.frames[body].rotation.apply_inverse(nearest);
+                let point = self.tree.internal[body].point(in_body);
                 is_spin &= along < PART && hangs_between_balls(mechanism, body);
                 let here = IdleBody {
                     body: BodyId(body),
@@ -224,9 +225,8 @@ impl Plan {
             let axis = self.tree.internal[body].rotation.apply_inverse(one.axis);
             let bodies = [self.ground, body];
             let kinds = vec![RowKind::NoSpin(axis)];
-            let between = (bodies, [Vec3::ZERO; 2]);
             let begin = self.row_and_entry_counts();
-            let closure = Closure::new(&self.tree, None, between, kinds, begin);
+            let closure = Closure::new(&self.tree, None, bodies, [Vec3::ZERO; 2], kinds, begin);
             self.closures.push(closure);
         }
         self.schedule_whole();

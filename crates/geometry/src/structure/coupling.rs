@@ -211,7 +211,8 @@ impl CouplingEquation {
         &self,
         angle: &[T],
         slide: &[T],
-        (velocity, acceleration): (&Rates<T>, &Rates<T>),
+        velocity: &Rates<T>,
+        acceleration: &Rates<T>,
     ) -> T {
         let mut value = self.dependent.rate(acceleration);
         if let Some((_, independent)) = &self.law {

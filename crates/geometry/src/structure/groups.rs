@@ -87,10 +87,10 @@ pub(crate) fn order_groups(
     let unknowns = classes + problem.tree.slide_pairs.len();
     let (of_equation, of_unknown) = match_equations(&dependencies, unknowns);
     let is_actuated = |u: usize| u >= classes && problem.actuated_slides[u - classes].is_some();
-    let undetermined = |&u: &usize| of_unknown[u] == UNMATCHED && !is_actuated(u);
-    let undetermined: Vec<usize> = (0..unknowns).filter(undetermined).collect();
-    let redundant = |&e: &usize| of_equation[e] == UNMATCHED;
-    let redundant: Vec<usize> = (0..equations.len()).filter(redundant).collect();
+    let is_undetermined = |&u: &usize| of_unknown[u] == UNMATCHED && !is_actuated(u);
+    let undetermined: Vec<usize> = (0..unknowns).filter(is_undetermined).collect();
+    let is_redundant = |&e: &usize| of_equation[e] == UNMATCHED;
+    let redundant: Vec<usize> = (0..equations.len()).filter(is_redundant).collect();
     if !redundant.is_empty() && !allow_redundant {
         let owners = redundant.iter().map(|&e| match equations[e] {
             Equation::Loop(l) => problem.lowered.pairs[problem.loops[l].pair].owner,
@@ -106,8 +106,8 @@ pub(crate) fn order_groups(
     for (before, evaluated_with) in before.iter_mut().zip(evaluated_with) {
         before.extend(evaluated_with);
     }
-    let groups = strong_components(&of_equation, &before, &of_unknown);
-    let groups = absorb_redundant(groups, &redundant, &equations, &dependencies, &of_unknown);
+    let blocks = strong_components(&of_equation, &before, &of_unknown);
+    let groups = absorb_redundant(blocks, &redundant, &equations, &dependencies, &of_unknown);
     let group = |members: Vec<usize>| {
         let rows = members.len();
         let matched = members.iter().map(|&e| of_equation[e]);
@@ -168,11 +168,11 @@ impl PositionProblem<'_> {
         for (r, coupling) in self.couplings.iter().enumerate() {
             equations.push(Equation::Coupling(r));
             let classes = coupling.classes(self.frames);
-            let mut classes: Vec<usize> = classes.iter().map(|c| c - 1).collect();
+            let mut unknowns: Vec<usize> = classes.iter().map(|c| c - 1).collect();
             let named = self.class_unknowns(coupling.frames());
-            evaluated_with.push(named.filter(|c| !classes.contains(c)).collect());
-            classes.extend(self.slide_unknowns(coupling.slides()));
-            dependencies.push(classes);
+            evaluated_with.push(named.filter(|c| !unknowns.contains(c)).collect());
+            unknowns.extend(self.slide_unknowns(coupling.slides()));
+            dependencies.push(unknowns);
         }
         (equations, dependencies, evaluated_with)
     }

@@ -72,7 +72,7 @@ impl Friction {
             }
             FrictionContact::Bearing { radius, distance } => [radius, distance],
         };
-        let mut sizes = [self.coefficient].into_iter().chain(sizes);
+        let mut numbers = [self.coefficient].into_iter().chain(sizes);
         let regularized = self.regularization_speed.is_none_or(|speed| speed > 0.0);
         let holds =
             self.static_coefficient.is_finite() && self.static_coefficient >= self.coefficient;
@@ -81,7 +81,7 @@ impl Friction {
                 "its static coefficient must be finite and not below its coefficient of friction",
             );
         }
-        if !(regularized && sizes.all(|n| n.is_finite() && n >= 0.0)) {
+        if !(regularized && numbers.all(|n| n.is_finite() && n >= 0.0)) {
             return Err(
                 "its coefficient of friction and its size must be finite and not negative, its speed positive",
             );

@@ -258,17 +258,19 @@ pub trait LoadShape: Debug + Copy + PartialEq + Send + Sync + 'static {
 
     /// The unit of its magnitude.
     fn unit(&self) -> &'static str {
-        match self.is_gravity() {
-            true => "m/s2",
-            false => self.strength().words().units[usize::from(self.is_couple())],
+        if self.is_gravity() {
+            "m/s2"
+        } else {
+            self.strength().words().units[usize::from(self.is_couple())]
         }
     }
 
     /// The units of w and of c of a force and of a moment, along an angle or a length.
     fn response_units(&self, is_angle: bool) -> [&'static str; 3] {
-        match self.is_gravity() {
-            true => [if is_angle { "kg m" } else { "kg" }, "kg", "kg m"],
-            false => self.strength().response_units(self.is_couple(), is_angle),
+        if self.is_gravity() {
+            [if is_angle { "kg m" } else { "kg" }, "kg", "kg m"]
+        } else {
+            self.strength().response_units(self.is_couple(), is_angle)
         }
     }
 

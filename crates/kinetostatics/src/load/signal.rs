@@ -20,7 +20,7 @@ impl CompiledLoads {
         workspace: &mut SignalWorkspace<T>,
     ) -> Result<T> {
         let signals = &self.compiled_signals[load];
-        workspace.eval((load, magnitude), signals, t, |measured| {
+        workspace.eval(load, magnitude, signals, t, |measured| {
             let [value, rate, _] = states.coordinate(measured);
             [value, rate]
         })
@@ -32,7 +32,8 @@ impl<T: Scalar> SignalWorkspace<T> {
     #[inline]
     pub(crate) fn eval<C, F: Copy>(
         &mut self,
-        (load, magnitude): (usize, &Magnitude<C>),
+        load: usize,
+        magnitude: &Magnitude<C>,
         signals: &[Signal<F>],
         t: f64,
         coordinate: impl Fn(F) -> [T; 2],

@@ -221,9 +221,10 @@ pub(crate) fn drag<T: Scalar, V: LoadVector<T>>(f: T, velocity: V) -> V {
 /// The square root, with the derivative zero at zero: of the square of a velocity that is multiplied by the velocity.
 #[inline]
 fn absolute<T: Scalar>(square: T) -> T {
-    match T::LANES == 1 && square.value() == 0.0 {
-        true => T::from_f64(0.0),
-        false => square.sqrt(),
+    if T::LANES == 1 && square.value() == 0.0 {
+        T::from_f64(0.0)
+    } else {
+        square.sqrt()
     }
 }
 

@@ -111,7 +111,7 @@ impl CompiledLoads {
                 out.wrenches.push(at_point(body, point, force));
             }
             LoadKind::Along(coordinate, strength) => {
-                let pair = self.along(i, (coordinate, strength), f, states)?;
+                let pair = self.along(i, coordinate, strength, f, states)?;
                 out.wrenches.extend(pair);
             }
             // On both bodies at the pitch point.
@@ -132,7 +132,8 @@ impl CompiledLoads {
     fn along<T: Scalar>(
         &self,
         i: usize,
-        (coordinate, strength): (CoordinateFunction, Strength),
+        coordinate: CoordinateFunction,
+        strength: Strength,
         f: T,
         states: &BodyStates<T>,
     ) -> Option<[AppliedWrench<T>; 2]> {

@@ -143,7 +143,8 @@ impl MachineModel for Model {
     #[inline]
     fn eval_magnitude<T: Scalar>(
         &self,
-        (load, magnitude): (usize, &Magnitude),
+        load: usize,
+        magnitude: &Magnitude,
         t: f64,
         workspace: &mut Workspace<T>,
     ) -> Result<T> {

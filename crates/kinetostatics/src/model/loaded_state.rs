@@ -70,7 +70,7 @@ impl<'a, T: Scalar, M: MachineModel> LoadedState<'a, T, M> {
         t: f64,
     ) -> Result<T> {
         let KinematicState { model, workspace } = &mut self.0;
-        model.eval_magnitude((load, magnitude), t, workspace)
+        model.eval_magnitude(load, magnitude, t, workspace)
     }
 
     /// The wrenches of the loads, without inverse dynamics.

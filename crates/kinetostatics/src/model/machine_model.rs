@@ -137,7 +137,8 @@ pub trait MachineModel: ReducibleModel + Debug + Clone + PartialEq + Send + 'sta
     /// [`MagnitudeNotFinite`](crate::KinetostaticsError::MagnitudeNotFinite).
     fn eval_magnitude<T: Scalar>(
         &self,
-        load: (usize, &Magnitude<Self::Coordinate>),
+        load: usize,
+        magnitude: &Magnitude<Self::Coordinate>,
         t: f64,
         workspace: &mut Self::Workspace<T>,
     ) -> Result<T>;

@@ -20,7 +20,11 @@ pub struct FreeBodyForces {
 }
 
 /// A coordinate, with the points of its bodies at which a couple along it acts.
-type ActedCoordinate = (CoordinateFunction, [Vec2; 2]);
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct ActedCoordinate {
+    function: CoordinateFunction,
+    couple_points: [Vec2; 2],
+}
 
 /// A joint with the indices of its components in the model's reactions.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,8 +43,8 @@ impl FreeBodyForces {
     pub fn new(model: &Model) -> Result<Self, ModelError> {
         let mechanism = model.mechanism();
         let coordinate = |coordinate| {
-            let measured = CoordinateFunction::find(mechanism, coordinate)?;
-            let couple_points = match measured {
+            let function = CoordinateFunction::find(mechanism, coordinate)?;
+            let couple_points = match function {
                 CoordinateFunction::Angle(bodies) => {
                     find_couple_points(mechanism, model.plan(), bodies)
                 }
@@ -48,7 +52,10 @@ impl FreeBodyForces {
                     [Vec2::ZERO; 2]
                 }
             };
-            Some((measured, couple_points))
+            Some(ActedCoordinate {
+                function,
+                couple_points,
+            })
         };
         let mut joints = Vec::with_capacity(mechanism.joints.len());
         for (j, joint) in mechanism.joints.iter().enumerate() {
@@ -98,8 +105,7 @@ impl FreeBodyForces {
                     continue;
                 }
                 let plan = state.model().plan();
-                let slope = plan.coupling_slope(JointId(j), state.pose());
-                let slope = slope.unwrap_or(0.0);
+                let slope = plan.coupling_slope(JointId(j), state.pose()).unwrap_or(0.0);
                 coupling_wrenches(coupling, value(0), slope, source, states, wrenches);
             } else {
                 joint_wrenches(&entry.joint, value, source, states, wrenches);
@@ -162,7 +168,10 @@ fn joint_wrenches(
                 force = to_pitch_point.perp() * (1.0 / radii[1]) * value();
             }
             Condition::Apart { .. } => {
-                let length = (CoordinateFunction::Length { bodies, points }, points);
+                let length = ActedCoordinate {
+                    function: CoordinateFunction::Length { bodies, points },
+                    couple_points: points,
+                };
                 return coordinate_wrenches(length, value(), source, states, wrenches);
             }
             Condition::Coupled(_) => return,
@@ -190,13 +199,13 @@ fn opposite_wrenches(
 /// A generalised force along a coordinate: a couple, a force along an axis at the second body's point, or a force along
 /// the line of two points.
 fn coordinate_wrenches(
-    (coordinate, couple_points): ActedCoordinate,
+    acted: ActedCoordinate,
     value: f64,
     source: ForceSource,
     states: &BodyStates,
     wrenches: &mut Vec<AppliedWrench>,
 ) {
-    let (bodies, points, actions) = match coordinate {
+    let (bodies, points, actions) = match acted.function {
         CoordinateFunction::Travel(Guide {
             bodies,
             points,
@@ -209,7 +218,7 @@ fn coordinate_wrenches(
         }
         CoordinateFunction::Angle(bodies) => (
             bodies,
-            couple_points,
+            acted.couple_points,
             [(Vec2::ZERO, -value), (Vec2::ZERO, value)],
         ),
         CoordinateFunction::Length { bodies, points } => {
@@ -379,7 +388,11 @@ mod tests {
         for coordinate in all {
             let mut wrenches = Vec::new();
             let source = ForceSource::Actuator(ActuatorId(0));
-            coordinate_wrenches((coordinate, points), 3.0, source, &states, &mut wrenches);
+            let acted = ActedCoordinate {
+                function: coordinate,
+                couple_points: points,
+            };
+            coordinate_wrenches(acted, 3.0, source, &states, &mut wrenches);
             let power: f64 = wrenches.iter().map(|wrench| wrench.power(&states)).sum();
             let velocity = states.coordinate(coordinate)[1];
             assert!((power - 3.0 * velocity).abs() < 1e-14, "{coordinate:?}");
@@ -393,7 +406,10 @@ mod tests {
         let points = [vec2(0.1, -0.2), vec2(0.4, 0.7)];
         let dependent = CoordinateFunction::Length { bodies, points };
         let independent = CoordinateFunction::Angle(bodies);
-        let coupling = [(dependent, points), (independent, points)];
+        let coupling = [dependent, independent].map(|function| ActedCoordinate {
+            function,
+            couple_points: points,
+        });
         let states = states([-0.7, 2.3]);
         let mut wrenches = Vec::new();
         let joint = ForceSource::Joint(JointId(0));

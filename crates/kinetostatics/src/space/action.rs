@@ -140,7 +140,8 @@ impl CompiledKind {
     pub(super) fn act<T: Scalar>(
         &self,
         f: T,
-        (plan, pose): (&Plan, &Pose<T>),
+        plan: &Plan,
+        pose: &Pose<T>,
         masses: &[super::Mass],
         mut add: impl FnMut(BodyAction<T>),
     ) -> Option<()> {
@@ -176,7 +177,7 @@ impl CompiledKind {
                 couples(bodies, couple, add);
             }
             Self::Along(coordinate, strength) => {
-                return act_along(coordinate, (strength, f), (plan, pose), add);
+                return act_along(coordinate, strength, f, plan, pose, add);
             }
         }
         Some(())
@@ -187,8 +188,10 @@ impl CompiledKind {
 #[inline]
 fn act_along<T: Scalar>(
     coordinate: CoordinateFunction,
-    (strength, f): (Strength, T),
-    (plan, pose): (&Plan, &Pose<T>),
+    strength: Strength,
+    f: T,
+    plan: &Plan,
+    pose: &Pose<T>,
     mut add: impl FnMut(BodyAction<T>),
 ) -> Option<()> {
     let arm = |body: BodyId, point: Vec3| plan.frame(pose, body.0).rotation.apply(point.cast());

@@ -63,7 +63,8 @@ impl FrictionLaw {
     fn compile(
         friction: Friction,
         kind: LoadKind,
-        (mechanism, plan): (&Mechanism, &Plan),
+        mechanism: &Mechanism,
+        plan: &Plan,
     ) -> Result<Self, &'static str> {
         friction.validate_numbers()?;
         let id = friction.joint;
@@ -216,9 +217,8 @@ impl Model {
             let Some(friction) = one.friction() else {
                 continue;
             };
-            let at = (self.mechanism(), self.plan());
-            let law = FrictionLaw::compile(friction, one.kind, at);
-            let law = law.map_err(|what| LoadError { load, what })?;
+            let law = FrictionLaw::compile(friction, one.kind, self.mechanism(), self.plan())
+                .map_err(|what| LoadError { load, what })?;
             let joint = friction.joint;
             let needed = if law.distance > 0.0 { 4 } else { 2 };
             let mut reactions = [None; 4];

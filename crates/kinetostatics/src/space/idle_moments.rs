@@ -71,7 +71,8 @@ impl Model {
             // Without a direction here it has one at the other poses.
             let _ = kind.act(
                 unit,
-                (self.plan(), pose),
+                self.plan(),
+                pose,
                 self.inner_masses(),
                 |(on, [arm, force, couple])| {
                     if on == body {

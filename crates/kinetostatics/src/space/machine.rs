@@ -66,14 +66,14 @@ impl Model {
         let Some(kind) = self.loads.kinds.get(load) else {
             return Ok(());
         };
-        let at = (self.plan(), &workspace.pose);
+        let (plan, pose) = (self.plan(), &workspace.pose);
         let mut act = |kind: &CompiledKind, magnitude: T| {
             let add_one = |(body, [arm, force, couple]): BodyAction<T>| {
                 let mut wrench = Wrench::default();
                 wrench.add_at(arm, force, couple);
                 add(body, wrench);
             };
-            kind.act(magnitude, at, self.inner_masses(), add_one)
+            kind.act(magnitude, plan, pose, self.inner_masses(), add_one)
         };
         let acted = match self.surface_friction(load, &workspace.surface_directions) {
             None => act(kind, magnitude),
@@ -202,7 +202,7 @@ impl MachineModel for Model {
         for (i, load) in self.loads.loads.iter().enumerate() {
             workspace.magnitudes[i] = match &load.magnitude {
                 Magnitude::External(_) | Magnitude::Friction(_) => T::from_f64(0.0),
-                magnitude => self.eval_magnitude((i, magnitude), t, workspace)?,
+                magnitude => self.eval_magnitude(i, magnitude, t, workspace)?,
             };
         }
         Ok(())
@@ -221,7 +221,8 @@ impl MachineModel for Model {
     #[inline]
     fn eval_magnitude<T: Scalar>(
         &self,
-        (load, magnitude): (usize, &Magnitude<Coordinate>),
+        load: usize,
+        magnitude: &Magnitude<Coordinate>,
         t: f64,
         workspace: &mut Workspace<T>,
     ) -> Result<T> {
@@ -231,7 +232,7 @@ impl MachineModel for Model {
             [value, rate]
         };
         let of_load = &self.loads.signals[load];
-        signals.eval((load, magnitude), of_load, t, coordinate)
+        signals.eval(load, magnitude, of_load, t, coordinate)
     }
 
     fn held_pieces<T: Scalar>(workspace: &mut Workspace<T>, load: usize) -> &mut HeldPieces {

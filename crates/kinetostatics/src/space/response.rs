@@ -37,11 +37,11 @@ impl Model {
         let Workspace { pose, forces, .. } = &mut *workspace;
         let required = &mut forces.required;
         required.fill([Wrench::default()]);
-        let at = (self.plan(), &*pose);
         for (kind, magnitude) in parts {
             kind.act(
                 *magnitude,
-                at,
+                self.plan(),
+                pose,
                 self.inner_masses(),
                 |(body, [arm, force, couple])| {
                     required[body][0].add_at(arm, -force, -couple);

@@ -104,8 +104,8 @@ pub(super) fn build_to_accuracy<S: ?Sized, P: Piecewise<S>>(
             best = Some((piecewise, bounds, cells));
         }
         // The error is proportional to the cell's size to the power of the number of terms; half the accuracy is aimed at.
-        let next = cells as f64 * (2.0 * part).powf(1.0 / TERMS as f64);
-        let next = (next.ceil() as usize).max(MIN_CELLS);
+        let wanted = cells as f64 * (2.0 * part).powf(1.0 / TERMS as f64);
+        let next = (wanted.ceil() as usize).max(MIN_CELLS);
         cells = match (enough, &best) {
             (true, _) if part > OVERSIZED || next >= cells => break,
             (true, _) => next,

@@ -305,7 +305,7 @@ impl TurnSearch {
                     *at = slopes[kind] & !(slopes[kind] << 1 | before);
                     before = slopes[kind] >> 63;
                 }
-                Candidate::find((curve, sign), of, &at[..words], &mut self.candidates);
+                Candidate::find(curve, sign, of, &at[..words], &mut self.candidates);
             }
         }
         self.peaks.clear();

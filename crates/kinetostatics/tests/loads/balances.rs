@@ -10,7 +10,7 @@ fn each_state(check: impl Fn(&Case, &EvaluatedState<'_>, &FreeBodyForces, &[Appl
         let free_body_forces = FreeBodyForces::new(&case.model).expect("every reaction");
         let (mut memory, mut wrenches) = (case.memory(), Vec::new());
         for (t, q, q_dot, q_ddot) in case.states() {
-            let state = case.evaluate(&mut memory, (t, &q, &q_dot, &q_ddot));
+            let state = case.evaluate(&mut memory, t, &q, &q_dot, &q_ddot);
             free_body_forces.wrenches(&state, &mut wrenches);
             check(&case, &state, &free_body_forces, &wrenches);
         }

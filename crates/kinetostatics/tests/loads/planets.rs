@@ -52,7 +52,7 @@ fn planets(count: usize, extra_joints: &str) -> Case {
 fn follow(case: &Case, planets: usize, turns: f64) {
     let q = TAU * turns + 0.4;
     let mut memory = case.memory();
-    let state = case.evaluate(&mut memory, (0.0, &[q], &[2.0], &[0.0]));
+    let state = case.evaluate(&mut memory, 0.0, &[q], &[2.0], &[0.0]);
     let body = |name: &str| {
         let found = case.mechanism.bodies.iter().position(|b| b.name == name);
         state.bodies().body(BodyId(found.expect("a body")))
@@ -116,7 +116,7 @@ fn joints_of_gears_written_twice_change_no_motion() {
     let mut memory = case.memory();
     for turns in [0.3, 100.0] {
         let q = TAU * turns;
-        let state = case.evaluate(&mut memory, (0.0, &[q], &[2.0], &[0.0]));
+        let state = case.evaluate(&mut memory, 0.0, &[q], &[2.0], &[0.0]);
         let result = state.inverse_dynamics();
         // The two meshes share the force of one: 120 N.
         for teeth in ["outer0", "twin"] {

@@ -49,7 +49,7 @@ fn drag_link(follower_angle: f64, loads: fn(&Mechanism) -> Vec<Load>) -> Case {
 /// The couple on the follower and its counted angle, at rest.
 fn couple(case: &Case, q: &[f64]) -> [f64; 2] {
     let (mut memory, rest) = (case.memory(), vec![0.0; q.len()]);
-    let state = case.evaluate(&mut memory, (0.0, q, &rest, &rest));
+    let state = case.evaluate(&mut memory, 0.0, q, &rest, &rest);
     let [ground, follower] = pair(&case.mechanism);
     let wrenches = &state.loads().wrenches;
     let on_follower = wrenches.iter().find(|wrench| wrench.body == follower);
@@ -108,7 +108,7 @@ fn a_spring_gives_back_what_it_took_across_the_half_turn() {
     let case = drag_link(2.0, torsion);
     let mut memory = case.memory();
     let mut energy = |q: f64| {
-        let state = case.evaluate(&mut memory, (0.0, &[q], &[0.0], &[0.0]));
+        let state = case.evaluate(&mut memory, 0.0, &[q], &[0.0], &[0.0]);
         state.potential_energy(0).expect("it has one")
     };
     let around: Vec<f64> = (0..=400)
@@ -123,7 +123,7 @@ fn a_spring_gives_back_what_it_took_across_the_half_turn() {
         let [_, angle] = couple(&case, &[q]);
         crossed |= (angle - PI).abs() < 0.02;
         let mut force = [0.0];
-        let mut state = case.evaluate(&mut memory, (0.0, &[q], &[0.0], &[0.0]));
+        let mut state = case.evaluate(&mut memory, 0.0, &[q], &[0.0], &[0.0]);
         state.generalised_forces(&mut force);
         // h⁴/30 times the fifth derivative of the energy; 1.4e-8 W is met.
         assert!((fall - force[0]).abs() < 3e-8, "{k}: {fall} {}", force[0]);

@@ -120,7 +120,10 @@ impl Case {
     pub(crate) fn evaluate<'a>(
         &'a self,
         (workspace, result): &'a mut Memory,
-        (t, q, q_dot, q_ddot): (f64, &[f64], &[f64], &[f64]),
+        t: f64,
+        q: &[f64],
+        q_dot: &[f64],
+        q_ddot: &[f64],
     ) -> EvaluatedState<'a> {
         let state = self
             .model
@@ -129,9 +132,15 @@ impl Case {
     }
 
     /// The results at t, q, q̇, q̈.
-    pub(crate) fn result(&self, at: (f64, &[f64], &[f64], &[f64])) -> InverseDynamics<f64> {
+    pub(crate) fn result(
+        &self,
+        t: f64,
+        q: &[f64],
+        q_dot: &[f64],
+        q_ddot: &[f64],
+    ) -> InverseDynamics<f64> {
         let mut memory = self.memory();
-        self.evaluate(&mut memory, at);
+        self.evaluate(&mut memory, t, q, q_dot, q_ddot);
         memory.1
     }
 
@@ -284,9 +293,10 @@ pub(crate) fn every_kind(mechanism: &Mechanism) -> Vec<Load> {
         let force = |body_fixed| LoadKind::Force {
             body,
             point: points[0],
-            direction: match body_fixed {
-                true => Direction::Body(Vec2::from_angle(0.7 + points[1].x)),
-                false => Direction::Ground(Vec2::from_angle(0.7 + points[1].x)),
+            direction: if body_fixed {
+                Direction::Body(Vec2::from_angle(0.7 + points[1].x))
+            } else {
+                Direction::Ground(Vec2::from_angle(0.7 + points[1].x))
             },
         };
         let spring = LoadKind::spring(between, points, 0.13);

@@ -39,7 +39,7 @@ fn a_bar_turned_at_its_end_is_a_cantilever() {
     let (l, density) = (0.8, 3.0 / 0.8);
     let (q, w, a) = (0.7, 5.0, -30.0);
     let mut memory = case.memory();
-    let state = case.evaluate(&mut memory, (0.0, &[q], &[w], &[a]));
+    let state = case.evaluate(&mut memory, 0.0, &[q], &[w], &[a]);
     let ends = [vec2(0.1, 0.0), vec2(0.9, 0.0)];
     let link = link(&state, case.body("bar"), ends);
     assert_eq!(link.distribution, Distribution::UniformBar);
@@ -80,7 +80,7 @@ fn a_coupler_is_a_beam_on_two_pins() {
     let (l, density) = (3.5, 2.0 / 3.5);
     let mut memory = case.memory();
     for (t, q, q_dot, q_ddot) in case.states() {
-        let state = case.evaluate(&mut memory, (t, &q, &q_dot, &q_ddot));
+        let state = case.evaluate(&mut memory, t, &q, &q_dot, &q_ddot);
         let link = link(&state, coupler, ends);
         assert_eq!(link.distribution, Distribution::UniformBar);
         let states = state.bodies();
@@ -104,8 +104,8 @@ fn a_coupler_is_a_beam_on_two_pins() {
         }
         // The first pin pulls the coupler with the axial force just behind it.
         let along = states.body(coupler).rotation;
-        let pin = ["B.x", "B.y"].map(|name| case.reaction(state.inverse_dynamics(), name));
-        let pin = vec2(pin[0], pin[1]);
+        let [x, y] = ["B.x", "B.y"].map(|name| case.reaction(state.inverse_dynamics(), name));
+        let pin = vec2(x, y);
         assert!((link.section_after(0.0).axial + pin.dot(along)).abs() < 1e-12 * pin.norm());
     }
 }
@@ -118,7 +118,7 @@ fn sections_close_at_the_second_end() {
         let mut memory = case.memory();
         let free_body_forces = FreeBodyForces::new(&case.model).expect("every reaction");
         for (t, q, q_dot, q_ddot) in case.states().into_iter().take(4) {
-            let state = case.evaluate(&mut memory, (t, &q, &q_dot, &q_ddot));
+            let state = case.evaluate(&mut memory, t, &q, &q_dot, &q_ddot);
             let mut wrenches = Vec::new();
             free_body_forces.wrenches(&state, &mut wrenches);
             for b in (0..case.mechanism.bodies.len()).filter(|&b| b != case.mechanism.ground) {
@@ -147,7 +147,7 @@ fn sections_close_at_the_second_end() {
 fn what_has_no_line_has_no_sections() {
     let case = Case::parse(BAR, |_| Vec::new());
     let mut memory = case.memory();
-    let state = case.evaluate(&mut memory, (0.0, &[0.0], &[0.0], &[0.0]));
+    let state = case.evaluate(&mut memory, 0.0, &[0.0], &[0.0], &[0.0]);
     let free_body_forces = FreeBodyForces::new(&case.model).expect("every reaction");
     let of = |body, points| free_body_forces.link_forces(&state, body, points, &[]);
     let points = [Vec2::ZERO, vec2(1.0, 0.0)];

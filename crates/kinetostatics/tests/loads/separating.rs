@@ -41,7 +41,7 @@ struct Evaluated<'a> {
 /// The case at q, q̇ of its one actuator and t = 0, without acceleration.
 fn at(case: &Case, q: f64, q_dot: f64) -> Evaluated<'_> {
     let mut memory = case.memory();
-    let state = case.evaluate(&mut memory, (0.0, &[q], &[q_dot], &[0.0]));
+    let state = case.evaluate(&mut memory, 0.0, &[q], &[q_dot], &[0.0]);
     let magnitudes = state.loads().magnitude.clone();
     Evaluated {
         case,
@@ -271,12 +271,12 @@ fn a_separating_force_does_no_work_and_adds_its_unit_response() {
     let mut largest_share = 0.0_f64;
     let (mut memory, mut other) = (with.memory(), with.memory());
     for (t, q, q_dot, q_ddot) in with.states() {
-        let motion = (t, &q[..], &q_dot[..], &q_ddot[..]);
-        let state = with.evaluate(&mut memory, motion);
-        let (result, plain) = (state.inverse_dynamics(), without.result(motion));
+        let state = with.evaluate(&mut memory, t, &q, &q_dot, &q_ddot);
+        let plain = without.result(t, &q, &q_dot, &q_ddot);
+        let result = state.inverse_dynamics();
         let force = state.loads().magnitude[separating];
         let tooth = with.reaction(result, "mesh.tooth");
-        with.evaluate(&mut other, motion)
+        with.evaluate(&mut other, t, &q, &q_dot, &q_ddot)
             .into_kinematic_state()
             .unit_load_response(separating, &mut unit)
             .expect("gears apart");

@@ -13,7 +13,7 @@ fn springs_give_back_and_dampers_dissipate() {
     for case in all() {
         let mut memory = case.memory();
         for (t, q, q_dot, q_ddot) in case.states() {
-            let state = case.evaluate(&mut memory, (t, &q, &q_dot, &q_ddot));
+            let state = case.evaluate(&mut memory, t, &q, &q_dot, &q_ddot);
             let mut powers = vec![0.0; case.model.loads().len()];
             state.load_powers(&mut powers);
             let states = state.bodies();
@@ -72,7 +72,7 @@ fn virtual_work_gives_what_the_actuators_feel() {
     for case in all() {
         let (mut memory, mut unloaded) = (case.memory(), case.memory());
         for (t, q, q_dot, q_ddot) in case.states() {
-            let mut state = case.evaluate(&mut memory, (t, &q, &q_dot, &q_ddot));
+            let mut state = case.evaluate(&mut memory, t, &q, &q_dot, &q_ddot);
             case.model
                 .inverse_dynamics(&q, &q_dot, &q_ddot, &mut unloaded.0, &mut unloaded.1)
                 .expect("a pose");
@@ -100,9 +100,10 @@ fn force(body: &'static str, direction: Vec2, body_fixed: bool) -> impl Fn(&Mech
     move |mechanism| LoadKind::Force {
         body: crate::scenes::body(mechanism, body),
         point: vec2(0.2, 0.05),
-        direction: match body_fixed {
-            true => Direction::Body(direction),
-            false => Direction::Ground(direction),
+        direction: if body_fixed {
+            Direction::Body(direction)
+        } else {
+            Direction::Ground(direction)
         },
     }
 }
@@ -117,15 +118,15 @@ fn a_force_follows_its_body() {
     let mut memory = following.memory();
     for k in 0..5 {
         let q = 0.4 + 0.5 * f64::from(k);
-        let at = (0.0, &[q][..], &[0.0][..], &[0.0][..]);
-        let state = following.evaluate(&mut memory, at);
+        let state = following.evaluate(&mut memory, 0.0, &[q], &[0.0], &[0.0]);
         let rotation = state.bodies().body(rod).rotation;
         let rotated = force("rod", direction.rotate(rotation), false);
         let fixed = Case::parse(SLIDER_CRANK, |m| vec![load("f", rotated(m), 30.0)]);
-        assert_eq!(fixed.result(at), *state.inverse_dynamics());
+        let result = |case: &Case| case.result(0.0, &[q], &[0.0], &[0.0]);
+        assert_eq!(result(&fixed), *state.inverse_dynamics());
         let unrotated = force("rod", direction, false);
         let other = Case::parse(SLIDER_CRANK, |m| vec![load("f", unrotated(m), 30.0)]);
-        assert!((other.result(at).tau[0] - state.inverse_dynamics().tau[0]).abs() > 1e-3);
+        assert!((result(&other).tau[0] - state.inverse_dynamics().tau[0]).abs() > 1e-3);
     }
 }
 
@@ -141,8 +142,8 @@ fn a_torque_between_bodies_that_turn_together_is_felt_by_their_slide_alone() {
     });
     let mut memory = case.memory();
     for (t, q, q_dot, q_ddot) in case.states() {
-        let at = (t, &q[..], &q_dot[..], &q_ddot[..]);
-        let (unloaded, state) = (unloaded.result(at), case.evaluate(&mut memory, at));
+        let unloaded = unloaded.result(t, &q, &q_dot, &q_ddot);
+        let state = case.evaluate(&mut memory, t, &q, &q_dot, &q_ddot);
         let result = state.inverse_dynamics();
         let reactions = unloaded.reactions.iter();
         let largest = reactions.fold(5.0, |m: f64, r| m.max(r.abs()));
@@ -167,7 +168,7 @@ fn magnitudes_follow_their_signals() {
     for case in all() {
         let mut memory = case.memory();
         for (t, q, q_dot, q_ddot) in case.states() {
-            let state = case.evaluate(&mut memory, (t, &q, &q_dot, &q_ddot));
+            let state = case.evaluate(&mut memory, t, &q, &q_dot, &q_ddot);
             for (load, &f) in case.model.loads().iter().zip(&state.loads().magnitude) {
                 let LoadKind::Along(CoordinateFunction::Angle(bodies), Strength::Direct) =
                     load.kind
@@ -198,7 +199,7 @@ fn statics_is_kinetostatics_at_rest() {
         let (mut workspace, mut result) = case.memory();
         for (t, q, ..) in case.states() {
             let rest = vec![0.0; q.len()];
-            let moving = case.result((t, &q, &rest, &rest));
+            let moving = case.result(t, &q, &rest, &rest);
             let still = case.model.statics(t, &q, &mut workspace, &mut result);
             assert_eq!(still.expect("a pose").inverse_dynamics(), &moving);
         }

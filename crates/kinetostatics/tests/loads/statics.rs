@@ -47,7 +47,7 @@ fn a_pendulum_is_held_by_its_weight_times_its_lever() {
     let case = Case::parse(PENDULUM, |_| vec![load("weight", GRAVITY, 9.81)]);
     for k in 0..8 {
         let q = 0.8 * f64::from(k);
-        let result = case.result((0.0, &[q], &[0.0], &[0.0]));
+        let result = case.result(0.0, &[q], &[0.0], &[0.0]);
         let lever = vec2(0.4, 0.3).rotate(Vec2::from_angle(q)).x;
         // 20 N·m: a few units in the last place.
         assert!((result.tau[0] - 2.0 * 9.81 * lever).abs() < 1e-14 * 20.0);
@@ -72,7 +72,7 @@ fn a_massless_slider_crank_carries_the_piston_force() {
     for k in 0..9 {
         let q = 0.3 + 0.65 * f64::from(k);
         // At any speed: there is no mass.
-        let result = case.result((0.0, &[q], &[3.0], &[-5.0]));
+        let result = case.result(0.0, &[q], &[3.0], &[-5.0]);
         let (r, l) = (0.1, 0.35);
         let sin = r * q.sin() / l;
         let cos = (1.0 - sin * sin).sqrt();
@@ -106,7 +106,7 @@ fn potential_slope(case: &Case, q: f64) -> f64 {
     let h = 2e-3 * case.reach;
     let at = |k: f64| {
         let mut memory = case.memory();
-        let state = case.evaluate(&mut memory, (0.0, &[q + k * h], &[0.0], &[0.0]));
+        let state = case.evaluate(&mut memory, 0.0, &[q + k * h], &[0.0], &[0.0]);
         let loads = 0..case.model.loads().len();
         loads.filter_map(|i| state.potential_energy(i)).sum::<f64>()
     };
@@ -126,7 +126,7 @@ fn conservative_loads_are_held_by_the_slope_of_their_potential() {
             case.model = case.model.with_loads(one).expect("it fits");
             let mut memory = case.memory();
             for (_, q, ..) in case.states().into_iter().take(3) {
-                let state = case.evaluate(&mut memory, (0.0, &q, &[0.0], &[0.0]));
+                let state = case.evaluate(&mut memory, 0.0, &q, &[0.0], &[0.0]);
                 let Some(energy) = state.potential_energy(0).map(f64::abs) else {
                     continue;
                 };
@@ -159,9 +159,9 @@ fn meeting_spring(free: f64) -> impl FnOnce(&Mechanism) -> Vec<Load> {
 #[test]
 fn a_spring_of_no_length_pulls_smoothly_or_says_that_it_has_no_direction() {
     let case = Case::parse(SLIDER_CRANK, meeting_spring(0.0));
-    let moving = case.result((0.0, &[0.0], &[1.0], &[0.0]));
+    let moving = case.result(0.0, &[0.0], &[1.0], &[0.0]);
     assert_eq!(moving.tau[0], 0.0);
-    let tau_at = |q: f64| case.result((0.0, &[q], &[0.0], &[0.0])).tau[0];
+    let tau_at = |q: f64| case.result(0.0, &[q], &[0.0], &[0.0]).tau[0];
     // V = k r² (1 − cos q): τ = k r² sin q, to rounding of a length of 1e-9 m.
     assert!((tau_at(1e-8) - 50.0 * 0.01 * 1e-8).abs() < 1e-16);
 

@@ -27,7 +27,7 @@ impl Joints<'_> {
         let both = self.coupled_coordinates(k, fields, named);
         let laws = list(table("coupling").alternatives().into_iter()).unwrap_or_default();
         let help = format!("add `expression = \"0.01*(1 - cos(x))\"`; the laws are {laws}");
-        let chosen = fields.alternative(table("coupling"), ("has no law", "no law"), help)?;
+        let chosen = fields.alternative(table("coupling"), "has no law", "no law", help)?;
         let location = SceneLocation::CouplingLaw(JointId(k));
         self.log.place(location, &chosen.span());
         let [dependent, independent] = both?;

@@ -31,9 +31,10 @@ impl CoordinateNotation for Space {
     ) -> Option<Coordinate> {
         let is_angle = entry.name == "angle";
         let joint = joint_with_freedom(is_angle, entry, fields, parts.joints)?;
-        Some(match is_angle {
-            true => Coordinate::Angle(joint),
-            false => Coordinate::Travel(joint),
+        Some(if is_angle {
+            Coordinate::Angle(joint)
+        } else {
+            Coordinate::Travel(joint)
         })
     }
 
@@ -45,9 +46,9 @@ impl CoordinateNotation for Space {
 fn read_actuator(entry: &Entry<'_>, joints: &Joints<'_>) -> Option<Actuator> {
     let fields = TableReader::open(entry, format!("actuator `{}`", shorten(entry.name)))?;
     let help = "write it as `{ angle = \"A\" }`, `{ travel = \"slide\" }` or `{ length = \"link\" }`, with the name of a joint";
-    fields.reject_unknown_keys(Space::table("actuator"));
-    let lacks = ("drives nothing", "no `angle`, `travel` or `length`");
-    let coordinate = fields.alternative(Space::table("actuator"), lacks, help)?;
+    let (table, label) = (Space::table("actuator"), "no `angle`, `travel` or `length`");
+    fields.reject_unknown_keys(table);
+    let coordinate = fields.alternative(table, "drives nothing", label, help)?;
     if matches!(coordinate.value.get(), DeValue::Array(_)) {
         let message = format!(
             "{} names two things, and not a joint",
@@ -76,9 +77,10 @@ pub(super) fn joint_with_freedom(
     fields: &TableReader<'_>,
     joints: &Joints<'_>,
 ) -> Option<JointId> {
-    let kind = match is_angle {
-        true => ActuatorKind::Angle,
-        false => ActuatorKind::Travel,
+    let kind = if is_angle {
+        ActuatorKind::Angle
+    } else {
+        ActuatorKind::Travel
     };
     joint_with(kind, entry, fields, joints)
 }

@@ -18,17 +18,13 @@ pub(super) fn add_friction(fields: &TableReader<'_>, joints: &Joints<'_>, loads:
         };
         if let Some(joint) = &joints.list[j].joint {
             // What is wrong is reported; then there is no scene.
-            let _ = add_loads(entry, (JointId(j), joint.kind), loads);
+            let _ = add_loads(entry, JointId(j), joint.kind, loads);
         }
     }
 }
 
 /// Appends the loads of the friction of one joint; none if something in it is wrong.
-fn add_loads(
-    entry: &Entry<'_>,
-    (id, kind): (JointId, JointKind),
-    loads: &mut Vec<Load>,
-) -> Option<()> {
+fn add_loads(entry: &Entry<'_>, id: JointId, kind: JointKind, loads: &mut Vec<Load>) -> Option<()> {
     let name = shorten(entry.name);
     let fields = TableReader::open(entry, format!("friction of `{name}`"))?;
     let (friction, viscous) = form(entry, kind)?.read(id, &fields)?;

@@ -46,7 +46,7 @@ impl SpaceLoads<'_> {
             let magnitude = Magnitude::Constant(gravity.norm());
             return Some((LoadKind::Gravity { direction }, magnitude));
         }
-        self.kind_and_size((kind, entry), (fields, k))
+        self.kind_and_size(kind, entry, fields, k)
     }
 }
 
@@ -105,9 +105,10 @@ fn force(
         },
     };
     let (body, index) = point?;
-    let direction = match in_body {
-        true => Direction::Body(direction?),
-        false => Direction::Ground(direction?),
+    let direction = if in_body {
+        Direction::Body(direction?)
+    } else {
+        Direction::Ground(direction?)
     };
     let point = bodies.at(&(body, index, at));
     Some(LoadKind::Force {

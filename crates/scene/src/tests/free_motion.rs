@@ -131,8 +131,8 @@ fn drives() {
         Law::Spline(Spline::interpolating(rows, Interpolation::Monotone).unwrap())
     };
     let engine = Magnitude::Law(Signal::Value(PHI), table(&[[0.0, 2.0], [TAU, 1.0]]));
-    let voltage = Expression::parse("12 - 2*t", &["t"]).unwrap();
-    let voltage = Magnitude::Expression(voltage, vec![Signal::Time]);
+    let falling = Expression::parse("12 - 2*t", &["t"]).unwrap();
+    let voltage = Magnitude::Expression(falling, vec![Signal::Time]);
     let starter = Motor {
         voltage,
         torque_constant: 0.05,

@@ -92,12 +92,13 @@ fn cases() -> Vec<Scene> {
         let entries = std::fs::read_dir(folder).expect("a folder").flatten();
         entries.map(|entry| entry.path()).collect()
     };
-    let files = entries(&top)
-        .into_iter()
-        .flat_map(|path| match path.is_dir() {
-            true => entries(&path),
-            false => Vec::new(),
-        });
+    let files = entries(&top).into_iter().flat_map(|path| {
+        if path.is_dir() {
+            entries(&path)
+        } else {
+            Vec::new()
+        }
+    });
     let is_scene = |path: &PathBuf| path.extension().is_some_and(|e| e == "toml");
     let read = |path: PathBuf| Scene::read(path).ok();
     files.filter(is_scene).filter_map(read).collect()

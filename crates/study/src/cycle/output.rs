@@ -67,8 +67,7 @@ pub fn cycle<S: MachineScene>(
         outcome.summary += &flywheel_text(&results.prepared, flywheel, &mut outcome.record);
     }
     let figure = figures::cycle(&results, settings);
-    let page = ("steady cycle", &name("")[..]);
-    add_results_page(&mut outcome, scene, page, Some(figure));
+    add_results_page(&mut outcome, scene, "steady cycle", &name(""), Some(figure));
     Ok(TrajectoryOutcome {
         outcome,
         early_stop: None,
@@ -78,7 +77,8 @@ pub fn cycle<S: MachineScene>(
 /// A speed in the scene's unit and in revolutions per minute, to the digits that its relative error leaves; it is recorded.
 fn speed_text(
     scene: &SceneFile,
-    (name, value): (&str, f64),
+    name: &str,
+    value: f64,
     relative_error: f64,
     record: &mut Record,
 ) -> String {
@@ -102,17 +102,12 @@ fn summary(results: &CycleResults<'_, impl MachineScene>, record: &mut Record) -
         scene.title,
         count(revolutions, "revolution"),
         digits_within(cycle.period, errors.speed * cycle.period, 9),
-        speed_text(
-            scene,
-            ("mean_speed", cycle.mean_speed),
-            errors.speed,
-            record
-        ),
+        speed_text(scene, "mean_speed", cycle.mean_speed, errors.speed, record),
     );
     let ends = [("slowest", cycle.slowest), ("fastest", cycle.fastest)];
     for ((name, [at, speed]), error) in ends.into_iter().zip(errors.positions) {
         let key = format!("{name}_speed");
-        let speed = speed_text(scene, (&key, speed), errors.speed, record);
+        let speed = speed_text(scene, &key, speed, errors.speed, record);
         record.add_within(format!("{key}.at"), "rad", at, error);
         if errors.varies(cycle) {
             let position = prepared.describe_coordinate_within(coordinate, at, error);
@@ -207,7 +202,7 @@ fn flywheel_text(
         ("flywheel.slowest_speed", cycle.slowest[1]),
         ("flywheel.fastest_speed", cycle.fastest[1]),
     ]
-    .map(|speed| speed_text(prepared.scene, speed, error, record));
+    .map(|(name, speed)| speed_text(prepared.scene, name, speed, error, record));
     let target = digits(sized.target, 6);
     if inertia == 0.0 {
         return format!("  no flywheel is needed for a coefficient of fluctuation of {target}\n");

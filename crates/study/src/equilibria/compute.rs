@@ -123,9 +123,12 @@ fn searched_range(prepared: &SceneMachine<'_, impl MachineScene>) -> SearchedRan
         return SearchedRange::Interval([start[0] - length, start[0] + length]);
     }
     let free = prepared.machine.free();
-    let range = |(&i, q): (&usize, &f64)| match model.is_angle(i) {
-        true => [q - CUT_FRACTION * TAU, q + (1.0 - CUT_FRACTION) * TAU],
-        false => [q - length, q + length],
+    let range = |(&i, q): (&usize, &f64)| {
+        if model.is_angle(i) {
+            [q - CUT_FRACTION * TAU, q + (1.0 - CUT_FRACTION) * TAU]
+        } else {
+            [q - length, q + length]
+        }
     };
     let doublings = free.len().saturating_sub(1).min(8);
     SearchedRange::Starts {

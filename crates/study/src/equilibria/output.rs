@@ -30,7 +30,7 @@ pub fn equilibria<S: MachineScene>(scene: &S) -> Result<Outcome, StudyError> {
     outcome.run = static_force_page(scene, &results).map(Box::new);
     let figure = results.curves.as_ref();
     let figure = figure.map(|curves| figures::equilibria(&results, curves));
-    add_results_page(&mut outcome, scene, ("equilibria", &stem), figure);
+    add_results_page(&mut outcome, scene, "equilibria", &stem, figure);
     Ok(outcome)
 }
 
@@ -79,11 +79,10 @@ fn summary(results: &EquilibriaResults<'_, impl MachineScene>, record: &mut Reco
         record.add("static_force.min", unit, ends[0]);
         record.add("static_force.max", unit, ends[1]);
         let [low, high] = ends.map(number);
-        text += &match low == high {
-            true => format!("  the static force along {name} is {low} {unit} everywhere\n"),
-            false => {
-                format!("  the static force along {name} stays between {low} and {high} {unit}\n")
-            }
+        text += &if low == high {
+            format!("  the static force along {name} is {low} {unit} everywhere\n")
+        } else {
+            format!("  the static force along {name} stays between {low} and {high} {unit}\n")
         };
     }
     for (k, equilibrium) in found.iter().enumerate() {
@@ -109,9 +108,10 @@ fn searched_text(
         SearchedRange::Interval([from, to]) => {
             let (first, is_angle) = prepared.first_free_coordinate();
             let is_whole_period = is_angle && (to - from) >= TAU * (1.0 - 1e-12);
-            let period = match is_whole_period {
-                true => ", one revolution around the start",
-                false => "",
+            let period = if is_whole_period {
+                ", one revolution around the start"
+            } else {
+                ""
             };
             let interval = range(first, [*from, *to]);
             let ends = [(*from, from - to), (*to, to - from)];
@@ -151,9 +151,12 @@ fn interval_text(
     actuator: usize,
     interval: [f64; 2],
 ) -> String {
-    let [from, to] = interval.map(|q| match prepared.is_angle(actuator) {
-        true => format!("{}°", digits(q.to_degrees(), 6)),
-        false => format!("{} m", digits(q, 6)),
+    let [from, to] = interval.map(|q| {
+        if prepared.is_angle(actuator) {
+            format!("{}°", digits(q.to_degrees(), 6))
+        } else {
+            format!("{} m", digits(q, 6))
+        }
     });
     format!(
         "{} between {from} and {to}",
@@ -199,11 +202,8 @@ pub(crate) fn describe_equilibrium(
             record,
         );
     }
-    let eigenvalues = (
-        &equilibrium.eigenvalues[..],
-        &equilibrium.eigenvalue_errors[..],
-    );
-    let (lines, error) = describe_eigenvalues(eigenvalues, of, record);
+    let (values, value_errors) = (&equilibrium.eigenvalues, &equilibrium.eigenvalue_errors);
+    let (lines, error) = describe_eigenvalues(values, value_errors, of, record);
     let errors = errors.join(", ");
     text + &lines + &format!("    estimated errors: {errors}, {error}")
 }
@@ -257,7 +257,8 @@ fn describe_neutral(
 /// Eigenvalues as text, to the digits that their errors leave, and their largest error: a complex pair once, with its frequency and
 /// damping. The numbers are recorded under names that begin with `of`.
 pub(crate) fn describe_eigenvalues(
-    (values, errors): (&[[f64; 2]], &[f64]),
+    values: &[[f64; 2]],
+    errors: &[f64],
     of: &str,
     record: &mut Record,
 ) -> (String, String) {

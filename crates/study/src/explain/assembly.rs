@@ -18,9 +18,10 @@ const MARGINAL_GAP: f64 = 1e-6;
 
 /// Why a loop of a mechanism of this size does not close: by a gap, or, as a gap of rounding is no cause, by a limit position.
 pub(crate) fn describe_gap(file: &SceneFile, gap: f64, size: f64) -> String {
-    match gap <= MARGINAL_GAP * size {
-        true => "a limit position, or just beyond one".to_owned(),
-        false => format!("gap of {}", own_length(file, gap, 3)),
+    if gap <= MARGINAL_GAP * size {
+        "a limit position, or just beyond one".to_owned()
+    } else {
+        format!("gap of {}", own_length(file, gap, 3))
     }
 }
 
@@ -43,7 +44,9 @@ pub fn explain_model(scene: &PlaneScene, error: &ModelError) -> StudyError {
     };
     let is_sound = !matches!(assembly, AssemblyError::Structure(_));
     match non_finite_coupling(&scene.mechanism, &scene.assembly.coordinates) {
-        Some(at) if is_sound => non_finite_coupling_error(scene, at, "at the assembly coordinates"),
+        Some(fault) if is_sound => {
+            non_finite_coupling_error(scene, &fault, "at the assembly coordinates")
+        }
         _ => explain_assembly(scene, assembly),
     }
 }
@@ -73,9 +76,10 @@ fn explain_assembly(scene: &PlaneScene, error: &AssemblyError) -> StudyError {
                     "start a little farther from the limit position",
                 )
             } else {
-                let missing = match gap.is_finite() {
-                    true => format!(": a gap of {} remains", own_length(scene, *gap, 6)),
-                    false => String::new(),
+                let missing = if gap.is_finite() {
+                    format!(": a gap of {} remains", own_length(scene, *gap, 6))
+                } else {
+                    String::new()
                 };
                 (
                     format!("{names} cannot be assembled at the start{missing}"),
@@ -112,7 +116,7 @@ fn explain_assembly(scene: &PlaneScene, error: &AssemblyError) -> StudyError {
             gap,
         } => {
             let help = "correct a length or a point, or remove a joint";
-            inconsistent(scene, joints, (*redundant_count, *gap), help)
+            inconsistent(scene, joints, *redundant_count, *gap, help)
         }
         // Only mechanisms in space yield it.
         AssemblyError::NotThroughout { .. } | AssemblyError::NearlyParallel { .. } => {
@@ -182,7 +186,8 @@ pub(crate) fn not_connected(scene: &SceneFile, names: &str, bodies: &[BodyId]) -
 pub(crate) fn inconsistent(
     scene: &SceneFile,
     joints: &[JointId],
-    (redundant_count, gap): (usize, f64),
+    redundant_count: usize,
+    gap: f64,
     help: &str,
 ) -> StudyError {
     let redundant = count(redundant_count, "constraint");
@@ -357,9 +362,10 @@ fn suggested_hints(scene: &PlaneScene, joints: &[JointId], modes: &[Vec<f64>]) -
     };
     let free: Vec<usize> = (0..joints.len()).filter(|&k| !is_taken(k)).collect();
     let one = free.iter().copied().find(|&k| distinguishes(k));
-    let rename = match free.is_empty() {
-        true => "give the joint a name that no body or actuator has, and ",
-        false => "",
+    let rename = if free.is_empty() {
+        "give the joint a name that no body or actuator has, and "
+    } else {
+        ""
     };
     let listed = match one {
         Some(one) => vec![one],

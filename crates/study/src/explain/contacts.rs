@@ -36,9 +36,10 @@ pub(super) fn explain_no_progress(
     [t, step]: [f64; 2],
 ) -> StudyError {
     let at = digits(t, 6);
-    let step = match step > 0.0 {
-        true => format!("of {} s", digits(step, 2)),
-        false => "below the rounding of time".to_owned(),
+    let step = if step > 0.0 {
+        format!("of {} s", digits(step, 2))
+    } else {
+        "below the rounding of time".to_owned()
     };
     let mut message = format!("the motion makes no progress at t = {at} s, in steps {step}");
     let name = function.and_then(|load| Some((load, scene.load_name(load)?)));

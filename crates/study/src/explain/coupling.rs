@@ -21,23 +21,28 @@ pub(crate) fn couplings(
 }
 
 /// The first coupling of an actuator coordinate whose function has no finite value or derivative at
-/// `q` (rad or m): joint, value of the variable, and the quantity that is not finite.
-pub(crate) fn non_finite_coupling(
-    mechanism: &Mechanism,
-    q: &[f64],
-) -> Option<(JointId, f64, &'static str)> {
+/// `q` (rad or m): joint, value of the variable, and what is not finite.
+pub(crate) fn non_finite_coupling(mechanism: &Mechanism, q: &[f64]) -> Option<NonFiniteCoupling> {
     couplings(mechanism).find_map(|(joint, law, variable)| {
         let mut actuators = mechanism.actuators.iter();
         let x = *q.get(actuators.position(|a| a.coordinate() == variable)?)?;
         let order = law.eval(x)[..3].iter().position(|d| !d.is_finite())?;
-        Some((joint, x, ["value", "slope", "curvature"][order]))
+        let what = ["value", "slope", "curvature"][order];
+        Some(NonFiniteCoupling { joint, x, what })
     })
 }
 
-/// The error of a coupling function whose `what` (value, slope, curvature) is not finite at `x`.
+/// A coupling function whose `what` (value, slope, curvature) is not finite at `x` (SI).
+pub(crate) struct NonFiniteCoupling {
+    joint: JointId,
+    x: f64,
+    what: &'static str,
+}
+
+/// The error of such a function.
 pub(crate) fn non_finite_coupling_error(
     scene: &PlaneScene,
-    (joint, x, what): (JointId, f64, &str),
+    &NonFiniteCoupling { joint, x, what }: &NonFiniteCoupling,
     position: &str,
 ) -> StudyError {
     let fault = format!("no finite {what} at x = {}", number(x));

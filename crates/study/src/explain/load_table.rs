@@ -29,8 +29,10 @@ pub(crate) fn covers(table: &Spline, x: f64) -> bool {
 pub(crate) fn off_table_error<C: Copy>(
     scene: &impl NamedScene,
     magnitude: &Magnitude<C>,
-    (name_of, is_angle): (impl Fn(C) -> String, impl Fn(C) -> bool),
-    (load, value): (usize, f64),
+    name_of: impl Fn(C) -> String,
+    is_angle: impl Fn(C) -> bool,
+    load: usize,
+    value: f64,
     when: &str,
 ) -> Option<StudyError> {
     let (signal, table) = table_of(magnitude)?;

@@ -39,9 +39,10 @@ pub trait NamedScene: Deref<Target = SceneFile> {
 
     /// The place of the initial state: `[motion]`, or else the assembly.
     fn initial_state_location(&self) -> SceneLocation {
-        match self.has_motion() {
-            true => SceneLocation::Motion,
-            false => SceneLocation::AssemblyCoordinate(ActuatorId(0)),
+        if self.has_motion() {
+            SceneLocation::Motion
+        } else {
+            SceneLocation::AssemblyCoordinate(ActuatorId(0))
         }
     }
 

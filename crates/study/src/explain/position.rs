@@ -31,19 +31,21 @@ pub(crate) fn own_speed(file: &SceneFile, speed: f64, is_angle: bool) -> String 
 /// end of a range.
 pub(crate) fn describe_coordinate(file: &SceneFile, name: &str, q: f64, is_angle: bool) -> String {
     let rounded = (q * 1e9).round() * 1e-9 + 0.0;
-    match is_angle {
-        true => format!(
+    if is_angle {
+        format!(
             "{name} = {} rad ({}°)",
             digits(rounded, 10),
             number(rounded.to_degrees())
-        ),
-        false => format!("{name} = {}", own_length(file, rounded, 10)),
+        )
+    } else {
+        format!("{name} = {}", own_length(file, rounded, 10))
     }
 }
 
 /// A description of the end of a range: `limit position of `rod` at s = 0.2 m`. `revolutions` are added to an angle.
 pub(crate) fn describe_limit(
-    (file, mechanism): (&SceneFile, &Mechanism),
+    file: &SceneFile,
+    mechanism: &Mechanism,
     plan: &Plan,
     limit: RangeLimit,
     revolutions: f64,
@@ -59,9 +61,10 @@ pub(crate) fn describe_limit(
         (true, None) => "change point",
         (false, _) => "limit position",
     };
-    let bodies = match plan.group_methods().is_empty() {
-        true => Vec::new(),
-        false => plan.group_bodies(limit.group),
+    let bodies = if plan.group_methods().is_empty() {
+        Vec::new()
+    } else {
+        plan.group_bodies(limit.group)
     };
     let who = body_names_or_mechanism(mechanism, &bodies);
     format!("{kind} of {who} at {at}")
@@ -71,22 +74,19 @@ pub(crate) fn describe_limit(
 pub(crate) fn describe_ends(file: &SceneFile, from: f64, to: f64, is_angle: bool) -> String {
     // No zero has a sign.
     let rounded = |q: f64| if q.abs() < 5e-7 { 0.0 } else { q };
-    match is_angle {
-        true => {
-            let [from, to] = [from, to].map(rounded);
-            format!(
-                "{from:.6} to {to:.6} rad ({:.2}° to {:.2}°)",
-                from.to_degrees(),
-                to.to_degrees()
-            )
-        }
-        false => {
-            let ([from, to], unit) = (
-                [from, to].map(|q| file.to_scene_unit(q, false).0),
-                file.to_scene_unit(to, false).1,
-            );
-            format!("{} to {} {unit}", number(from), number(to))
-        }
+    if is_angle {
+        let [from, to] = [from, to].map(rounded);
+        format!(
+            "{from:.6} to {to:.6} rad ({:.2}° to {:.2}°)",
+            from.to_degrees(),
+            to.to_degrees()
+        )
+    } else {
+        let ([from, to], unit) = (
+            [from, to].map(|q| file.to_scene_unit(q, false).0),
+            file.to_scene_unit(to, false).1,
+        );
+        format!("{} to {} {unit}", number(from), number(to))
     }
 }
 
@@ -108,14 +108,14 @@ pub(crate) fn explain_position_in(
     error: &PositionError,
 ) -> StudyError {
     const RANGE_ENDS: &str = "this is outside the range; `dwell check` shows the range";
-    let at = |q| format!("{phi} = {}", own_coordinate(scene, q, plan.is_angle(0)));
-    let at = error.coordinate().map_or_else(String::new, at);
+    let place = |q| format!("{phi} = {}", own_coordinate(scene, q, plan.is_angle(0)));
+    let at = error.coordinate().map_or_else(String::new, place);
     // Beyond its range, where the table of a coupling ends it.
     if let PositionError::OutOfRange { q, to, .. } = *error
         && let Some(limit) = plan.range_limits()[usize::from(q > to)]
         && let Some(coupling) = limit.table
     {
-        let end = describe_limit((scene, &scene.mechanism), plan, limit, 0.0);
+        let end = describe_limit(scene, &scene.mechanism, plan, limit, 0.0);
         let labels = labels(
             [SceneLocation::CouplingLaw(coupling)].into_iter(),
             "has no value beyond",

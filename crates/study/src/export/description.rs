@@ -210,7 +210,7 @@ fn describe(
 ) -> MachineDescription {
     let mut left_out = left_out(scene, model);
     let units = load_units(loaded.loads.iter().map(|load| load.kind));
-    let loads = describe_loads((scene, &units), &scene.loads, &mut left_out);
+    let loads = describe_loads(scene, &units, &scene.loads, &mut left_out);
     let mut workspace = model.workspace::<f64>();
     let mut found: Coefficients = model.coefficient_buffer();
     // A position that cannot be reached is reported when it is sampled.
@@ -219,7 +219,7 @@ fn describe(
         Some(found.m)
     });
     let mass = scene.masses.iter().map(|mass| mass.mass).sum();
-    let sizes = reference_sizes(inertias, (mass, scene.mechanism.size()), &units);
+    let sizes = reference_sizes(inertias, mass, scene.mechanism.size(), &units);
     MachineDescription {
         points: point_names(scene),
         reactions: named_reactions(scene, model),
@@ -276,7 +276,8 @@ pub(super) fn point_names(scene: &PlaneScene) -> Vec<String> {
 
 /// The loads, followed by the drives, with the units of all of them.
 pub(crate) fn describe_loads<S: MachineScene, K: LoadShape>(
-    (scene, units): (&S, &[LoadUnit]),
+    scene: &S,
+    units: &[LoadUnit],
     loads: &[Load<K, CoordinateOf<S>>],
     left_out: &mut Vec<String>,
 ) -> Vec<LoadDescription> {
@@ -290,7 +291,7 @@ pub(crate) fn describe_loads<S: MachineScene, K: LoadShape>(
         });
     }
     for (drive, &(force, _)) in scene.drives().iter().zip(&units[loads.len()..]) {
-        let (effect, unit) = drive_effect((&drive.name, force), &drive.kind, left_out);
+        let (effect, unit) = drive_effect(&drive.name, force, &drive.kind, left_out);
         let name = drive.name.clone();
         all.push(LoadDescription { name, effect, unit });
     }
@@ -330,11 +331,11 @@ pub(crate) fn parts_of(domain: Domain) -> [f64; 5] {
     [0.1, 0.3, 0.5, 0.7, 0.9].map(|part| domain.from + part * domain.length())
 }
 
-/// Reference sizes of m, forces and lengths, from inertias, the mass (kg) and the size (m) of a mechanism, and the units of
-/// loads.
+/// What m, the forces and lengths come to, from inertias, the mass (kg) and the size (`length`, m) of a mechanism, and the units of loads.
 pub(crate) fn reference_sizes(
     inertias: impl Iterator<Item = f64>,
-    (mass, length): (f64, f64),
+    mass: f64,
+    length: f64,
     units: &[LoadUnit],
 ) -> ReferenceSizes {
     let positive = |value: f64| {
@@ -391,7 +392,8 @@ fn varying_input<C>(kind: &str, name: &str, magnitude: &Magnitude<C>) -> Option<
 
 /// How a drive acts on a coordinate with this unit of force, and the unit of its input.
 fn drive_effect<C>(
-    (name, force): (&str, &'static str),
+    name: &str,
+    force: &'static str,
     drive: &DriveKind<C>,
     left_out: &mut Vec<String>,
 ) -> (LoadEffect, &'static str) {

@@ -223,9 +223,10 @@ fn worth(export: &Export, record: &mut Record) -> String {
     for (kind, name) in PartKind::ALL.into_iter().zip(names) {
         let part = &export.parts[kind as usize];
         // None where all its functions are constants.
-        let number = match part.index.is_empty() {
-            true => 0,
-            false => part.cell_count(),
+        let number = if part.index.is_empty() {
+            0
+        } else {
+            part.cell_count()
         };
         record.add_count(format!("cells.{name}"), number);
         if number > 0 {

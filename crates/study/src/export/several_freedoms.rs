@@ -124,7 +124,7 @@ fn without_operations(scene: &PlaneScene, reason: &str) -> StudyError {
 fn describe(scene: &PlaneScene, loaded: &PlaneScene, model: &Model) -> SeveralFreedomsDescription {
     let mut left_out = left_out(scene, model);
     let units = load_units(loaded.loads.iter().map(|load| load.kind));
-    let loads = describe_loads((scene, &units), &scene.loads, &mut left_out);
+    let loads = describe_loads(scene, &units, &scene.loads, &mut left_out);
     let start = scene.motion_start();
     let coordinates = scene.mechanism.actuators.iter().enumerate();
     let coordinates = coordinates.map(|(k, actuator)| {

@@ -68,9 +68,9 @@ impl ColumnNames {
         };
         let reactions = table.get("reactions").and_then(Value::as_table);
         let reactions = reactions.into_iter().flatten().map(|(name, column)| {
-            let column = column.as_str();
-            let column = column.ok_or_else(|| wrong(format!("`reactions.{name}` is no text")))?;
-            Ok((name.clone(), column.to_owned()))
+            let text = column.as_str();
+            let text = text.ok_or_else(|| wrong(format!("`reactions.{name}` is no text")))?;
+            Ok((name.clone(), text.to_owned()))
         });
         let reactions = reactions.collect::<Result<_, SceneError>>()?;
         Ok(Self {
@@ -97,9 +97,9 @@ impl ColumnNames {
             Some(given) => find(table, given).map(Some),
             None => Ok(table.column(&format!("{name}{rest}")).cloned()),
         };
-        let force = self.force.clone();
-        let force = force.unwrap_or_else(|| format!("{name}.actuator_force"));
-        let force = find(table, &force)?;
+        let given = self.force.clone();
+        let force_name = given.unwrap_or_else(|| format!("{name}.actuator_force"));
+        let force = find(table, &force_name)?;
         let speed = optional(&self.speed, ".velocity")?;
         let acceleration = optional(&self.acceleration, ".acceleration")?;
         let unit = q.unit.clone().or_else(|| self.unit.clone());

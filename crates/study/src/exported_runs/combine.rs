@@ -119,9 +119,10 @@ pub fn combine_runs(
 /// The positions; over a whole revolution, equally spaced ones without the rounding of printed digits.
 fn positions(q: &[f64], rows: usize, is_whole: bool) -> Vec<f64> {
     let equal = |k: usize| q[0] + TAU * k as f64 / rows as f64;
-    match is_whole {
-        true => (0..rows).map(equal).collect(),
-        false => q[..rows].to_vec(),
+    if is_whole {
+        (0..rows).map(equal).collect()
+    } else {
+        q[..rows].to_vec()
     }
 }
 

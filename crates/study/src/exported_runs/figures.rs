@@ -12,33 +12,39 @@ const MAX_REACTIONS: usize = 2;
 const POINTS: usize = 720;
 const MARKS: usize = 36;
 
-/// A coefficient: title, symbol, unit, and number among all.
-type Drawn = (String, &'static str, &'static str, usize);
-
 /// m, ½m′, and a and b of the first reactions over the coordinate.
 pub(super) fn figure(runs: &ExportedRuns, model: &SampledModel, caption: String) -> Figure {
     let [m, half_dm] = inertia_units(runs.is_angle);
-    let mut drawn: Vec<Drawn> = vec![
-        ("m (generalised inertia)".to_owned(), "m", m, 0),
-        ("½m′ (half its derivative)".to_owned(), "½m′", half_dm, 1),
+    let panel = |title: &str, symbol, unit, index| panel(runs, model, title, symbol, unit, index);
+    let mut panels = vec![
+        panel("m (generalised inertia)", "m", m, 0),
+        panel("½m′ (half its derivative)", "½m′", half_dm, 1),
     ];
     let count = runs.reactions.len();
     for (r, (name, unit)) in runs.reactions.iter().take(MAX_REACTIONS).enumerate() {
         let [a, b] = coefficient_units(unit.as_deref().unwrap_or("N"), runs.is_angle);
-        drawn.push((format!("a of {name}"), "a", a, 2 + r));
-        drawn.push((format!("b of {name}"), "b", b, 2 + count + r));
+        panels.push(panel(&format!("a of {name}"), "a", a, 2 + r));
+        panels.push(panel(&format!("b of {name}"), "b", b, 2 + count + r));
     }
     Figure {
         name: "reduced".to_owned(),
         title: "Reduced parameters from two exported runs".to_owned(),
         caption,
         columns: 1,
-        panels: drawn.into_iter().map(|of| panel(runs, model, of)).collect(),
+        panels,
         provenance: format!("Dwell {}", env!("CARGO_PKG_VERSION")),
     }
 }
 
-fn panel(runs: &ExportedRuns, model: &SampledModel, (title, symbol, unit, index): Drawn) -> Panel {
+/// The coefficient of a number among all.
+fn panel(
+    runs: &ExportedRuns,
+    model: &SampledModel,
+    title: &str,
+    symbol: &str,
+    unit: &str,
+    index: usize,
+) -> Panel {
     let x = |q: f64| if runs.is_angle { q.to_degrees() } else { q };
     let (first, last) = (runs.q[0], runs.q[runs.q.len() - 1]);
     let end = if runs.is_whole_revolution {
@@ -52,9 +58,11 @@ fn panel(runs: &ExportedRuns, model: &SampledModel, (title, symbol, unit, index)
     });
     let line = Series::line("between the positions", between.collect());
     let stride = runs.q.len().div_ceil(MARKS).max(1);
-    let marked = runs.q.iter().zip(&runs.coefficients).step_by(stride);
-    let marked = marked.map(|(q, at)| [x(*q), all_of(at)[index]]).collect();
-    let marked = Series::line("positions of the runs", marked).stroke(Stroke::Points);
+    let positions = runs.q.iter().zip(&runs.coefficients).step_by(stride);
+    let points = positions
+        .map(|(q, at)| [x(*q), all_of(at)[index]])
+        .collect();
+    let marked = Series::line("positions of the runs", points).stroke(Stroke::Points);
     let y = Axis::new(symbol, unit.replace('2', "²"));
     let axis = coordinate_axis(&runs.coordinate, runs.is_angle);
     chart(title, axis, y, vec![line, marked]).into()

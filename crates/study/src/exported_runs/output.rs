@@ -56,7 +56,7 @@ pub fn reduce_runs(
         return Err(wrong(message, "export more positions, or more digits").into());
     }
     let mut record = Record::default();
-    let mut summary = summary(&runs, &model, (interpolation, &errors), tables, &mut record);
+    let mut summary = summary(&runs, &model, interpolation, &errors, tables, &mut record);
     let caption = format!(
         "From `{}` and `{}`, {} interpolation between {}.",
         tables[0].file,
@@ -106,14 +106,15 @@ fn rows_page(name: &str, [one, two]: [&ExportedTable; 2], reduced: &Table) -> Pa
 fn table(runs: &ExportedRuns) -> Table {
     let reactions = runs.reactions.iter();
     let reactions = reactions.map(|(name, unit)| (&name[..], unit.as_deref().unwrap_or("N")));
-    let coordinate = (&runs.coordinate[..], runs.is_angle);
-    coefficient_table(coordinate, reactions, (&runs.q, &runs.coefficients))
+    let (coordinate, is_angle) = (&runs.coordinate, runs.is_angle);
+    coefficient_table(coordinate, is_angle, reactions, &runs.q, &runs.coefficients)
 }
 
 fn summary(
     runs: &ExportedRuns,
     model: &SampledModel,
-    (interpolation, errors): (SampleInterpolation, &SampleErrors),
+    interpolation: SampleInterpolation,
+    errors: &SampleErrors,
     [one, two]: [&ExportedTable; 2],
     record: &mut Record,
 ) -> String {
@@ -149,7 +150,7 @@ fn summary(
             record.add_within(format!("{key}.{end}"), units[k], value, error);
         }
     }
-    text += &errors_text(runs, (interpolation, errors), record);
+    text += &errors_text(runs, interpolation, errors, record);
     text += &format!(
         "  changes of m are the integral of ½m′ within {:.1e} of the largest m\n",
         runs.contradiction
@@ -161,7 +162,8 @@ fn summary(
 /// The estimated errors, a line for each kind of coefficient.
 fn errors_text(
     runs: &ExportedRuns,
-    (interpolation, errors): (SampleInterpolation, &SampleErrors),
+    interpolation: SampleInterpolation,
+    errors: &SampleErrors,
     record: &mut Record,
 ) -> String {
     let mut text = format!(
@@ -202,9 +204,10 @@ fn period_text(
         q: runs.q[0],
         q_dot: 1.0,
     };
-    let orbit = match runs.is_whole_revolution {
-        true => Orbit::to_accuracy(model, start, 0.1 * errors.sum(0)),
-        false => return String::new(),
+    let orbit = if runs.is_whole_revolution {
+        Orbit::to_accuracy(model, start, 0.1 * errors.sum(0))
+    } else {
+        return String::new();
     };
     let Ok(orbit) = orbit else {
         return String::new();

@@ -20,9 +20,10 @@ pub enum SampleInterpolation {
 impl SampleInterpolation {
     /// Trigonometric over a whole revolution at equal distances, otherwise cubic.
     pub fn best_for(runs: &ExportedRuns) -> Self {
-        match runs.is_whole_revolution {
-            true => Self::Trigonometric,
-            false => Self::Cubic,
+        if runs.is_whole_revolution {
+            Self::Trigonometric
+        } else {
+            Self::Cubic
         }
     }
 

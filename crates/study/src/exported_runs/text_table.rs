@@ -68,12 +68,8 @@ impl ExportedTable {
         };
         let separator = Separator::of_numbers(&lines[first]).unwrap_or(Separator::Blanks);
         let error = |span: Range<usize>, message: String, help: &str, label: &str| {
-            SceneError::in_text(
-                (file, text),
-                message,
-                Some(help.to_owned()),
-                (span, label.to_owned()),
-            )
+            let help = Some(help.to_owned());
+            SceneError::in_text(file, text, message, help, span, label.to_owned())
         };
         let Some(header) = first.checked_sub(1).map(|k| lines[k]) else {
             let line = lines[0];
@@ -90,7 +86,7 @@ impl ExportedTable {
         let mut columns: Vec<ExportedColumn> = heads.iter().map(|head| column(head)).collect();
         let mut digits = vec![0; columns.len()];
         for line in lines[first..].iter().filter(|line| !is_comment(line)) {
-            let added = separator.add_row(line, (&mut columns, &mut digits));
+            let added = separator.add_row(line, &mut columns, &mut digits);
             added.map_err(|(span, message, help)| error(span, message, help, "here"))?;
         }
         for (column, digits) in columns.iter_mut().zip(digits) {
@@ -214,7 +210,8 @@ impl Separator {
     fn add_row(
         self,
         line: &Line<'_>,
-        (columns, digits): (&mut [ExportedColumn], &mut [usize]),
+        columns: &mut [ExportedColumn],
+        digits: &mut [usize],
     ) -> Result<(), (Range<usize>, String, &'static str)> {
         let fields = self.fields(line);
         if fields.len() != columns.len() {

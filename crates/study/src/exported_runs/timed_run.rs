@@ -54,13 +54,11 @@ pub(super) fn with_speeds(
     let (speed, acceleration) = match (&run.speed, &run.acceleration) {
         (Some(speed), Some(acceleration)) => (speed.values.clone(), acceleration.values.clone()),
         (None, None) => {
-            let text = match accelerates {
-                true => "unit acceleration from rest",
-                false => "unit speed without acceleration",
-            };
-            let of = |travelled: f64| match accelerates {
-                true => ((2.0 * travelled).sqrt(), 1.0),
-                false => (1.0, 0.0),
+            let (text, of): (_, fn(f64) -> (f64, f64)) = if accelerates {
+                let of = |travelled: f64| ((2.0 * travelled).sqrt(), 1.0);
+                ("unit acceleration from rest", of)
+            } else {
+                ("unit speed without acceleration", |_| (1.0, 0.0))
             };
             notes.push(format!(
                 "`{}` has no speeds and accelerations: {text} is assumed",

@@ -44,12 +44,13 @@ pub(super) fn scene_text(
 fn mechanism_text(name: &str, runs: &ExportedRuns, files: [&str; 2]) -> String {
     let [one, two] = files.map(|file| file.chars().filter(|c| !c.is_control()).collect::<String>());
     let (coordinate, pivot) = (entry_name(&runs.coordinate), pivot_name(runs));
-    let (start, motion) = match runs.is_whole_revolution {
-        true => (
+    let (start, motion) = if runs.is_whole_revolution {
+        (
             runs.q[0],
             format!("[motion]\ninitial-velocity = {{ {coordinate} = 1.0 }}\nperiods = 1\n\n"),
-        ),
-        false => (runs.q[runs.q.len() / 2], String::new()),
+        )
+    } else {
+        (runs.q[runs.q.len() / 2], String::new())
     };
     format!(
         "# The reduced parameters of {one} and {two},\n\

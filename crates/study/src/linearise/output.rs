@@ -78,12 +78,13 @@ fn summary(motion: &LinearisedMotion<'_, impl MachineScene>) -> (String, Record)
         }
         None => {
             summary += "the initial state\n";
-            summary += match motion.is_equilibrium {
-                true => "  an equilibrium: the state derivative is zero there within rounding\n",
-                false => "  not an equilibrium: the state derivative is not zero there\n",
+            summary += if motion.is_equilibrium {
+                "  an equilibrium: the state derivative is zero there within rounding\n"
+            } else {
+                "  not an equilibrium: the state derivative is not zero there\n"
             };
-            let eigenvalues = (&motion.eigenvalues[..], &motion.eigenvalue_errors[..]);
-            let (lines, error) = describe_eigenvalues(eigenvalues, "initial", &mut record);
+            let (values, errors) = (&motion.eigenvalues, &motion.eigenvalue_errors);
+            let (lines, error) = describe_eigenvalues(values, errors, "initial", &mut record);
             summary += &format!("{lines}    estimated error: {error}");
         }
     }

@@ -54,8 +54,9 @@ impl<S: MachineScene> SceneMachine<'_, S> {
             return Ok(());
         };
         let magnitude = &self.machine.model().loads()[load].magnitude;
-        let coordinates = (|c| self.scene.name_of_coordinate(c), S::is_angle);
-        let error = off_table_error(self.scene, magnitude, coordinates, (load, value), when);
+        let name_of = |c| self.scene.name_of_coordinate(c);
+        let (scene, is_angle) = (self.scene, S::is_angle);
+        let error = off_table_error(scene, magnitude, name_of, is_angle, load, value, when);
         error.map_or(Ok(()), Err)
     }
 
@@ -80,9 +81,10 @@ impl<S: MachineScene> SceneMachine<'_, S> {
             let (mut inside, mut outside) = (places[k - 1], places[k]);
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (inside + outside);
-                match beyond(&middle) {
-                    true => outside = middle,
-                    false => inside = middle,
+                if beyond(&middle) {
+                    outside = middle;
+                } else {
+                    inside = middle;
                 }
             }
             // Where the coordinate itself is the argument, the interval ends where the table does, to the last bit.

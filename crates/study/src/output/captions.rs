@@ -62,9 +62,10 @@ pub fn chart(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) ->
 
 /// The axis of a coordinate: in degrees, or in m.
 pub(crate) fn coordinate_axis(label: &str, is_angle: bool) -> Axis {
-    match is_angle {
-        true => Axis::degrees(label),
-        false => Axis::new(label, "m"),
+    if is_angle {
+        Axis::degrees(label)
+    } else {
+        Axis::new(label, "m")
     }
 }
 

@@ -106,9 +106,10 @@ impl DrawnPosition<'_> {
     /// The shape with the name of its body, in the position that is drawn in full.
     fn named(&self, body: usize, shape: Shape) -> Shape {
         let mechanism = &self.drawing.scene.mechanism;
-        match self.lightness == 0.0 && body != mechanism.ground {
-            true => shape.named(mechanism.body_name(BodyId(body))),
-            false => shape,
+        if self.lightness == 0.0 && body != mechanism.ground {
+            shape.named(mechanism.body_name(BodyId(body)))
+        } else {
+            shape
         }
     }
 
@@ -225,9 +226,10 @@ impl DrawnPosition<'_> {
         let label = |(j, name): (usize, String)| {
             let joint = &joints[j];
             let at = point_position(self.body_poses, joint.bodies[0].0, joint.points[0]);
-            let placement = match self.drawing.is_fixed(joint) {
-                true => TextPlacement::AboveLeft,
-                false => TextPlacement::AboveRight,
+            let placement = if self.drawing.is_fixed(joint) {
+                TextPlacement::AboveLeft
+            } else {
+                TextPlacement::AboveRight
             };
             Shape::text(at, name, placement)
         };

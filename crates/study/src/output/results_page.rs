@@ -18,7 +18,8 @@ pub(super) const RESULTS_HEADER: [&str; 4] = ["quantity", "value", "unit", "esti
 pub(crate) fn add_results_page(
     outcome: &mut Outcome,
     scene: &SceneFile,
-    (analysis, stem): (&str, &str),
+    analysis: &str,
+    stem: &str,
     figure: Option<Figure>,
 ) {
     let (summary, record) = (&outcome.summary, &outcome.record);

@@ -28,9 +28,9 @@ pub(super) fn plane_arrows(scene: &PlaneScene, results: &TrajectoryResults) -> V
     let loads = scene.loads.iter().enumerate();
     arrows.extend(loads.filter_map(|(k, load)| {
         let column = results.written_index(Quantity::LoadForce(k))?;
-        let force = load_direction(scene, &load.kind, column)?;
+        let (at, direction) = load_direction(scene, &load.kind, column)?;
         let title = results.columns[results.written[column]].meaning.clone();
-        Some(force_arrow("Loads", &load.name, title, force))
+        Some(force_arrow("Loads", &load.name, title, at, direction))
     }));
     arrows
 }
@@ -40,7 +40,8 @@ pub(crate) fn force_arrow(
     group: &str,
     name: &str,
     title: String,
-    (at, direction): (Anchor, ArrowDirection),
+    at: Anchor,
+    direction: ArrowDirection,
 ) -> ForceArrow {
     ForceArrow {
         name: name.to_owned(),
@@ -113,7 +114,7 @@ impl JointForces<'_> {
         let ([from, on], name) = (self.body_names(), &self.joint.name);
         let title = format!("{name}: force of {from} on {on}");
         let at = anchor(self.joint.bodies[1], self.joint.points[1]);
-        force_arrow("Reactions", name, title, (at, direction))
+        force_arrow("Reactions", name, title, at, direction)
     }
 
     fn body_names(&self) -> [&str; 2] {

@@ -86,9 +86,9 @@ pub(crate) fn plane_page(scene: &PlaneScene, computed: &ComputedTrajectory<'_>) 
     let results = &computed.results;
     let mut page = run_page(&scene.file, scene.mechanism.size(), computed);
     let choice = RowChoice::new(results);
-    let bodies = (results.body_poses.as_slice(), results.modelled.as_slice());
+    let (poses, modelled) = (&results.body_poses, &results.modelled);
     let arrows = plane_arrows(scene, results);
-    page.drawing = Some(plane_drawing(scene, bodies, &choice, arrows));
+    page.drawing = Some(plane_drawing(scene, poses, modelled, &choice, arrows));
     page
 }
 
@@ -120,9 +120,10 @@ pub(crate) fn run_page(scene: &SceneFile, size: f64, computed: &ComputedTrajecto
         columns: page_columns(results, &choice),
         rows_note: choice.note(reached),
         peaks: extrema.into_iter().filter_map(peak).collect(),
-        peaks_note: match results.extrema.are_between_rows() {
-            false => Some(of_rows.to_owned()),
-            true => searched_in_rows(results),
+        peaks_note: if results.extrema.are_between_rows() {
+            searched_in_rows(results)
+        } else {
+            Some(of_rows.to_owned())
         },
         ..scene_page(scene, trajectory.analysis.command())
     }

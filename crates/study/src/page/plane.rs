@@ -14,7 +14,8 @@ const PAINTS: usize = 7;
 /// `poses` are those of all bodies by row; bodies that are not modelled are omitted.
 pub(super) fn plane_drawing(
     scene: &PlaneScene,
-    (poses, modelled): (&[Vec<BodyPose>], &[bool]),
+    poses: &[Vec<BodyPose>],
+    modelled: &[bool],
     choice: &RowChoice,
     arrows: Vec<ForceArrow>,
 ) -> Drawing {
@@ -33,9 +34,10 @@ pub(super) fn plane_drawing(
         DrawnBody {
             name: body.name.clone(),
             paint: paint(mechanism.ground, b),
-            placements: match is_fixed {
-                true => Vec::new(),
-                false => (0..3).map(part).collect(),
+            placements: if is_fixed {
+                Vec::new()
+            } else {
+                (0..3).map(part).collect()
             },
         }
     };

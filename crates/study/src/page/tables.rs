@@ -91,7 +91,7 @@ pub fn drawing_along(scene: &PlaneScene, coordinate: &[f64]) -> Option<Drawing> 
     }
     let modelled = plan.placed_bodies();
     let choice = RowChoice::all(poses.len());
-    let drawing = plane_drawing(scene, (&poses, &modelled), &choice, Vec::new());
+    let drawing = plane_drawing(scene, &poses, &modelled, &choice, Vec::new());
     Some(drawing)
 }
 

@@ -40,9 +40,12 @@ impl RangeFigures<'_> {
     /// A curve over the range.
     pub(crate) fn line(&self, name: &str, values: impl IntoIterator<Item = f64>) -> Series {
         let points = self.q.iter().zip(values);
-        let x = |q: f64| match self.prepared.is_angle() {
-            true => q.to_degrees(),
-            false => q,
+        let x = |q: f64| {
+            if self.prepared.is_angle() {
+                q.to_degrees()
+            } else {
+                q
+            }
         };
         Series::line(name, points.map(|(q, v)| [x(*q), v]).collect())
     }
@@ -78,16 +81,17 @@ pub fn reduced(
 ) -> Figure {
     let (range, at) = (of_reduced_model(prepared, &curves.q), &curves.coefficients);
     let [m_unit, half_dm_unit] = inertia_units(prepared.is_angle()).map(|u| u.replace('2', "²"));
-    let inertia = vec![range.line("", at.iter().map(|c| c.m))];
-    let inertia = range.panel("m (generalised inertia)", "m", &m_unit, inertia);
-    let derivative = vec![range.line("", at.iter().map(|c| c.half_dm))];
+    let m = vec![range.line("", at.iter().map(|c| c.m))];
+    let inertia = range.panel("m (generalised inertia)", "m", &m_unit, m);
+    let half_dm = vec![range.line("", at.iter().map(|c| c.half_dm))];
     let title = "½m′ (half its derivative)";
-    let derivative = range.panel(title, "½m′", &half_dm_unit, derivative);
+    let derivative = range.panel(title, "½m′", &half_dm_unit, half_dm);
     let text = "m is the actuator force at unit acceleration and zero speed, ½m′ at unit speed and zero acceleration.";
     let title = "Reduced inertia and half its derivative";
-    let panels = match is_rounding[1] {
-        true => vec![inertia],
-        false => vec![inertia, derivative],
+    let panels = if is_rounding[1] {
+        vec![inertia]
+    } else {
+        vec![inertia, derivative]
     };
     range.figure("reduced", title, text, panels)
 }
@@ -109,8 +113,8 @@ pub fn coefficients(
     }
     let (drawn, note) = reaction_figure_count(prepared.lists_reactions(), pages.len());
     let pages = pages.iter().take(drawn).enumerate();
-    let figures = pages
-        .map(|(k, (some, of))| coefficient_figure((prepared, curves), is_rounding, some, of, k));
+    let figures =
+        pages.map(|(k, (some, of))| coefficient_figure(prepared, curves, is_rounding, some, of, k));
     let mut figures: Vec<Figure> = figures.collect();
     add_note(&mut figures, note.as_deref());
     (figures, note)
@@ -123,7 +127,8 @@ fn coefficients_of(is_rounding: &[bool], reaction: usize) -> [bool; 2] {
 }
 
 fn coefficient_figure(
-    (prepared, curves): (&dyn ReducedScene, &ReducedCurves),
+    prepared: &dyn ReducedScene,
+    curves: &ReducedCurves,
     is_rounding: &[bool],
     group: &[usize],
     of: &str,

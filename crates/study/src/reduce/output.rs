@@ -75,9 +75,10 @@ fn describe_rounding(errors: &RoundingErrors, has_reactions: bool) -> String {
         0.0 => "0".to_owned(),
         error => format!("{:.0e}", 10_f64.powf(error.log10().ceil())),
     });
-    let rest = match has_reactions {
-        true => format!(", {rest} of any a or b"),
-        false => String::new(),
+    let rest = if has_reactions {
+        format!(", {rest} of any a or b")
+    } else {
+        String::new()
     };
     format!(
         "  estimated rounding errors, compared with 32-digit arithmetic: below {m} of the largest m, {half_dm} of ½m′{rest}\n"
@@ -108,9 +109,10 @@ fn record<P: ReducedScene>(reduction: &Reduction<P>, peak: Option<Peak>) -> Reco
     let [m_unit, half_dm_unit] = inertia_units(is_angle);
     let [m_error, half_dm_error, rest] = reduction.errors.max_errors;
     let m = extent(curves.coefficients.iter().map(|c| c.m));
-    let half_dm = match reduction.errors.is_rounding[1] {
-        true => [0.0; 2],
-        false => extent(curves.coefficients.iter().map(|c| c.half_dm)),
+    let half_dm = if reduction.errors.is_rounding[1] {
+        [0.0; 2]
+    } else {
+        extent(curves.coefficients.iter().map(|c| c.half_dm))
     };
     for (name, unit, ends, error) in [
         ("m", m_unit, m, m_error),
@@ -140,9 +142,10 @@ pub(crate) fn summary<P: ReducedScene>(
     let (prepared, curves) = (&reduction.prepared, &reduction.curves);
     let extent_of = |pick: fn(&Coefficients) -> f64| extent(curves.coefficients.iter().map(pick));
     let m = extent_of(|c| c.m);
-    let half_dm = match reduction.errors.is_rounding[1] {
-        true => [0.0; 2],
-        false => extent_of(|c| c.half_dm),
+    let half_dm = if reduction.errors.is_rounding[1] {
+        [0.0; 2]
+    } else {
+        extent_of(|c| c.half_dm)
     };
     // Errors are relative to the largest value.
     let texts = |values: [f64; 2], error: f64| {

@@ -82,13 +82,7 @@ fn describe_range(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> Strin
         (Range::Unresolved(..), _) => "; how it goes on from there is not known",
         _ => ": limit positions at both ends",
     };
-    let text = range_text(
-        scene,
-        (&actuator.name, is_angle(scene)),
-        range,
-        note,
-        record,
-    );
+    let text = range_text(scene, &actuator.name, is_angle(scene), range, note, record);
     text + &describe_change_points(scene, plan, record)
 }
 
@@ -99,9 +93,9 @@ fn describe_change_points(scene: &SpaceScene, plan: &Plan, record: &mut Record) 
     let one = |(k, point): (usize, &ChangePoint)| {
         let key = format!("change_point.{}", k + 1);
         record.add(key, coordinate_unit(is_angle), point.q);
-        let joints = groups.get(point.group).into_iter();
-        let joints = joints.flat_map(|group| &group.joints);
-        let joints = list(joints.map(|j| scene.mechanism.joints[j.0].name.as_str()));
+        let group = groups.get(point.group).into_iter();
+        let closing = group.flat_map(|group| &group.joints);
+        let joints = list(closing.map(|j| scene.mechanism.joints[j.0].name.as_str()));
         let at = describe_coordinate(scene, name, point.q, is_angle);
         format!(
             "    change point of the group closed by {joints} at {at}, where another assembly mode meets this one\n"
@@ -123,9 +117,10 @@ fn describe_groups(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> Stri
         let joints = list(joints.map(|j| scene.mechanism.joints[j.0].name.as_str()));
         record.add_count(format!("group.{number}.unknowns"), group.unknowns);
         record.add_count(format!("group.{number}.equations"), group.equations);
-        let method = match group.equations > group.unknowns {
-            true => "least squares",
-            false => "Newton's method",
+        let method = if group.equations > group.unknowns {
+            "least squares"
+        } else {
+            "Newton's method"
         };
         text += &format!(
             "    {number}. closed by {joints}: {} from {}, {method}\n",

@@ -37,7 +37,7 @@ pub(super) fn describe_contents(scene: &SpaceScene, plan: &Plan, record: &mut Re
         text += &describe_size(scene, ["x", "y", "z"], points, record);
     }
     text + &describe_masses(scene, places.as_deref(), plan.size(), record)
-        + &describe_actions(scene, (&scene.loads, &names), &motions, record)
+        + &describe_actions(scene, &scene.loads, &names, &motions, record)
 }
 
 fn components(v: Vec3) -> [f64; 3] {

@@ -88,7 +88,7 @@ fn explain_assembly(scene: &SpaceScene, error: &AssemblyError) -> StudyError {
             gap,
         } => {
             let help = "correct a length, a point or an axis, or replace a joint by one with more freedoms";
-            inconsistent(scene, joints, (*redundant_count, *gap), help)
+            inconsistent(scene, joints, *redundant_count, *gap, help)
         }
         AssemblyError::NotThroughout {
             joints,
@@ -218,8 +218,8 @@ pub(super) fn explain_position(
     }
     let is_angle = super::prepared::is_angle(scene);
     let name = scene.mechanism.actuators.first().map_or("", |a| &a.name);
-    let at = |q| format!("`{name}` = {}", own_coordinate(scene, q, is_angle));
-    let at = error.coordinate().map_or_else(String::new, at);
+    let place = |q| format!("`{name}` = {}", own_coordinate(scene, q, is_angle));
+    let at = error.coordinate().map_or_else(String::new, place);
     let (message, help) = match *error {
         PositionError::OutOfRange { from, to, .. } => (
             format!(
@@ -311,14 +311,11 @@ pub(super) fn explain_load_error(scene: &SpaceScene, error: &LoadError) -> Study
         let would_hold = scene.mechanism.joints[friction.joint.0].kind == JointKind::Cylindrical
             && friction.regularization_speed.is_none()
             && scene.mechanism.actuators.len() != 1;
-        let help = match would_hold {
-            true => {
-                "add `regularization-speed`, in length units per second: then it is smooth and does not hold"
-            }
-            false => {
-                "replace a joint of its loop by one with more freedoms, such as a spherical or a cylindrical joint; without \
+        let help = if would_hold {
+            "add `regularization-speed`, in length units per second: then it is smooth and does not hold"
+        } else {
+            "replace a joint of its loop by one with more freedoms, such as a spherical or a cylindrical joint; without \
                  `bearing-distance` or `guide-length` no moment counts; `dwell check` shows which reactions are determined"
-            }
         };
         let place = (SceneLocation::Load(error.load), "this friction");
         return scene_error(scene, message, help, [place]);

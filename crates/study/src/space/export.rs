@@ -70,14 +70,15 @@ fn describe(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> MachineDescrip
     let scene = prepared.scene;
     let units = load_units(load_kinds(scene).into_iter());
     let mut left_out = Vec::new();
-    let loads = describe_loads((scene, &units), &scene.loads, &mut left_out);
+    let loads = describe_loads(scene, &units, &scene.loads, &mut left_out);
     let open = prepared.indeterminate.iter();
     let open = open.map(|&reaction| scene.reaction_name(reaction));
     left_out.extend(missing_parts(open, scene.motion.as_ref()));
     // A position that cannot be reached is reported when it is sampled.
     let found = prepared.coefficients(&parts_of(domain)).unwrap_or_default();
     let mass = scene.masses.iter().map(|mass| mass.mass).sum();
-    let sizes = reference_sizes(found.iter().map(|at| at.m), (mass, prepared.size()), &units);
+    let inertias = found.iter().map(|at| at.m);
+    let sizes = reference_sizes(inertias, mass, prepared.size(), &units);
     MachineDescription {
         loads,
         reactions: prepared.reaction_units(),

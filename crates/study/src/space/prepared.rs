@@ -45,9 +45,10 @@ impl<'a> PreparedSpaceScene<'a> {
     pub fn new(scene: &'a SpaceScene) -> Result<Self, StudyError> {
         let model = compile(scene, &scene.requests.reactions)?;
         let [determined, indeterminate] = sort_reactions(scene, &model)?;
-        let model = match indeterminate.is_empty() {
-            true => model,
-            false => compile(scene, &determined)?,
+        let model = if indeterminate.is_empty() {
+            model
+        } else {
+            compile(scene, &determined)?
         };
         let Some(model) = ExactModel::new(model) else {
             let actuators = scene.mechanism.actuators.len();
@@ -308,9 +309,10 @@ fn range_between_change_points(plan: &Plan, start: f64) -> Range {
     let below = points.iter().copied().filter(|q| *q <= start);
     let above = points.iter().copied().filter(|q| *q > start);
     let (from, to) = (below.fold(low, f64::max), above.fold(high, f64::min));
-    match plan.is_angle(0) {
-        true => Range::Limited(from, to),
-        false => Range::Stroke(from, to),
+    if plan.is_angle(0) {
+        Range::Limited(from, to)
+    } else {
+        Range::Stroke(from, to)
     }
 }
 

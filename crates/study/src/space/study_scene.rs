@@ -97,8 +97,8 @@ impl StudyScene for SpaceScene {
         let mut all_figures = vec![positions.figure()];
         all_figures.extend(figures(scene, swept, computed, span)?);
         let document = Document::of_file(&scene.file, size, computed);
-        let pictures = (all_figures, positions.animation());
-        let mut outcome = outcome_of(&scene.file, computed, &document, pictures)?;
+        let animation = positions.animation();
+        let mut outcome = outcome_of(&scene.file, computed, &document, all_figures, animation)?;
         outcome.run = Some(Box::new(space_page(source, computed)));
         Ok(outcome)
     }

@@ -156,9 +156,9 @@ impl<S: SweptScene> SweepReport<'_, S> {
             text += "  smallest and largest values of a motion or a range are searched between its positions, too\n";
         }
         let results = prepared.results.iter().zip(quantities);
-        for (result, statistics) in results.zip(&self.statistics) {
+        for ((heading, quantity), statistics) in results.zip(&self.statistics) {
             if let Some(statistics) = statistics {
-                text += &self.result_text(result, statistics, record);
+                text += &self.result_text(heading, quantity, statistics, record);
             }
         }
         text + &self.failures() + &prepared.requested.notes
@@ -192,7 +192,8 @@ impl<S: SweptScene> SweepReport<'_, S> {
     /// The lines about a result, whose numbers are recorded: its distribution, and where it is smallest and largest.
     fn result_text(
         &self,
-        (heading, quantity): (&String, &SweepQuantity),
+        heading: &str,
+        quantity: &SweepQuantity,
         statistics: &Statistics,
         record: &mut Record,
     ) -> String {

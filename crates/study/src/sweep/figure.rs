@@ -99,9 +99,10 @@ fn method_text(
     failed: usize,
 ) -> String {
     let points = count(stored, "point");
-    let seed = match prepared.design.is_random() {
-        true => format!(", seed {}", prepared.design.seed),
-        false => String::new(),
+    let seed = if prepared.design.is_random() {
+        format!(", seed {}", prepared.design.seed)
+    } else {
+        String::new()
     };
     match failed {
         0 => format!("{points}{seed}"),

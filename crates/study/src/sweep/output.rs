@@ -75,9 +75,10 @@ impl<'a, S: SweptScene> PreparedSweep<'a, S> {
         }
         let exact: Vec<String> = design.axes.iter().map(exact_text).collect();
         // A study without random axes has no seed.
-        let seed = match design.is_random() {
-            true => design.seed.to_string(),
-            false => "none".to_owned(),
+        let seed = if design.is_random() {
+            design.seed.to_string()
+        } else {
+            "none".to_owned()
         };
         let study = vec![
             ("scene", scene.name.clone()),
@@ -127,16 +128,15 @@ pub fn sweep(
     let (design, requested) = (&prepared.design, &prepared.requested);
     let headings: [&[String]; 2] = [&prepared.inputs, &prepared.results];
     let path = prepared.path();
-    let folder = PartFolder::open(&path, &prepared.study, headings, (design, sweep.shard))?;
+    let folder = PartFolder::open(&path, &prepared.study, headings, design, sweep.shard)?;
     let parts = folder.parts()?;
     let pending = parts.iter().map(|part| part.missing).sum();
     let family = scene.family(design, requested);
-    let study = (scene, design, family.as_ref());
     let stored = folder.fill(&parts, |points, sink| {
         let blocks = points.par_chunks(block_length(family.as_ref()));
         blocks.try_for_each(|block| {
             let mut rows = Vec::with_capacity(block.len());
-            requested.points(study, block, &mut |row| {
+            requested.points(scene, design, family.as_ref(), block, &mut |row| {
                 rows.push(row);
                 progress(Step {
                     total: pending,

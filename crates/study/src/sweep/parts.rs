@@ -66,7 +66,8 @@ impl<'a> PartFolder<'a> {
         path: &Path,
         study: &StudyIdentity,
         headings: [&[String]; 2],
-        (design, shard): (&'a Design, Option<Shard>),
+        design: &'a Design,
+        shard: Option<Shard>,
     ) -> Result<Self, SweepError> {
         let failed = |reason: String| StoreFault::Reason(reason).with_path(path);
         fs::create_dir_all(path)
@@ -239,9 +240,10 @@ impl<'a> PartFolder<'a> {
     /// Opens the file of a part, or of some of its points.
     fn open_file(&self, path: &Path, points: &Range<u64>) -> Result<PartFile, SweepError> {
         let length = (points.end - points.start) as usize;
-        let rows = match *path == self.file(points) {
-            true => length..=length,
-            false => 1..=length,
+        let rows = if *path == self.file(points) {
+            length..=length
+        } else {
+            1..=length
         };
         let opened = self.format.open(path, rows);
         opened.map_err(|fault| fault.with_path(path))

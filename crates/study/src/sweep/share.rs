@@ -19,9 +19,10 @@ pub(crate) struct Share {
 impl Share {
     pub(crate) fn new(points: u64, shard: Option<Shard>) -> Self {
         let shard = shard.unwrap_or(Shard { part: 1, of: 1 });
-        let block = match points.div_ceil(PART_LENGTH) >= shard.of {
-            true => PART_LENGTH,
-            false => (points / shard.of.saturating_mul(BLOCKS)).max(1),
+        let block = if points.div_ceil(PART_LENGTH) >= shard.of {
+            PART_LENGTH
+        } else {
+            (points / shard.of.saturating_mul(BLOCKS)).max(1)
         };
         Self {
             points,

@@ -317,7 +317,7 @@ fn both_ways(
     let indices: Vec<u64> = (0..design.points).collect();
     [family.as_ref(), None].map(|family| {
         let mut rows = Vec::new();
-        requested.points((scene, &design, family), &indices, &mut |row| {
+        requested.points(scene, &design, family, &indices, &mut |row| {
             rows.push((row.result.values, row.result.message));
         });
         rows

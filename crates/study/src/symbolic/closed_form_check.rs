@@ -90,9 +90,10 @@ impl<'a> ClosedFormCheck<'a> {
 
     /// The largest quantities of each kind; one that may be zero throughout is scaled by a related one.
     fn compute_scales(&mut self) {
-        let per = match self.exact.model().plan().is_angle(0) {
-            true => 1.0,
-            false => self.size,
+        let per = if self.exact.model().plan().is_angle(0) {
+            1.0
+        } else {
+            self.size
         };
         for (_, out) in &self.exact_values {
             self.scales[0] = self.scales[0].max(out.m.abs());
@@ -134,8 +135,8 @@ impl<'a> ClosedFormCheck<'a> {
                     (Some(name), 2..) => format!(", {name}"),
                     _ => String::new(),
                 };
-                let difference = (difference, rounding[results + j]);
-                self.add_difference(1 + j, difference, scale, q, &location);
+                let rounding = rounding[results + j];
+                self.add_difference(1 + j, difference, rounding, scale, q, &location);
             }
         }
     }
@@ -168,14 +169,15 @@ impl<'a> ClosedFormCheck<'a> {
                 | QuantityOrigin::Result => continue,
             };
             let location = format!(", {}", quantity.code);
-            self.add_difference(0, (difference, rounding[k]), scale, q, &location);
+            self.add_difference(0, difference, rounding[k], scale, q, &location);
         }
     }
 
     fn add_difference(
         &mut self,
         kind: usize,
-        (difference, rounding): (f64, f64),
+        difference: f64,
+        rounding: f64,
         scale: f64,
         q: f64,
         location: &str,
@@ -201,15 +203,16 @@ impl<'a> ClosedFormCheck<'a> {
 
     pub(crate) fn findings(self) -> Vec<Finding> {
         let angle = self.exact.model().plan().is_angle(0);
-        let units = match angle {
-            true => [
+        let units = if angle {
+            [
                 "m or rad",
                 "kg m²",
                 "kg m²",
                 "kg m or kg m²",
                 "kg m or kg m²",
-            ],
-            false => ["m or rad", "kg", "kg/m", "kg or kg m", "kg/m or kg"],
+            ]
+        } else {
+            ["m or rad", "kg", "kg/m", "kg or kg m", "kg/m or kg"]
         };
         let kinds = KINDS.into_iter().zip(units).zip(self.largest);
         let compared_kinds = kinds.filter(|(_, largest)| !largest.location.is_empty());
@@ -221,11 +224,10 @@ impl<'a> ClosedFormCheck<'a> {
             } else {
                 TOLERANCE
             };
-            let why = match tolerance > TOLERANCE {
-                false => "both are computed from closed forms: thousands of roundings",
-                true => {
-                    "ten times what a unit of rounding in the lengths does to the closed forms, to a power of ten"
-                }
+            let why = if tolerance > TOLERANCE {
+                "ten times what a unit of rounding in the lengths does to the closed forms, to a power of ten"
+            } else {
+                "both are computed from closed forms: thousands of roundings"
             };
             Finding {
                 key: key.to_owned(),

@@ -27,7 +27,8 @@ pub(crate) struct WrittenForm<'a> {
 /// Closed forms as formulas or code.
 pub(crate) fn closed_form_outcome(
     scene: &WrittenForm<'_>,
-    (form, findings): (ClosedForm, Vec<Finding>),
+    form: ClosedForm,
+    findings: Vec<Finding>,
     format: FormulaFormat,
 ) -> Outcome {
     let mut record = Record::default();

@@ -119,14 +119,15 @@ impl<'a> PlaneParts<'a> {
     fn link(
         &mut self,
         look: LinkLook,
-        joined: ([BodyId; 2], [Vec2; 2]),
+        bodies: [BodyId; 2],
+        points: [Vec2; 2],
         body: Option<BodyId>,
         title: String,
         drawn_in: DrawnIn,
     ) {
         let link = Part::Link {
             look,
-            ends: anchors(joined.0, joined.1),
+            ends: anchors(bodies, points),
             axis: Vec::new(),
             body: body.map(|b| b.0),
             title,
@@ -138,8 +139,8 @@ impl<'a> PlaneParts<'a> {
     fn background(&mut self) {
         let scene = self.scene;
         for (j, joint) in self.visible_joints() {
-            let ([one, two], at) = (joint.bodies, joint.points);
-            let joined = (joint.bodies, at);
+            let (bodies, at) = (joint.bodies, joint.points);
+            let [one, two] = bodies;
             match joint.kind {
                 JointKind::Gear { radii, .. } => {
                     for k in 0..2 {
@@ -153,7 +154,7 @@ impl<'a> PlaneParts<'a> {
                 JointKind::Slot { axis } => self.track(j, axis),
                 JointKind::Prismatic { axes } if is_cylinder(scene, j) => {
                     let title = self.title(joint, "driven slide");
-                    self.link(LinkLook::Rod, joined, Some(two), title, DrawnIn::All);
+                    self.link(LinkLook::Rod, bodies, at, Some(two), title, DrawnIn::All);
                     let shortest = self.travels[j].map_or(0.0, |[low, _]| low);
                     let barrel = [at[0], at[0] + axes[0] * (BARREL * shortest)];
                     self.outline(OutlineLook::Barrel, one, &barrel, DrawnIn::All);
@@ -161,7 +162,7 @@ impl<'a> PlaneParts<'a> {
                 JointKind::Prismatic { axes } => self.track(j, axes[0]),
                 JointKind::Distance { .. } => {
                     let title = self.title(joint, "massless rod");
-                    self.link(LinkLook::Rod, joined, None, title, DrawnIn::All);
+                    self.link(LinkLook::Rod, bodies, at, None, title, DrawnIn::All);
                 }
                 // Below the bodies: it would hide the end of a link that hangs from it.
                 JointKind::Revolute if self.is_fixed(joint) => {
@@ -230,9 +231,10 @@ impl<'a> PlaneParts<'a> {
         for cam in couplings.filter_map(|coupling| pitch_curve(scene, coupling, positions)) {
             let body = BodyId(cam.body);
             if self.is_visible(&[body]) {
-                let look = match cam.closed {
-                    true => OutlineLook::Cam,
-                    false => OutlineLook::OpenCam,
+                let look = if cam.closed {
+                    OutlineLook::Cam
+                } else {
+                    OutlineLook::OpenCam
                 };
                 self.outline(look, body, &cam.points, DrawnIn::Full);
             }
@@ -245,8 +247,8 @@ impl<'a> PlaneParts<'a> {
                 && self.is_visible(&actuator.bodies)
             {
                 let title = format!("driven length {}", actuator.name);
-                let joined = (actuator.bodies, points);
-                self.link(LinkLook::Cylinder, joined, None, title, DrawnIn::All);
+                let (look, bodies) = (LinkLook::Cylinder, actuator.bodies);
+                self.link(look, bodies, points, None, title, DrawnIn::All);
             }
         }
     }
@@ -276,8 +278,9 @@ impl<'a> PlaneParts<'a> {
     fn loads(&mut self) {
         for load in &self.scene.loads {
             if let Some((look, [from, to])) = link_of(&load.kind) {
-                let joined = ([from.0, to.0], [from.1, to.1]);
-                self.link(look, joined, None, load.name.clone(), DrawnIn::Full);
+                let (bodies, points) = ([from.0, to.0], [from.1, to.1]);
+                let title = load.name.clone();
+                self.link(look, bodies, points, None, title, DrawnIn::Full);
             }
         }
     }
@@ -286,9 +289,10 @@ impl<'a> PlaneParts<'a> {
         let at = anchor(joint.bodies[k], joint.points[k]);
         let mark = Mark {
             look,
-            ground: match self.is_fixed(joint) {
-                true => vec![at.clone()],
-                false => Vec::new(),
+            ground: if self.is_fixed(joint) {
+                vec![at.clone()]
+            } else {
+                Vec::new()
             },
             at,
             body: joint.bodies[k].0,

@@ -43,9 +43,10 @@ impl ColumnExtrema {
             0.0
         };
         let error_at = self.span * (FOUND_WITHIN + relative).min(1.0);
-        let value = match self.error.is_finite() {
-            true => digits_within(value, self.error, 6),
-            false => number(value),
+        let value = if self.error.is_finite() {
+            digits_within(value, self.error, 6)
+        } else {
+            number(value)
         };
         [value, digits_within(at, error_at, 6)]
     }

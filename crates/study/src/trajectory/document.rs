@@ -250,9 +250,10 @@ impl<'a> Document<'a> {
         let (factor, shown_unit) = self.in_scene_unit(1.0, unit);
         let shown = of.scaled(factor, at_factor);
         let [value, at] = shown.texts(shown.largest());
-        let of_rows = match of.of_rows && self.results.extrema.are_between_rows() {
-            true => ", of the rows only",
-            false => "",
+        let of_rows = if of.of_rows && self.results.extrema.are_between_rows() {
+            ", of the rows only"
+        } else {
+            ""
         };
         format!(
             "  {name} reaches {value} {shown_unit} at {abscissa} = {at} {abscissa_unit}{of_rows}\n"
@@ -422,15 +423,12 @@ impl<'a> Document<'a> {
             caption: String::new(),
         }));
         blocks.push(Block::Heading("Peaks".to_owned()));
-        let where_found = match self.results.extrema.are_between_rows() {
-            true => {
-                let in_rows = searched_in_rows(self.results);
-                let in_rows = in_rows.map_or_else(String::new, |text| format!(" {text}"));
-                format!("Smallest and largest values, also between the rows of the table.{in_rows}")
-            }
-            false => {
-                "Smallest and largest values in the rows of the table: between them there may be larger ones.".to_owned()
-            }
+        let where_found = if self.results.extrema.are_between_rows() {
+            let in_rows = searched_in_rows(self.results);
+            let in_rows = in_rows.map_or_else(String::new, |text| format!(" {text}"));
+            format!("Smallest and largest values, also between the rows of the table.{in_rows}")
+        } else {
+            "Smallest and largest values in the rows of the table: between them there may be larger ones.".to_owned()
         };
         blocks.push(Block::Text(where_found));
         blocks.push(self.extrema_table());

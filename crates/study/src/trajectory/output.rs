@@ -40,16 +40,16 @@ pub(crate) fn report(
     let mut files = Files::new();
     let mut link_names = DistinctNames::default();
     for link in &results.sectioned_links {
-        let of = link.file_name(scene.mechanism.body_name(link.request.body));
-        let of = link_names.add(of);
-        let file = |rest: &str| name(&format!("-internal-forces-{of}{rest}.csv"));
+        let link_name = link.file_name(scene.mechanism.body_name(link.request.body));
+        let stem = link_names.add(link_name);
+        let file = |rest: &str| name(&format!("-internal-forces-{stem}{rest}.csv"));
         files.add(file(""), link.table().csv()?);
         files.add(file(".envelope"), link.envelope_table().csv()?);
     }
     let (figures, left_out) = figures::trajectory_figures(scene, computed, span)?;
     let animation = figures::animation(scene, computed)?;
     let document = document::Document::new(scene, computed);
-    let mut outcome = outcome_of(&scene.file, computed, &document, (figures, animation))?;
+    let mut outcome = outcome_of(&scene.file, computed, &document, figures, animation)?;
     outcome.run = Some(Box::new(plane_page(scene, computed)));
     outcome.files.extend("", files);
     outcome.summary += &left_out.map_or_else(String::new, |note| format!("  {note}\n"));
@@ -64,7 +64,8 @@ pub(crate) fn outcome_of(
     scene: &SceneFile,
     computed: &ComputedTrajectory<'_>,
     document: &document::Document<'_>,
-    (mut figures, animation): (Vec<Figure>, Animation),
+    mut figures: Vec<Figure>,
+    animation: Animation,
 ) -> Result<Outcome, StudyError> {
     let (trajectory, results) = (&computed.trajectory, &computed.results);
     let analysis = trajectory.analysis.name();

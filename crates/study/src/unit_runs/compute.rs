@@ -114,9 +114,8 @@ impl UnitRun {
             points,
             laws: vec![Law::Polynomial(law)],
         };
-        let along = (&motion, spacing);
-        let period = model.range().period();
-        let along = Trajectory::prescribed(along, period, Analysis::Kinetostatics, points);
+        let (period, analysis) = (model.range().period(), Analysis::Kinetostatics);
+        let along = Trajectory::prescribed(&motion, spacing, period, analysis, points);
         let computed = RowSource::new(scene, &rows).along(along, None, progress)?;
         match computed.early_stop {
             Some(error) => Err(error),

@@ -43,9 +43,10 @@ impl<P: ReducedScene> UnitRuns<P> {
         };
         let coordinate = self.prepared.coordinate_name();
         let moment = both(&format!("{coordinate}.actuator_force"));
-        let (title, unit) = match self.prepared.is_angle() {
-            true => ("Actuator moment", "N m"),
-            false => ("Actuator force", "N"),
+        let (title, unit) = if self.prepared.is_angle() {
+            ("Actuator moment", "N m")
+        } else {
+            ("Actuator force", "N")
         };
         let mut panels = vec![self.panel(title, "T", unit, moment.into())];
         for (name, unit) in self.prepared.reaction_units().iter().take(MAX_REACTIONS) {

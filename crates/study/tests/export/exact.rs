@@ -56,9 +56,10 @@ fn every_case_has_its_operations_or_says_why_not() {
             }
         };
         let error = export.measured.errors.max();
-        let allowed = match name == NEXT_TO_FLAT.0 {
-            true => NEXT_TO_FLAT.1,
-            false => LARGEST_ERROR,
+        let allowed = if name == NEXT_TO_FLAT.0 {
+            NEXT_TO_FLAT.1
+        } else {
+            LARGEST_ERROR
         };
         if error > allowed {
             wrong.push(format!("{name}: an error of {error:.1e}"));

@@ -109,9 +109,12 @@ fn rows_within_long_steps_are_as_good_as_their_ends() {
         s = { length = \"slide\" }\n[drives]\npush = { motor = \"s\", voltage = \"if(t < 0.5, 6, -4)\", torque-constant = 0.8, \
         resistance = 1.5, inductance = 0.01 }\n[motion]\nduration = 1\n";
     let half = motor_and_slider(6.0, [0.0; 2], 0.5);
-    let exact = |t: f64| match t <= 0.5 {
-        true => motor_and_slider(6.0, [0.0; 2], t),
-        false => motor_and_slider(-4.0, half, t - 0.5),
+    let exact = |t: f64| {
+        if t <= 0.5 {
+            motor_and_slider(6.0, [0.0; 2], t)
+        } else {
+            motor_and_slider(-4.0, half, t - 0.5)
+        }
     };
     for tolerance in [1e-5, 1e-7, 1e-10] {
         let settings = SolverSettings {

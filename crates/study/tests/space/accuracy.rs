@@ -31,7 +31,7 @@ fn by_method(method: Method, rtol: f64) -> MotionSolver {
 }
 
 /// A scene of `validation/spatial` that has a motion, for so long.
-fn lasting(name: &str, (from, to): (&str, &str)) -> SpaceScene {
+fn lasting(name: &str, from: &str, to: &str) -> SpaceScene {
     let path = format!(
         "{}/../../validation/spatial/{name}.toml",
         env!("CARGO_MANIFEST_DIR")
@@ -46,7 +46,7 @@ fn lasting(name: &str, (from, to): (&str, &str)) -> SpaceScene {
 /// compared with a method that was not chosen.
 #[test]
 fn what_is_stiff_in_space_goes_by_bdf() {
-    let stiff = lasting("governor-a05", ("duration = 10", "duration = 0.5"));
+    let stiff = lasting("governor-a05", "duration = 10", "duration = 0.5");
     let smooth = scene(
         "governor",
         "\n[motion]\nduration = 0.5\ninitial-velocity = { q = 0, s = 6.283185307179586 }\n",
@@ -77,7 +77,7 @@ fn what_is_stiff_in_space_goes_by_bdf() {
 /// What is said of it is what is said in the plane, with the numbers in the record.
 #[test]
 fn the_summary_says_how_the_accuracy_is_reached() {
-    let scene = lasting("governor-a05", ("duration = 10", "duration = 0.1"));
+    let scene = lasting("governor-a05", "duration = 10", "duration = 0.1");
     let span = PictureSpan::default();
     let done = simulate_within(&scene, &to_accuracy(1e-5), None, span, &no_progress);
     let outcome = done.unwrap_or_else(|e| panic!("{e:?}")).outcome;

@@ -30,17 +30,18 @@ fn geared_wheels_count_all_revolutions() {
             }
         };
         let axis = if space { ", axis = [0, 0, 1]" } else { "" };
-        let (mesh, angle, other) = match space {
-            true => (
+        let (mesh, angle, other) = if space {
+            (
                 "{ gear = [\"one\", \"two\"], pitch-point = \"ground.P\", normal = [0, 1, 0] }",
                 "\"A\"",
                 "\"C\"",
-            ),
-            false => (
+            )
+        } else {
+            (
                 "{ gear = [\"one.A\", \"two.C\"], radii = [0.03, 0.02] }",
                 "[\"ground\", \"one\"]",
                 "[\"ground\", \"two\"]",
-            ),
+            )
         };
         let gravity = point("0, -9.81");
         let place = if space {

@@ -182,9 +182,10 @@ feed = {{ speed-controller = "x", speed = 1.0, proportional = {p:?}, integral = 
     let (mut low, mut high) = (0.0, 0.5);
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
-        match motion(start, middle)[1] > -limit / MASS {
-            true => low = middle,
-            false => high = middle,
+        if motion(start, middle)[1] > -limit / MASS {
+            low = middle;
+        } else {
+            high = middle;
         }
     }
     let acceleration = limit / MASS;

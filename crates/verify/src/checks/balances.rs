@@ -130,9 +130,9 @@ pub(crate) fn balances(context: &CheckContext<'_>) -> Vec<Finding> {
 fn location(context: &CheckContext<'_>, q: f64, motion: [f64; 2], body: Option<usize>) -> String {
     let [q_dot, q_ddot] = motion;
     let (location, unit) = (context.location(q), context.unit());
-    let body = body.map(|body| format!(", {}", context.dense.bodies[body].name));
-    let body = body.unwrap_or_default();
-    format!("{location}, {q_dot} {unit}/s, {q_ddot} {unit}/s2{body}")
+    let of_body = body.map(|body| format!(", {}", context.dense.bodies[body].name));
+    let of_body = of_body.unwrap_or_default();
+    format!("{location}, {q_dot} {unit}/s, {q_ddot} {unit}/s2{of_body}")
 }
 
 /// All balances of one motion at one position.
@@ -142,10 +142,9 @@ fn balances_in_motion(
     [q_dot, q_ddot]: [f64; 2],
 ) -> Result<Vec<Balance>, SubjectError> {
     let dense = &context.dense;
-    let subject = context.subject;
-    let subject = subject.inverse_dynamics(position.q, q_dot, q_ddot)?;
+    let claimed = (context.subject).inverse_dynamics(position.q, q_dot, q_ddot)?;
     let at = &position.configuration;
-    let wrenches = dense.joint_wrenches(&at.poses, &subject.reactions, &[subject.tau]);
+    let wrenches = dense.joint_wrenches(&at.poses, &claimed.reactions, &[claimed.tau]);
     let law = Polynomial::motion(position.q, q_dot, q_ddot);
     // The time it takes to go one step of q: |q̇| t + ½ |q̈| t² = h.
     let h = row_step(context, position.unit_velocity());
@@ -158,16 +157,16 @@ fn balances_in_motion(
         })
     };
     let component = |all: &[Extrapolated], c: usize| all.get(c).copied().unwrap_or(NO_ESTIMATE);
-    let energy_rate = rate(&|at, x_dot| vec![0.5 * dense.inertia(at, x_dot, x_dot)]);
-    let energy_rate = component(&energy_rate, 0);
-    let difference = subject.tau * q_dot - energy_rate.value;
+    let energy_rates = rate(&|at, x_dot| vec![0.5 * dense.inertia(at, x_dot, x_dot)]);
+    let energy_rate = component(&energy_rates, 0);
+    let difference = claimed.tau * q_dot - energy_rate.value;
     let power = [difference, energy_rate.value.abs(), energy_rate.error];
     let mut balances = vec![(0, None, power)];
     let pose_rounding = position.pose_rounding();
     let second = dense.second_differences(at, step, pose_rounding, |t, q| q[0] = law.eval(t)[0]);
     let x_dot: Vec<f64> = position.unit_velocity().iter().map(|u| u * q_dot).collect();
-    let momentum = rate(&|at, x_dot| dense.momentum(at, x_dot).to_vec());
-    let mut momentum: [Extrapolated; 6] = std::array::from_fn(|c| component(&momentum, c));
+    let momentum_rates = rate(&|at, x_dot| dense.momentum(at, x_dot).to_vec());
+    let mut momentum: [Extrapolated; 6] = std::array::from_fn(|c| component(&momentum_rates, c));
     for (b, body) in dense.moving_bodies() {
         let omega = body.columns.twist(&x_dot).angular.z;
         let alpha = second.of(b).angular.z;
@@ -177,7 +176,7 @@ fn balances_in_motion(
     for (b, body) in dense.moving_bodies() {
         let pose = &at.poses[b];
         let omega = body.columns.twist(&x_dot).angular;
-        let balance = body_balance((body, pose, omega), (second.of(b), second.errors(b)));
+        let balance = body_balance(body, pose, omega, second.of(b), second.errors(b));
         balances.extend(balance.with(&wrenches, b, body.center(pose)));
     }
     Ok(balances)
@@ -221,8 +220,11 @@ fn momentum_balance(
 
 /// (4) and (5) of a body with the second derivatives of its centre of mass and rotation, and their errors.
 fn body_balance(
-    (body, pose, omega): (&DenseBody, &Pose, Vec3),
-    (second, errors): (Twist, Twist),
+    body: &DenseBody,
+    pose: &Pose,
+    omega: Vec3,
+    second: Twist,
+    errors: Twist,
 ) -> BodyBalance {
     let rate = Wrench {
         force: second.linear.scaled(body.mass.mass),

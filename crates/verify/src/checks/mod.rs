@@ -56,8 +56,9 @@ fn row_step(context: &CheckContext<'_>, u: &[f64]) -> f64 {
 
 /// Units of a coefficient a and a coefficient b.
 fn coefficient_units(moment: bool) -> [&'static str; 2] {
-    match moment {
-        true => ["N m per rad/s2", "N m per (rad/s)2"],
-        false => ["N per rad/s2", "N per (rad/s)2"],
+    if moment {
+        ["N m per rad/s2", "N m per (rad/s)2"]
+    } else {
+        ["N per rad/s2", "N per (rad/s)2"]
     }
 }

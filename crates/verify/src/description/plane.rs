@@ -174,7 +174,7 @@ impl Lift<'_> {
                 let holders = [0, 1].map(|k| self.at_centre(joint, k, tolerance));
                 let carrier = holders[0].iter().find(|b| holders[1].contains(b));
                 let ground = self.mechanism.ground;
-                let gear = Gear::new(at, (radii, internal), carrier.copied(), ground);
+                let gear = Gear::new(at, radii, internal, carrier.copied(), ground);
                 vec![Row::Gear(gear)]
             }
             JointKind::Rack { axis, radius } => vec![unrolled(axis, radius)],
@@ -199,9 +199,10 @@ impl Lift<'_> {
             let term = self.term(coordinate);
             let is_angle = coordinate.is_angle();
             DescribedRow {
-                row: match is_angle && !counts_revolutions {
-                    true => Row::periodic(term, 0.0, TAU),
-                    false => Row::single(term, 0.0),
+                row: if is_angle && !counts_revolutions {
+                    Row::periodic(term, 0.0, TAU)
+                } else {
+                    Row::single(term, 0.0)
                 },
                 is_angle,
                 name: actuator.name.clone(),

@@ -135,9 +135,10 @@ impl MultibodySystem {
         let counts_revolutions = self.frames.counts_revolutions;
         let both = claim.poses.iter().zip(&sample.poses);
         both.map(|(&[x, y, angle], other)| {
-            let excess = match counts_revolutions {
-                true => 0.0,
-                false => TAU * ((angle - other[2]) / TAU).round(),
+            let excess = if counts_revolutions {
+                0.0
+            } else {
+                TAU * ((angle - other[2]) / TAU).round()
             };
             [x, y, angle - excess]
         })

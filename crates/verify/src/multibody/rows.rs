@@ -29,9 +29,10 @@ pub(super) fn centroidal_frames(
     let description = Description::in_plane(mechanism, inertias)?;
     let centers: Vec<_> = description.bodies.iter().map(|body| body.mass).collect();
     Ok(DenseMechanism::of(description, |body, mean| {
-        match centers[body].mass > 0.0 && body != mechanism.ground {
-            true => centers[body].center,
-            false => mean,
+        if centers[body].mass > 0.0 && body != mechanism.ground {
+            centers[body].center
+        } else {
+            mean
         }
     }))
 }

@@ -137,7 +137,7 @@ impl MultibodySystem {
         let Magnitude::Constant(size) = load.magnitude else {
             return None;
         };
-        let weights = (self.mechanism.ground, &self.masses[..]);
-        placed(&load.kind, weights, at.motion())?.potential(size)
+        let ground = self.mechanism.ground;
+        placed(&load.kind, ground, &self.masses, at.motion())?.potential(size)
     }
 }

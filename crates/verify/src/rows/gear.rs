@@ -28,7 +28,8 @@ impl Gear {
     /// A gear pair with pitch radii (m), and the body that holds both centres, if any.
     pub(crate) fn new(
         ends: Ends,
-        (radii, internal): ([f64; 2], bool),
+        radii: [f64; 2],
+        internal: bool,
         carrier: Option<usize>,
         ground: usize,
     ) -> Self {

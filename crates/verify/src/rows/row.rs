@@ -104,12 +104,7 @@ impl Row {
     }
 
     /// How far row k is from its imposed value.
-    pub(crate) fn residual(
-        &self,
-        poses: &[Pose],
-        since: Since<'_>,
-        (k, imposed): (usize, f64),
-    ) -> f64 {
+    pub(crate) fn residual(&self, poses: &[Pose], since: Since<'_>, k: usize, imposed: f64) -> f64 {
         let moved = imposed - since.row_values[k];
         match self {
             Self::Sum {

@@ -118,9 +118,10 @@ impl Law<'_> {
             let lever = if is_couple { radius } else { 1.0 };
             return coefficient(speed) * part * lever;
         }
-        match is_couple {
-            true => coefficient(turn) * radius,
-            false => coefficient(travel),
+        if is_couple {
+            coefficient(turn) * radius
+        } else {
+            coefficient(travel)
         }
     }
 }

@@ -276,12 +276,11 @@ impl<'a> DenseState<'a> {
         };
         for joint in &dense.joints {
             let claimed = &state.reactions[joint.reactions.clone()];
-            match joint.is_wrench {
-                true => all.extend(self.components(joint, claimed)),
-                false => {
-                    let rows = joint.rows.clone().zip(claimed);
-                    all.extend(rows.map(|(row, claimed)| of_row(row, *claimed)));
-                }
+            if joint.is_wrench {
+                all.extend(self.components(joint, claimed));
+            } else {
+                let rows = joint.rows.clone().zip(claimed);
+                all.extend(rows.map(|(row, claimed)| of_row(row, *claimed)));
             }
         }
         let actuators = (dense.actuator_row()..).zip(&state.tau);
@@ -397,9 +396,12 @@ impl<'a> DenseState<'a> {
             total.add(wrench, 1.0, Vec3::ZERO);
         }
         let components = dense.whole().components(total.sum.force, total.sum.moment);
-        let with_terms = components.map(|(sum, is_moment)| match is_moment {
-            true => [sum / dense.size(), total.terms[1] / dense.size()],
-            false => [sum, total.terms[0]],
+        let with_terms = components.map(|(sum, is_moment)| {
+            if is_moment {
+                [sum / dense.size(), total.terms[1] / dense.size()]
+            } else {
+                [sum, total.terms[0]]
+            }
         });
         with_terms.collect()
     }

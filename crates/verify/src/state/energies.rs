@@ -156,9 +156,10 @@ impl StateChecker<'_> {
                 };
                 let (value, error) = (force.value * arm, force.error * arm);
                 let numbers = [claimed * arm - value, largest_force.max(value.abs()), error];
-                let set = match k < actuator_row {
-                    true => &mut released,
-                    false => &mut of_actuators,
+                let set = if k < actuator_row {
+                    &mut released
+                } else {
+                    &mut of_actuators
                 };
                 m.compare(set, numbers, "N", name);
             }

@@ -32,9 +32,12 @@ impl CWriter<'_, SeveralFreedomsExport> {
     fn motion(&self) -> String {
         let machine = &self.export.machine;
         let (n, pairs) = (machine.freedoms(), machine.pairs());
-        let upper = pairs.iter().map(|[i, j]| match i == j {
-            true => format!("terms->m[{}]", i * n + j),
-            false => format!("terms->m[{}] = terms->m[{}]", j * n + i, i * n + j),
+        let upper = pairs.iter().map(|[i, j]| {
+            if i == j {
+                format!("terms->m[{}]", i * n + j)
+            } else {
+                format!("terms->m[{}] = terms->m[{}]", j * n + i, i * n + j)
+            }
         });
         let h = (0..pairs.len() * n).map(|k| format!("terms->h[{k}]"));
         let w = (0..machine.loads.len() * n).map(|k| format!("terms->w[{k}]"));
@@ -127,11 +130,10 @@ impl CWriter<'_, SeveralFreedomsExport> {
                 );
             }
         }
-        let loads = match self.has_loads() {
-            true => {
-                "        for (i = 0; i < @U@_LOAD_COUNT; i++) {\n            sum = sum + of.c[i * @U@_REACTION_COUNT + k] * f.f[i];\n        }\n"
-            }
-            false => "",
+        let loads = if self.has_loads() {
+            "        for (i = 0; i < @U@_LOAD_COUNT; i++) {\n            sum = sum + of.c[i * @U@_REACTION_COUNT + k] * f.f[i];\n        }\n"
+        } else {
+            ""
         };
         format!(
             "@p@_status @p@_reactions(@arguments@, const @p@_real q_ddot[@U@_COORDINATE_COUNT], @p@_real reactions[@U@_REACTION_COUNT])\n{{\n    @p@_motion_terms terms;\n    @p@_reaction_terms of;\n    forces f;\n    int i, j, k;\n    @p@_status status = @p@_motion_terms_at(state->q, &terms);\n    if (status == @U@_OK) {{\n        status = @p@_reaction_terms_at(state->q, &of);\n    }}\n    if (status != @U@_OK) {{\n        clear(reactions, @U@_REACTION_COUNT);\n        return status;\n    }}\n    forces_of(parameters, inputs, &terms, state, &f);\n{rotors}    for (k = 0; k < @U@_REACTION_COUNT; k++) {{\n        @p@_real sum = ZERO;\n        int pair = 0;\n        for (i = 0; i < N; i++) {{\n            sum = sum + of.a[i * @U@_REACTION_COUNT + k] * q_ddot[i];\n            for (j = i; j < N; j++) {{\n                sum = sum + of.b[pair * @U@_REACTION_COUNT + k] * (state->q_dot[i] * state->q_dot[j]);\n                pair++;\n            }}\n        }}\n{loads}        reactions[k] = sum;\n    }}\n    if (!all_finite(reactions, @U@_REACTION_COUNT)) {{\n        clear(reactions, @U@_REACTION_COUNT);\n        return @U@_NOT_FINITE;\n    }}\n    return @U@_OK;\n}}\n\n"
@@ -166,7 +168,7 @@ impl CWriter<'_, SeveralFreedomsExport> {
                     code + 8
                 );
                 let (end, tolerance) = (&end[..2 * n], state.tolerances[4]);
-                self.check(&mut checks, "@U@_OK", end, (tolerance, code + 9));
+                self.check(&mut checks, "@U@_OK", end, tolerance, code + 9);
             }
         }
         // Its square is no number.
@@ -196,7 +198,7 @@ impl CWriter<'_, SeveralFreedomsExport> {
         ];
         for (k, (values, call)) in values.iter().zip(calls).enumerate() {
             if !values.is_empty() {
-                self.check(checks, call, values, (state.tolerances[k], code + k));
+                self.check(checks, call, values, state.tolerances[k], code + k);
             }
             *checks += match k {
                 0 => "    for (k = 0; k < N; k++) {\n        q_ddot[k] = found[k];\n    }\n",
@@ -207,13 +209,7 @@ impl CWriter<'_, SeveralFreedomsExport> {
     }
 
     /// A call whose results in `found` must be these.
-    fn check(
-        &self,
-        text: &mut String,
-        call: &str,
-        values: &[f64],
-        (tolerance, code): (f64, usize),
-    ) {
+    fn check(&self, text: &mut String, call: &str, values: &[f64], tolerance: f64, code: usize) {
         let list: Vec<String> = values.iter().map(|&x| self.number(x)).collect();
         let (count, list, tolerance) = (values.len(), list.join(", "), self.number(tolerance));
         _ = writeln!(

@@ -186,7 +186,8 @@ impl Candidate {
     /// Appends the positions of a curve that may be next to its highest peak (or, with the sign −1, to its lowest
     /// trough) to `candidates`. The bits of `at` mark positions that are higher than their neighbours.
     pub(super) fn find(
-        (curve, sign): (usize, f64),
+        curve: usize,
+        sign: f64,
         of: &Interpolant,
         at: &[u64],
         candidates: &mut Vec<Self>,
@@ -304,9 +305,12 @@ impl Peak {
     /// Keeps the peaks and troughs of a curve that may be the highest and the lowest; for a force, those that may have the
     /// largest magnitude.
     pub(super) fn keep_highest(curve: usize, is_force: bool, peaks: &mut Vec<Self>) {
-        let height = |peak: &Self| match is_force {
-            true => peak.value.abs(),
-            false => peak.sign * peak.value,
+        let height = |peak: &Self| {
+            if is_force {
+                peak.value.abs()
+            } else {
+                peak.sign * peak.value
+            }
         };
         let of_kind =
             |peak: &Self, sign: f64| peak.curve == curve && (is_force || peak.sign == sign);
@@ -355,10 +359,11 @@ impl Peak {
         let curved = slope + start * (self.second + 0.5 * self.third * start);
         let x = start - curved / (self.second + self.third * start);
         let is_vertex = self.sign * self.second < 0.0 && x.is_finite();
-        let x = match is_vertex {
-            true => x.clamp(-MAX_STEP, MAX_STEP),
+        let x = if is_vertex {
+            x.clamp(-MAX_STEP, MAX_STEP)
+        } else {
             // Uphill where the parabola has no vertex.
-            false => MAX_STEP.copysign(self.sign * slope),
+            MAX_STEP.copysign(self.sign * slope)
         };
         let of_slope = self.second_error / 2.0 + self.third_error * x.abs() / 6.0;
         let error = x.abs() * (slope_error + x.abs() * of_slope);

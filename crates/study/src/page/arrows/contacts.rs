@@ -89,8 +89,8 @@ pub(super) fn coupling_arrow(of: &JointForces<'_>, coupling: usize) -> Option<Fo
     let name = &of.joint.name;
     let on = mechanism.body_name(bodies[1]);
     let title = format!("{name}: force of the coupling on {on}, along what it couples");
-    let force = (anchor(bodies[1], points[1]), direction);
-    Some(force_arrow("Reactions", name, title, force))
+    let at = anchor(bodies[1], points[1]);
+    Some(force_arrow("Reactions", name, title, at, direction))
 }
 
 /// The pitch point, and the axes of the tangential and of the separating force on the second body.
@@ -143,7 +143,7 @@ fn separating_column(of: &JointForces<'_>) -> Option<usize> {
 
 /// A force at a contact on the second body.
 fn on_second(of: &JointForces<'_>, name: &str, what: &str, direction: Direction) -> ForceArrow {
-    touching(of, name.to_owned(), what, (of.body_names(), direction))
+    touching(of, name.to_owned(), what, of.body_names(), direction)
 }
 
 /// A force at a contact of the first of two bodies on the second.
@@ -151,7 +151,8 @@ fn touching(
     of: &JointForces<'_>,
     name: String,
     what: &str,
-    ([from, on], direction): ([&str; 2], Direction),
+    [from, on]: [&str; 2],
+    direction: Direction,
 ) -> ForceArrow {
     let joint = &of.joint.name;
     ForceArrow {
@@ -174,8 +175,8 @@ fn pair(
         column: part.column,
         axis: part.axis.iter().map(|c| -c).collect(),
     };
-    let back = with(contact, parts.iter().map(opposite).collect());
-    let back = touching(of, format!("{name} on {on}"), what, ([from, on], back));
+    let direction = with(contact, parts.iter().map(opposite).collect());
+    let back = touching(of, format!("{name} on {on}"), what, [from, on], direction);
     vec![
         on_second(of, name, what, with(contact, parts)),
         ForceArrow {

@@ -136,18 +136,20 @@ impl ReducedCurves {
 
     /// The table: coordinate, m, ½m′, then a and b of each requested reaction.
     pub fn table(&self, prepared: &dyn ReducedScene) -> Table {
-        let coordinate = (prepared.coordinate_name(), prepared.is_angle());
+        let (coordinate, is_angle) = (prepared.coordinate_name(), prepared.is_angle());
         let reactions = prepared.reaction_units();
         let reactions = reactions.iter().map(|(name, unit)| (&name[..], *unit));
-        coefficient_table(coordinate, reactions, (&self.q, &self.coefficients))
+        coefficient_table(coordinate, is_angle, reactions, &self.q, &self.coefficients)
     }
 }
 
 /// The table of coefficients at positions: coordinate, m, ½m′, then a and b of each reaction by its name and unit.
 pub(crate) fn coefficient_table<'r>(
-    (coordinate, is_angle): (&str, bool),
+    coordinate: &str,
+    is_angle: bool,
     reactions: impl Iterator<Item = (&'r str, &'r str)>,
-    (q, coefficients): (&[f64], &[Coefficients]),
+    q: &[f64],
+    coefficients: &[Coefficients],
 ) -> Table {
     let [m, half_dm] = inertia_units(is_angle);
     let mut columns = vec![
@@ -173,9 +175,10 @@ pub(crate) fn coefficient_table<'r>(
 
 /// Units of m and of ½m′ of an angle or a length.
 pub(crate) fn inertia_units(is_angle: bool) -> [&'static str; 2] {
-    match is_angle {
-        true => ["kg m2", "kg m2/rad"],
-        false => ["kg", "kg/m"],
+    if is_angle {
+        ["kg m2", "kg m2/rad"]
+    } else {
+        ["kg", "kg/m"]
     }
 }
 

@@ -34,9 +34,10 @@ pub(crate) fn peak_between_rows(
     let all = &curves.coefficients;
     let largest = (0..all.len()).max_by(|&i, &j| all[i].m.total_cmp(&all[j].m))?;
     // m rises where ½m′ is above zero: towards one of the neighbours.
-    let first = match all[largest].half_dm > 0.0 {
-        true => Some(largest),
-        false => largest.checked_sub(1),
+    let first = if all[largest].half_dm > 0.0 {
+        Some(largest)
+    } else {
+        largest.checked_sub(1)
     };
     let beside = first.and_then(|first| Some([curves.q[first], *curves.q.get(first + 1)?]));
     let mut inertia = prepared.inertia();
@@ -58,9 +59,10 @@ fn highest(inertia: &mut InertiaAt<'_>, [mut low, mut high]: [f64; 2]) -> Option
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         let (_, half_dm) = inertia(middle)?;
-        match half_dm > 0.0 {
-            true => low = middle,
-            false => high = middle,
+        if half_dm > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
         }
     }
     let (m, _) = inertia(low)?;
@@ -136,9 +138,10 @@ impl<'a> PeakSearch<'a> {
             if larger < UNEXPLAINED_TURN || smaller > FAST_TURN {
                 break;
             }
-            match halves[0] > halves[1] {
-                true => high = middle,
-                false => low = middle,
+            if halves[0] > halves[1] {
+                high = middle;
+            } else {
+                low = middle;
             }
         }
         // Far from the peak, m may rise and fall otherwise.

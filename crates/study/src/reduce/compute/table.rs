@@ -68,19 +68,20 @@ pub fn tabulate(
         Ok(table) => table,
         Err(error) => {
             let error = explain_table_error(prepared, &labels, &error);
-            return match request.required {
-                true => Err(error),
-                false => Ok(Tabulation {
-                    summary: format!("{rows}; no table for values between them: {error}\n"),
-                    record,
-                    text: None,
-                }),
-            };
+            if request.required {
+                return Err(error);
+            }
+            return Ok(Tabulation {
+                summary: format!("{rows}; no table for values between them: {error}\n"),
+                record,
+                text: None,
+            });
         }
     };
-    let cheaper = match request.required {
-        true => String::new(),
-        false => format!("{rows} (cheaper than building a table); use the table between rows\n"),
+    let cheaper = if request.required {
+        String::new()
+    } else {
+        format!("{rows} (cheaper than building a table); use the table between rows\n")
     };
     let text = table.to_text(&labels);
     let text = text.map_err(|e| scene_error(scene, e.to_string(), "", explain::Labels::new()))?;

@@ -65,20 +65,21 @@ impl<'a> SpaceEvaluator<'a> {
     /// Evaluates actuator forces, reactions and their sums.
     fn evaluate_forces(
         &mut self,
-        (t, [q, q_dot, q_ddot]): (f64, [&[f64]; 3]),
+        t: f64,
+        state: [&[f64]; 3],
         given: &[(usize, f64)],
     ) -> Result<(), StopCause> {
-        let at = (t, [q, q_dot, q_ddot]);
         let (model, workspace, results) =
             (&self.rows.model, &mut self.workspace, &mut self.results);
         self.totals
-            .evaluate_loads(model, at, given, workspace, results)?;
+            .evaluate_loads(model, t, state, given, workspace, results)?;
         let motion_of = |of| model.coordinate_motion(of, &self.workspace);
         if let Some((load, value)) = first_uncovered(model, t, motion_of) {
             return Err(StopCause::OffTable { load, value });
         }
-        let actions = (&self.results.tau[..], q_dot);
-        self.totals.compute(self.scene, &self.bodies.0, actions);
+        let [_, q_dot, _] = state;
+        self.totals
+            .compute(self.scene, &self.bodies.0, &self.results.tau, q_dot);
         Ok(())
     }
 }
@@ -96,7 +97,8 @@ impl RowEvaluator for SpaceEvaluator<'_> {
 
     fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
         let rest = vec![0.0; sample.q.len()];
-        let [q, q_dot, q_ddot] = sample.state(self.analysis, &rest);
+        let state = sample.state(self.analysis, &rest);
+        let [q, q_dot, q_ddot] = state;
         let plan = self.rows.model.plan();
         plan.positions(q, &mut self.pose)?;
         plan.velocities(q_dot, &mut self.pose);
@@ -109,7 +111,7 @@ impl RowEvaluator for SpaceEvaluator<'_> {
         match self.analysis {
             Analysis::Kinematics => Ok(()),
             Analysis::Statics | Analysis::Kinetostatics | Analysis::FreeMotion => {
-                self.evaluate_forces((t, [q, q_dot, q_ddot]), &sample.drive_magnitudes)
+                self.evaluate_forces(t, state, &sample.drive_magnitudes)
             }
         }
     }

@@ -128,8 +128,8 @@ impl SpaceFigures<'_> {
         let moments = charts.columns_where(|c| matches!(c.quantity, Quantity::MomentMagnitude(_)));
         let forces = charts.labelled(&forces, ".magnitude");
         let moments = charts.labelled(&moments, ".moment-magnitude");
-        let mut panels = charts.even_charts(("Magnitudes of joint forces", "force"), forces);
-        panels.extend(charts.even_charts(("Magnitudes of joint moments", "moment"), moments));
+        let mut panels = charts.even_charts("Magnitudes of joint forces", "force", forces);
+        panels.extend(charts.even_charts("Magnitudes of joint moments", "moment", moments));
         let text = "The force of each joint's first body on its second, and the moment about the joint's point of the second.";
         (!panels.is_empty()).then(|| charts.figure("reactions", "Joint reactions", text, panels))
     }

@@ -70,8 +70,8 @@ fn arrows(
             .map(|b| scene.mechanism.bodies[b.0].name.as_str());
         let title = format!("{}: force of {one} on {two}", joint.name);
         let at = anchor(joint.side_body(1), joint.sides[1].point);
-        let force = (at, Direction::Components { columns });
-        Some(force_arrow("Reactions", &joint.name, title, force))
+        let direction = Direction::Components { columns };
+        Some(force_arrow("Reactions", &joint.name, title, at, direction))
     };
     joints.filter_map(arrow).collect()
 }

@@ -86,10 +86,13 @@ impl RowScene for SpaceScene {
                     }
                 };
                 let magnitude = &self.loads[load].magnitude;
-                let coordinates = (|c| self.name_of(c), |c: Coordinate| c.is_angle());
-                off_table_error(self, magnitude, coordinates, (load, value), &at).unwrap_or_else(
-                    || explain_loads(self, plan, &KinetostaticsError::MagnitudeNotFinite { load }),
-                )
+                let name_of = |c| self.name_of(c);
+                let is_angle = |c: Coordinate| c.is_angle();
+                off_table_error(self, magnitude, name_of, is_angle, load, value, &at)
+                    .unwrap_or_else(|| {
+                        let error = KinetostaticsError::MagnitudeNotFinite { load };
+                        explain_loads(self, plan, &error)
+                    })
             }
             // Couplings stand in scenes of the plane alone.
             StopCause::Discontinuity { .. } => {

@@ -45,7 +45,8 @@ impl Totals {
         &mut self,
         scene: &SpaceScene,
         bodies: &[(Placement, BodyMotion)],
-        (tau, q_dot): (&[f64], &[f64]),
+        tau: &[f64],
+        q_dot: &[f64],
     ) {
         let (mut force, mut moment) = (Vec3::ZERO, Vec3::ZERO);
         let [mut rate, mut energy, mut scale] = [0.0; 3];
@@ -89,7 +90,8 @@ impl Totals {
     pub(super) fn evaluate_loads(
         &mut self,
         model: &Model,
-        (t, [q, q_dot, q_ddot]): (f64, [&[f64]; 3]),
+        t: f64,
+        [q, q_dot, q_ddot]: [&[f64]; 3],
         given: &[(usize, f64)],
         workspace: &mut Workspace<f64>,
         results: &mut InverseDynamics<f64>,

@@ -62,7 +62,7 @@ impl SpaceDrawing<'_> {
                     body,
                     ..
                 } => {
-                    scenery.link(*look, ends, (axis, *body));
+                    scenery.link(*look, ends, axis, *body);
                 }
                 Part::Mark(mark) => scenery.mark(mark),
             }
@@ -102,8 +102,8 @@ impl<'a> Scenery<'a> {
         Shape::line(ends.map(|end| self.picture.view.place(end)).to_vec(), pen)
     }
 
-    /// A bar, which interrupts the lines behind it.
-    fn bar(&mut self, ends: [Vec3; 2], (color, width): (Paint, f64), name: Option<&str>) {
+    /// A bar, which interrupts what it passes in front of.
+    fn bar(&mut self, ends: [Vec3; 2], color: Paint, width: f64, name: Option<&str>) {
         let view = self.picture.view;
         let between = |part: f64| ends[0] + (ends[1] - ends[0]).scaled(part);
         let line = |parts: [f64; 2], pen| {
@@ -132,7 +132,7 @@ impl<'a> Scenery<'a> {
         let ends = [points[0], points[1]];
         match look {
             OutlineLook::Guide => {
-                self.bar(ends, (color, ROD), None);
+                self.bar(ends, color, ROD, None);
                 if body == self.drawing.scene.mechanism.ground {
                     self.wall(ends[0], ends[0] - ends[1]);
                     self.wall(ends[1], ends[1] - ends[0]);
@@ -148,19 +148,19 @@ impl<'a> Scenery<'a> {
                 self.picture.add(view.nearness(middle), vec![plate]);
                 for k in 0..points.len() {
                     let edge = [points[k], points[(k + 1) % points.len()]];
-                    self.bar(edge, (color, BAR), self.name(body));
+                    self.bar(edge, color, BAR, self.name(body));
                 }
             }
             OutlineLook::Arm => {
                 let line = self.segment(ends, Pen::new(color, 1.6));
                 self.picture.add(f64::INFINITY, vec![line]);
             }
-            _ => self.bar(ends, (color, BAR), self.name(body)),
+            _ => self.bar(ends, color, BAR, self.name(body)),
         }
     }
 
-    /// A rod, or the symbol of a drive or load along a distance.
-    fn link(&mut self, look: LinkLook, ends: &[Anchor; 2], (axis, body): (&[f64], Option<usize>)) {
+    /// A rod, or what drives or loads a distance.
+    fn link(&mut self, look: LinkLook, ends: &[Anchor; 2], axis: &[f64], body: Option<usize>) {
         let (view, unit) = (self.picture.view, self.drawing.unit);
         let in_space = [0, 1].map(|k| self.place(&ends[k]));
         let [a, b] = in_space.map(|end| view.place(end));
@@ -174,7 +174,7 @@ impl<'a> Scenery<'a> {
                 let ends = [apart.min(0.0) - margin, apart.max(0.0) + margin];
                 let ends = ends.map(|s| at + axis.scaled(s));
                 let color = body.map_or(Paint::Grey, |body| self.drawing.color(body));
-                return self.bar(ends, (color, ROD), None);
+                return self.bar(ends, color, ROD, None);
             }
             // Beside the rod, from one of its ends towards the other.
             LinkLook::Drive => {
@@ -195,7 +195,7 @@ impl<'a> Scenery<'a> {
             }
             LinkLook::Damper => (middle, Shape::line(vec![a, b], pen.dashed())),
             LinkLook::Rod | LinkLook::Cylinder => {
-                return self.bar(in_space, (Paint::Grey, ROD), None);
+                return self.bar(in_space, Paint::Grey, ROD, None);
             }
         };
         self.picture.add(near, vec![line]);

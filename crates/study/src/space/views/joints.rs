@@ -32,15 +32,15 @@ impl Scenery<'_> {
         match mark.look {
             MarkLook::Hinge => {
                 self.center_line(at, axes.axis);
-                self.cylinder(at, &axes, [HINGE_RADIUS * unit, unit], (color, name));
+                self.cylinder(at, &axes, [HINGE_RADIUS * unit, unit], color, name);
             }
             MarkLook::Ball => self.ball(at, BALL_RADIUS),
             MarkLook::RodEnd => self.ball(at, 0.75 * BALL_RADIUS),
             MarkLook::Weld => self.ball(at, 0.4),
             MarkLook::Cross => self.ball(at, 0.3),
-            MarkLook::Sleeve => self.cylinder(at, &axes, sleeve, (color, None)),
+            MarkLook::Sleeve => self.cylinder(at, &axes, sleeve, color, None),
             MarkLook::Screw | MarkLook::LeftScrew => {
-                self.cylinder(at, &axes, sleeve, (color, None));
+                self.cylinder(at, &axes, sleeve, color, None);
                 let thread = thread(&view, at, &axes, sleeve, mark.look == MarkLook::Screw);
                 self.picture.add(self.before(at), vec![thread]);
             }
@@ -56,7 +56,7 @@ impl Scenery<'_> {
                 let plane = block(&view, foot, &axes, PLATE.map(|s| s * unit), color, None);
                 self.picture.add(self.before(at) - unit, plane);
             }
-            MarkLook::Disc => self.cylinder(at, &axes, [unit, 0.3 * unit], (color, None)),
+            MarkLook::Disc => self.cylinder(at, &axes, [unit, 0.3 * unit], color, None),
             // The normal of the teeth, through the pitch point.
             MarkLook::Teeth => {
                 let ends = [-0.9, 0.9].map(|s| at + axes.axis.scaled(s * unit));
@@ -97,8 +97,15 @@ impl Scenery<'_> {
         self.picture.view.nearness(at) + BEFORE * self.drawing.unit
     }
 
-    fn cylinder(&mut self, at: Vec3, axes: &Axes, size: [f64; 2], paint: (Paint, Option<&str>)) {
-        let shapes = cylinder(&self.picture.view, at, axes, size, paint);
+    fn cylinder(
+        &mut self,
+        at: Vec3,
+        axes: &Axes,
+        size: [f64; 2],
+        color: Paint,
+        name: Option<&str>,
+    ) {
+        let shapes = cylinder(&self.picture.view, at, axes, size, color, name);
         self.picture.add(self.before(at), shapes);
     }
 

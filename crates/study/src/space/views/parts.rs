@@ -119,7 +119,7 @@ impl SpaceParts<'_> {
     }
 
     /// A mark of a joint on its `k`th body, along the axes of one of its bodies and in the colour of one.
-    fn mark(&self, look: MarkLook, (j, k): (usize, usize), [of, colored]: [usize; 2]) -> Mark {
+    fn mark(&self, look: MarkLook, j: usize, k: usize, [of, colored]: [usize; 2]) -> Mark {
         let mechanism = &self.drawing.scene.mechanism;
         let joint = &mechanism.joints[j];
         let [one, two] = joint.bodies.map(|b| mechanism.bodies[b.0].name.as_str());
@@ -196,18 +196,17 @@ impl SpaceParts<'_> {
             // A block on its guide: a hatched line of the ground, or a rod of the other body.
             JointKind::Prismatic => {
                 ground.clear();
-                match is_ground(on) {
-                    true => {
-                        ground.extend(self.guide_ends(j).map(|end| anchor(joint.bodies[on], end)));
-                    }
-                    false => self.guide(j),
+                if is_ground(on) {
+                    ground.extend(self.guide_ends(j).map(|end| anchor(joint.bodies[on], end)));
+                } else {
+                    self.guide(j);
                 }
                 (MarkLook::Slide, 1 - on, [on, 1 - on])
             }
             JointKind::Universal => {
                 ground.clear();
                 for k in 0..2 {
-                    let fork = self.mark(MarkLook::Fork, (j, 1), [k, k]);
+                    let fork = self.mark(MarkLook::Fork, j, 1, [k, k]);
                     self.add(Mark {
                         normal: coordinates(self.drawing.stem(j, k)),
                         ground: if is_ground(k) {
@@ -221,11 +220,11 @@ impl SpaceParts<'_> {
                 (MarkLook::Cross, 1, [0, 1])
             }
             JointKind::Planar => {
-                self.add(self.mark(MarkLook::Plate, (j, 1), [0, 0]));
+                self.add(self.mark(MarkLook::Plate, j, 1, [0, 0]));
                 (MarkLook::Disc, 1, [0, 1])
             }
             JointKind::PointInPlane => {
-                self.add(self.mark(MarkLook::Plate, (j, 1), [0, 0]));
+                self.add(self.mark(MarkLook::Plate, j, 1, [0, 0]));
                 (MarkLook::Ball, 1, [0, 1])
             }
             JointKind::PointOnLine => {
@@ -240,7 +239,7 @@ impl SpaceParts<'_> {
                 let ground = |k: usize| is_ground(k).then(|| self.middle(joint.bodies[1]));
                 let ball = |k: usize| Mark {
                     ground: ground(k).into_iter().collect(),
-                    ..self.mark(MarkLook::RodEnd, (j, k), [0, 1])
+                    ..self.mark(MarkLook::RodEnd, j, k, [0, 1])
                 };
                 let [first, second] = [0, 1].map(ball);
                 self.add(first);
@@ -252,7 +251,7 @@ impl SpaceParts<'_> {
                 (MarkLook::Teeth, 1, [0, 1])
             }
         };
-        let mark = self.mark(look, (j, k), axes);
+        let mark = self.mark(look, j, k, axes);
         self.parts.push(Part::Mark(Mark { ground, ..mark }));
     }
 
@@ -290,7 +289,7 @@ impl SpaceParts<'_> {
                 return self.link(LinkLook::Drive, [0, 1].map(|k| self.at(j, k)), name);
             }
         };
-        self.add(self.mark(look, (j, 1), [0, 1]));
+        self.add(self.mark(look, j, 1, [0, 1]));
     }
 }
 

@@ -21,9 +21,10 @@ pub(super) fn paths(
     let same = drawing.same;
     let listed = &drawing.scene.requests.paths;
     let requested = listed.iter().map(|path| (path.body, path.at));
-    let points = match listed.is_empty() {
-        true => local_points(drawing.scene),
-        false => requested.collect(),
+    let points = if listed.is_empty() {
+        local_points(drawing.scene)
+    } else {
+        requested.collect()
     };
     for point in points {
         let path: Vec<Vec3> = all

@@ -96,9 +96,10 @@ impl SpacePositions<'_> {
             views.panel(View::SIDE, "Side view, from the right", ["y", "z"]),
         ];
         let mut loads = self.scene.loads.iter();
-        let springs = match loads.any(|load| link_of(&load.kind).is_some()) {
-            true => SPRINGS,
-            false => "",
+        let springs = if loads.any(|load| link_of(&load.kind).is_some()) {
+            SPRINGS
+        } else {
+            ""
         };
         let rare = rare_joints(self.scene);
         let text = format!("Drawn at {}. {CAPTION}{rare}{springs}", self.drawn_at);
@@ -274,9 +275,10 @@ impl<'a> Views<'a> {
             [middle - 0.5 * width, middle + 0.5 * width]
         };
         let is_point = x1 - x0 < 1e-6 * self.width && y1 - y0 < 1e-6 * self.width;
-        let vertical = match is_point {
-            true => about(y0, y1, HEIGHT * self.width),
-            false => [y0, y1],
+        let vertical = if is_point {
+            about(y0, y1, HEIGHT * self.width)
+        } else {
+            [y0, y1]
         };
         [about(x0, x1, self.width), vertical]
     }

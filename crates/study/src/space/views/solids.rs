@@ -49,7 +49,8 @@ pub(super) fn named(shape: Shape, name: Option<&str>) -> Shape {
 /// An opaque face with its edge; the name goes with the face.
 pub(super) fn face(
     points: Vec<[f64; 2]>,
-    (color, lightness): (Paint, f64),
+    color: Paint,
+    lightness: f64,
     edge: Paint,
     name: Option<&str>,
 ) -> [Shape; 2] {
@@ -79,17 +80,19 @@ pub(super) fn cylinder(
     at: Vec3,
     axes: &Axes,
     [radius, half]: [f64; 2],
-    (color, name): (Paint, Option<&str>),
+    color: Paint,
+    name: Option<&str>,
 ) -> Vec<Shape> {
     let ends = [-half, half].map(|s| at + axes.axis.scaled(s));
     let outline = ends.iter().flat_map(|end| rim(view, *end, axes, radius));
-    let mut shapes = face(hull(outline.collect()), (color, SIDE), Paint::Ink, name).to_vec();
+    let mut shapes = face(hull(outline.collect()), color, SIDE, Paint::Ink, name).to_vec();
     let nearest = ends[usize::from(view.nearness(ends[1]) > view.nearness(ends[0]))];
     // Seen exactly from the side it has no end.
     if view.length(axes.axis) < 0.999 {
         shapes.extend(face(
             rim(view, nearest, axes, radius),
-            (color, FACE),
+            color,
+            FACE,
             Paint::Ink,
             name,
         ));
@@ -115,9 +118,10 @@ pub(super) fn thread(
         let rim = axes.rim(sign * TAU * TURNS * part, radius);
         let is_seen = view.nearness(rim) > 0.0;
         let p = at + rim + axes.axis.scaled(half * (2.0 * part - 1.0));
-        match is_seen {
-            true => view.place(p),
-            false => [f64::NAN; 2],
+        if is_seen {
+            view.place(p)
+        } else {
+            [f64::NAN; 2]
         }
     };
     Shape::line((0..=STEPS).map(point).collect(), Pen::new(Paint::Ink, EDGE))
@@ -151,7 +155,8 @@ pub(super) fn block(
             let lightness = 0.45 + 0.3 * facing;
             shapes.extend(face(
                 square.map(corner).to_vec(),
-                (color, lightness),
+                color,
+                lightness,
                 Paint::Ink,
                 name,
             ));
@@ -165,7 +170,7 @@ pub(super) fn ball(view: &View, at: Vec3, radius: f64) -> Vec<Shape> {
     let [x, y] = view.place(at);
     let round =
         |offset: f64, radius: f64| arc([x - offset, y + offset], radius, [0.0, 1.0], CORNERS);
-    let mut shapes = face(round(0.0, radius), (Paint::Grey, 0.45), Paint::Ink, None).to_vec();
+    let mut shapes = face(round(0.0, radius), Paint::Grey, 0.45, Paint::Ink, None).to_vec();
     let light = [(0.12, 0.72, 0.62), (0.22, 0.48, 0.8), (0.3, 0.22, 0.97)];
     shapes.extend(light.map(|(offset, size, lightness)| {
         let pen = Pen::new(Paint::Grey, 1.0).lightness(lightness);
@@ -191,7 +196,7 @@ fn arc([x, y]: [f64; 2], radius: f64, [from, part]: [f64; 2], corners: usize) ->
 /// The mark of a centre of mass: a disc of four quarters.
 pub(super) fn center_of_mass(at: [f64; 2], radius: f64) -> Vec<Shape> {
     let outline = circle(at, radius);
-    let mut shapes = face(outline, (Paint::Ink, 1.0), Paint::Ink, None).to_vec();
+    let mut shapes = face(outline, Paint::Ink, 1.0, Paint::Ink, None).to_vec();
     shapes.extend([0.0, 0.5].map(|start| {
         let mut quarter = arc(at, radius, [TAU * start, 0.25], CORNERS + 1);
         quarter.push(at);

@@ -94,8 +94,8 @@ impl Axis {
         }
     }
 
-    /// Its value: the one at `index`, or, if it is random, that of a `sample` of axis `number`.
-    pub(crate) fn value(&self, index: u64, (seed, number, sample): (u64, u32, u64)) -> f64 {
+    /// Its value: the one at `index`, or if it is random that of a `sample` of axis `number`.
+    pub(crate) fn value(&self, index: u64, seed: u64, number: u32, sample: u64) -> f64 {
         match &self.kind {
             // Exact at the end.
             VariationKind::Grid { to, count, .. } if index + 1 == *count => *to,
@@ -130,10 +130,10 @@ fn number(text: &str) -> Result<f64, Fault> {
     let text = text.trim();
     let not_a_number = |_| fault(format!("`{text}` is not a number"), FORMS);
     let value: f64 = text.parse().map_err(not_a_number)?;
-    match value.is_finite() {
-        true => Ok(value),
-        false => Err(fault(format!("{value} is not finite"), FORMS)),
+    if value.is_finite() {
+        return Ok(value);
     }
+    Err(fault(format!("{value} is not finite"), FORMS))
 }
 
 /// `FROM:TO:COUNT`, the ends among them.

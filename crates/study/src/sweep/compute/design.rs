@@ -78,7 +78,7 @@ impl Design {
         let mut rest = k / self.samples;
         let mut values = vec![0.0; self.axes.len()];
         for (number, (axis, value)) in self.axes.iter().zip(&mut values).enumerate().rev() {
-            *value = axis.value(rest % axis.count(), (self.seed, number as u32, sample));
+            *value = axis.value(rest % axis.count(), self.seed, number as u32, sample);
             rest /= axis.count();
         }
         values

@@ -108,8 +108,8 @@ impl AffineNumbers {
     }
 }
 
-/// A place in the range of an axis and of the scene's own number, by the axis and the attempt.
-fn place(axis: &Axis, nominal: f64, (number, attempt): (usize, usize), displacement: f64) -> f64 {
+/// A place in the range of an axis and of the scene's own number, by the number of the axis and of the attempt.
+fn place(axis: &Axis, nominal: f64, number: usize, attempt: usize, displacement: f64) -> f64 {
     let [from, to] = axis.span();
     let (from, to) = (from.min(nominal), to.max(nominal));
     let typical = ((number + 1) as f64 * GOLDEN + attempt as f64 * GOLDEN * GOLDEN).fract();
@@ -170,7 +170,7 @@ impl VariantFamily {
     ) -> Option<Self> {
         let at = |number: usize, axis: &Axis, which: usize| {
             let nominal = scene.value(&axis.path).unwrap_or_default();
-            place(axis, nominal, (number, attempt), PLACES[which])
+            place(axis, nominal, number, attempt, PLACES[which])
         };
         let all_at = |which: usize| -> Vec<f64> {
             let axes = design.axes.iter().enumerate();
@@ -236,7 +236,7 @@ impl VariantFamily {
                     Some(forces) => Some(forces.peaks(variant)?),
                     None => None,
                 };
-                Some(self.values((variant.turn, peaks.as_ref()), velocity, quantities))
+                Some(self.values(variant.turn, peaks.as_ref(), velocity, quantities))
             });
             // Of a start from rest the old way knows what to say.
             let finite = |values: &Vec<f64>| {
@@ -251,7 +251,8 @@ impl VariantFamily {
     /// The values of the quantities, for a start with this velocity, rad/s.
     fn values(
         &self,
-        (turn, peaks): (&Turn, Option<&InverseDynamics<f64>>),
+        turn: &Turn,
+        peaks: Option<&InverseDynamics<f64>>,
         velocity: f64,
         quantities: &[SweepQuantity],
     ) -> Vec<f64> {

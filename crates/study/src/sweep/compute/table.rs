@@ -44,8 +44,8 @@ pub fn compute_sweep(
         if interruption::is_requested() {
             return rows;
         }
-        let study = (scene, &design, family.as_ref());
-        requested.points(study, block, &mut |row| rows.push(row));
+        let mut keep = |row| rows.push(row);
+        requested.points(scene, &design, family.as_ref(), block, &mut keep);
         progress(Step {
             total,
             done: "points",
@@ -93,7 +93,9 @@ impl RequestedQuantities {
     /// compilations if there is no family or a point does not fit it.
     pub(crate) fn points(
         &self,
-        (scene, design, family): (&impl SweptScene, &Design, Option<&VariantFamily>),
+        scene: &impl SweptScene,
+        design: &Design,
+        family: Option<&VariantFamily>,
         indices: &[u64],
         done: &mut dyn FnMut(Row),
     ) {

@@ -209,10 +209,10 @@ impl PartFile {
     }
 
     fn check(&self, column: usize, checksum: &str) -> Result<(), PartFault> {
-        match self.checksums[column] == checksum {
-            true => Ok(()),
-            false => Err(PartFault::Damaged("the checksum of a column differs")),
+        if self.checksums[column] == checksum {
+            return Ok(());
         }
+        Err(PartFault::Damaged("the checksum of a column differs"))
     }
 
     fn column(&self, column: usize) -> Result<ColumnReader, PartFault> {

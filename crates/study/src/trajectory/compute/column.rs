@@ -112,9 +112,10 @@ impl Column {
 
 /// The units of a coordinate, its velocity and its acceleration.
 pub(crate) fn units(is_angle: bool) -> [&'static str; 3] {
-    match is_angle {
-        true => ["rad", "rad/s", "rad/s2"],
-        false => ["m", "m/s", "m/s2"],
+    if is_angle {
+        ["rad", "rad/s", "rad/s2"]
+    } else {
+        ["m", "m/s", "m/s2"]
     }
 }
 
@@ -167,7 +168,8 @@ impl ColumnList {
     pub(crate) fn add_actuator(
         &mut self,
         i: usize,
-        (name, is_angle): (&str, bool),
+        name: &str,
+        is_angle: bool,
         [meaning, force]: [&str; 2],
     ) {
         let coordinate = |order| Quantity::ActuatorCoordinate(i, order);
@@ -187,15 +189,17 @@ impl ColumnList {
         if let Some((unit, meaning)) = force {
             let kind = if unit == "N" { "force" } else { "moment" };
             let name = format!("{name}.load_{kind}");
-            let meaning = match is_drive {
-                true => format!("{meaning}; without what accelerates the drive's rotor"),
-                false => meaning.to_owned(),
+            let meaning = if is_drive {
+                format!("{meaning}; without what accelerates the drive's rotor")
+            } else {
+                meaning.to_owned()
             };
             self.add(name, unit, Quantity::LoadForce(k), meaning);
         }
-        let meaning = match is_drive {
-            true => "power of the drive on all bodies, without what its rotor takes",
-            false => "power of the load on all bodies",
+        let meaning = if is_drive {
+            "power of the drive on all bodies, without what its rotor takes"
+        } else {
+            "power of the load on all bodies"
         };
         self.add(
             format!("{name}.power"),

@@ -9,8 +9,8 @@ pub(crate) fn all_columns<S: RowScene>(scene: &S, rows: &S::Rows, timed: bool) -
     let mut list = ColumnList::new(timed);
     for i in 0..scene.assembly_coordinates().len() {
         let [meaning, force] = scene.actuator_meanings(i);
-        let of = scene.actuator(i).unwrap_or_default();
-        list.add_actuator(i, of, [&meaning, &force]);
+        let (name, is_angle) = scene.actuator(i).unwrap_or_default();
+        list.add_actuator(i, name, is_angle, [&meaning, &force]);
     }
     for (k, measured) in scene.measured(model).into_iter().enumerate() {
         if measured.function.is_some() {

@@ -26,10 +26,11 @@ pub(super) enum Sharp {
 pub(super) fn sharp_maxima(
     parts: &[&[Point]],
     sign: f64,
-    (largest, scale): (f64, f64),
+    largest: f64,
+    scale: f64,
 ) -> Vec<(f64, Sharp)> {
     let slope = |[a, b]: [Point; 2]| sign * (b[1] - a[1]) / (b[0] - a[0]);
-    let mut best: [Option<(f64, f64, Sharp)>; 2] = [None; 2];
+    let mut best: [Option<SharpMaximum>; 2] = [None; 2];
     let wanted = largest + MIN_GAIN * scale;
     // By `for_each`, which is a loop for each part.
     let all = parts.iter().flat_map(|part| part.windows(6));
@@ -44,6 +45,12 @@ pub(super) fn sharp_maxima(
             return;
         }
         let [low_value, high_value] = [sign * low[1], sign * high[1]];
+        let value = low_value.max(high_value);
+        let maximum = |reach, sharp| SharpMaximum {
+            reach,
+            value,
+            sharp,
+        };
         let [before, rise, after] = [[six[1], low], [low, high], [high, six[4]]].map(slope);
         let changes = [
             slope([six[0], six[1]]) - before,
@@ -56,31 +63,35 @@ pub(super) fn sharp_maxima(
         let [onward, backward] = [low_value + before * width, high_value - after * width];
         if (rise - 0.5 * (before + after)).abs() > SHARP * change.max(before.abs()).max(after.abs())
         {
-            let reach = low_value.max(high_value).max(onward).max(backward);
-            let found = (
-                reach,
-                low_value.max(high_value),
-                Sharp::Jump([low, high].map(signed)),
-            );
-            take(&mut best[1], found, wanted);
+            let reach = value.max(onward).max(backward);
+            let sharp = Sharp::Jump([low, high].map(signed));
+            take(&mut best[1], maximum(reach, sharp), wanted);
         } else if before - after > SHARP * change && before > 0.0 && after < 0.0 {
             let reach =
                 low_value + before * (high_value - low_value - after * width) / (before - after);
-            let bracket = match low_value >= high_value {
-                true => (signed(six[1]), Some(signed(low)), signed(high)),
-                false => (signed(low), Some(signed(high)), signed(six[4])),
+            let bracket = if low_value >= high_value {
+                (signed(six[1]), Some(signed(low)), signed(high))
+            } else {
+                (signed(low), Some(signed(high)), signed(six[4]))
             };
-            let found = (reach, low_value.max(high_value), Sharp::Corner(bracket));
-            take(&mut best[0], found, wanted);
+            take(&mut best[0], maximum(reach, Sharp::Corner(bracket)), wanted);
         }
     });
     let found = best.into_iter().flatten();
-    found.map(|(_, value, sharp)| (value, sharp)).collect()
+    found.map(|found| (found.value, found.sharp)).collect()
 }
 
-/// Keeps the higher of two candidates, if it is above the required value.
-fn take(best: &mut Option<(f64, f64, Sharp)>, found: (f64, f64, Sharp), wanted: f64) {
-    if found.0 > wanted && best.is_none_or(|best| found.0 > best.0) {
+/// Where a maximum may be, how high it may be there, and a value next to it.
+#[derive(Clone, Copy)]
+struct SharpMaximum {
+    reach: f64,
+    value: f64,
+    sharp: Sharp,
+}
+
+/// The one that may be higher, if that is above what is wanted.
+fn take(best: &mut Option<SharpMaximum>, found: SharpMaximum, wanted: f64) {
+    if found.reach > wanted && best.is_none_or(|best| found.reach > best.reach) {
         *best = Some(found);
     }
 }
@@ -96,9 +107,10 @@ pub(super) fn side_of_jump(
             break;
         }
         let middle = [u, value(u)?];
-        match (middle[1] - low[1]).abs() < (high[1] - middle[1]).abs() {
-            true => low = middle,
-            false => high = middle,
+        if (middle[1] - low[1]).abs() < (high[1] - middle[1]).abs() {
+            low = middle;
+        } else {
+            high = middle;
         }
     }
     Some(if high[1] > low[1] { high } else { low })
@@ -117,21 +129,21 @@ mod tests {
     #[test]
     fn a_corner_between_points_is_found() {
         let all = points(|u| -(u + 0.3).sin().abs());
-        let found = sharp_maxima(&[&all], 1.0, (-0.05, 1.0));
+        let found = sharp_maxima(&[&all], 1.0, -0.05, 1.0);
         let [(_, Sharp::Corner((a, _, b)))] = found[..] else {
             panic!("{found:?}");
         };
         let at = std::f64::consts::PI - 0.3;
         assert!(a[0] < at && at < b[0], "{a:?} {b:?}");
-        assert!(sharp_maxima(&[&points(f64::sin)], 1.0, (0.9, 1.0)).is_empty());
-        assert!(sharp_maxima(&[&points(f64::sin)], -1.0, (-2.0, 1.0)).is_empty());
+        assert!(sharp_maxima(&[&points(f64::sin)], 1.0, 0.9, 1.0).is_empty());
+        assert!(sharp_maxima(&[&points(f64::sin)], -1.0, -2.0, 1.0).is_empty());
     }
 
     /// A curve that rises to 1 at u = 1.234 and falls to −1 there.
     #[test]
     fn the_side_of_a_jump_is_found() {
         let f = |u: f64| if u < 1.234 { u / 1.234 } else { -1.0 };
-        let found = sharp_maxima(&[&points(f)], 1.0, (f(1.2), 1.0));
+        let found = sharp_maxima(&[&points(f)], 1.0, f(1.2), 1.0);
         let [(_, Sharp::Jump(pair))] = found[..] else {
             panic!("{found:?}");
         };

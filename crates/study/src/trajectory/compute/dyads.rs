@@ -33,11 +33,10 @@ impl Dyad {
     }
 
     pub(crate) fn meaning(&self) -> &'static str {
-        match self.lines.iter().any(|line| line.is_normal) {
-            false => "transmission angle between the lines of the two bodies at their pin",
-            true => {
-                "transmission angle between the rod and the normal of the guide; the pressure angle is 90° minus it"
-            }
+        if self.lines.iter().any(|line| line.is_normal) {
+            "transmission angle between the rod and the normal of the guide; the pressure angle is 90° minus it"
+        } else {
+            "transmission angle between the lines of the two bodies at their pin"
         }
     }
 }

@@ -93,9 +93,10 @@ impl<'a> PlaneStop<'a> {
                 let unreachable =
                     plan.actuators() == 1 && unreachable_error(plan, start[0], q[0]).is_some();
                 let is_reached = !unreachable && plan.positions(&q, &mut pose).is_ok();
-                match is_reached {
-                    true => low = middle,
-                    false => high = middle,
+                if is_reached {
+                    low = middle;
+                } else {
+                    high = middle;
                 }
             }
         }
@@ -113,9 +114,10 @@ impl<'a> PlaneStop<'a> {
     /// The error message, with its locations in the scene.
     fn explain(&self, scene: &PlaneScene) -> StudyError {
         let position = self.describe_position(scene);
-        let when = match self.has_begun {
-            true => format!("soon after {position}"),
-            false => format!("at the first position, {position}"),
+        let when = if self.has_begun {
+            format!("soon after {position}")
+        } else {
+            format!("at the first position, {position}")
         };
         match self.cause {
             StopCause::NoSolution(KinetostaticsError::Position(error)) => {
@@ -124,16 +126,13 @@ impl<'a> PlaneStop<'a> {
             StopCause::NoSolution(error) => explain_load(scene, error, &when),
             StopCause::OffTable { load, value } => {
                 let magnitude = &scene.loads[load].magnitude;
-                let coordinates = (|c| scene.name_of(c), |c: Coordinate| c.is_angle());
-                off_table_error(scene, magnitude, coordinates, (load, value), &when).unwrap_or_else(
-                    || {
-                        explain_load(
-                            scene,
-                            KinetostaticsError::MagnitudeNotFinite { load },
-                            &when,
-                        )
-                    },
-                )
+                let name_of = |c| scene.name_of(c);
+                let is_angle = |c: Coordinate| c.is_angle();
+                off_table_error(scene, magnitude, name_of, is_angle, load, value, &when)
+                    .unwrap_or_else(|| {
+                        let error = KinetostaticsError::MagnitudeNotFinite { load };
+                        explain_load(scene, error, &when)
+                    })
             }
             StopCause::Discontinuity { joint, between } => {
                 let name = &scene.mechanism.joints[joint.0].name;
@@ -158,15 +157,15 @@ impl<'a> PlaneStop<'a> {
         error: &PositionError,
     ) -> StudyError {
         let plan = self.plan;
-        if let Some(relation) = non_finite_coupling(&scene.mechanism, &self.first_failed.q) {
+        if let Some(fault) = non_finite_coupling(&scene.mechanism, &self.first_failed.q) {
             let at = if self.has_begun { "soon after" } else { "at" };
-            return non_finite_coupling_error(scene, relation, &format!("{at} {position}"));
+            return non_finite_coupling_error(scene, &fault, &format!("{at} {position}"));
         }
         if !self.has_begun {
             return self.explain_first_position(scene, position, error);
         }
-        let beyond = self.trajectory.location(scene);
-        let beyond = (beyond, "continues beyond it".to_owned());
+        let location = self.trajectory.location(scene);
+        let beyond = (location, "continues beyond it".to_owned());
         // Beyond the range on a side where no limit was found.
         if let PositionError::OutOfRange { q, to, .. } = *error
             && plan.range_limits()[usize::from(q > to)].is_none()
@@ -181,8 +180,8 @@ impl<'a> PlaneStop<'a> {
                 [beyond],
             );
         }
-        if let Some(limit) = self.limit(error) {
-            return self.explain_range_limit(scene, limit);
+        if let Some((limit, revolutions)) = self.limit(error) {
+            return self.explain_range_limit(scene, limit, revolutions);
         }
         let group = error.group();
         let group = group.or_else(|| diverging_group(plan, &self.last_reached.q));
@@ -223,9 +222,12 @@ impl<'a> PlaneStop<'a> {
         };
         let reached = self.last_reached.q[0];
         let turns = |limit: &RangeLimit| ((reached - limit.q) / TAU).round();
-        let distance = |limit: &RangeLimit| match self.plan.is_angle(0) {
-            true => (reached - limit.q - TAU * turns(limit)).abs(),
-            false => (reached - limit.q).abs(),
+        let distance = |limit: &RangeLimit| {
+            if self.plan.is_angle(0) {
+                (reached - limit.q - TAU * turns(limit)).abs()
+            } else {
+                (reached - limit.q).abs()
+            }
         };
         let limits = self.plan.range_limits().into_iter().flatten();
         let limit = limits.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
@@ -238,7 +240,8 @@ impl<'a> PlaneStop<'a> {
     fn explain_range_limit(
         &self,
         scene: &PlaneScene,
-        (limit, revolutions): (RangeLimit, f64),
+        limit: RangeLimit,
+        revolutions: f64,
     ) -> StudyError {
         let plan = self.plan;
         if let Some(coupling) = limit.table {
@@ -247,7 +250,7 @@ impl<'a> PlaneStop<'a> {
             let position = describe_coordinate(scene, name, q, plan.is_angle(0));
             return self.explain_table(scene, coupling, &position);
         }
-        let name = describe_limit((scene, &scene.mechanism), plan, limit, revolutions);
+        let name = describe_limit(scene, &scene.mechanism, plan, limit, revolutions);
         let when = match self.trajectory.swept_actuator() {
             Some(_) => String::new(),
             None => format!(" at t = {} s", digits(self.last_reached.t, 6)),
@@ -257,9 +260,10 @@ impl<'a> PlaneStop<'a> {
             (true, None) => "another assembly mode begins there",
             (false, _) => "the actuator cannot move on there",
         };
-        let joints = match limit.group < plan.group_methods().len() {
-            true => plan.group_joints(limit.group),
-            false => Vec::new(),
+        let joints = if limit.group < plan.group_methods().len() {
+            plan.group_joints(limit.group)
+        } else {
+            Vec::new()
         };
         let mut labels = joint_labels(&joints, "cannot stay joined beyond");
         let beyond = self.trajectory.location(scene);

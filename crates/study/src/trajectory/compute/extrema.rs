@@ -180,7 +180,7 @@ impl<E: RowEvaluator> ExtremaSearch<'_, E> {
             let column = |&(i, k): &(usize, usize)| {
                 let points = points.of_column(i, (self.values)(k)?, self.columns[k].unwraps);
                 let parts: Vec<&[Point]> = between_events(&points).collect();
-                let mut found = |sign| search.largest(k, sign, (&points, &parts), refined);
+                let mut found = |sign| search.largest(k, sign, &points, &parts, refined);
                 io::Result::Ok((k, [found(-1.0), found(1.0)], turns(&points)))
             };
             columns.iter().map(column).collect::<io::Result<Vec<_>>>()
@@ -229,7 +229,7 @@ impl<E: RowEvaluator> ExtremaSearch<'_, E> {
         let part = positions.len().div_ceil(rayon::current_num_threads());
         let parts = positions.par_chunks(part.max(1)).map(|positions| {
             let mut evaluators = evaluators.to_vec();
-            limit(&mut evaluators, (all, columns));
+            limit(&mut evaluators, all, columns);
             let mut found = Vec::with_capacity(positions.len());
             for (u, sample) in positions {
                 let Some(evaluator) = evaluated(trajectory, &mut evaluators, sample) else {
@@ -305,7 +305,8 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
     fn evaluate<const N: usize>(
         &mut self,
         columns: [usize; N],
-        (u, precision): (f64, SamplePrecision),
+        u: f64,
+        precision: SamplePrecision,
     ) -> Option<[f64; N]> {
         let sample = (self.sample)(u, precision)?;
         let evaluator = evaluated(self.trajectory, &mut self.evaluators, &sample)?;
@@ -317,10 +318,11 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         &mut self,
         k: usize,
         sign: f64,
-        (points, parts): (&[Point], &[&[Point]]),
+        points: &[Point],
+        parts: &[&[Point]],
         refined: usize,
     ) -> Option<Extremum> {
-        limit(&mut self.evaluators, (self.columns, &[k, self.abscissa]));
+        limit(&mut self.evaluators, self.columns, &[k, self.abscissa]);
         let (mut largest, mut scale) = (None::<Point>, 0.0);
         for &[u, value] in points {
             let signed = sign * value;
@@ -336,14 +338,12 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         let mut found: Vec<(Point, Option<f64>)> = vec![(largest, None)];
         let unwraps = self.columns[k].unwraps;
         let smooth = promising(parts, sign, largest[1], refined);
-        let smooth = smooth
-            .into_iter()
-            .map(|(near, bracket)| (near, Sharp::Corner(bracket)));
-        let sharp = sharp_maxima(parts, sign, (largest[1], scale));
-        for (near, place) in smooth.chain(sharp) {
+        let corner = |(near, bracket)| (near, Sharp::Corner(bracket));
+        let sharp = sharp_maxima(parts, sign, largest[1], scale);
+        for (near, place) in smooth.into_iter().map(corner).chain(sharp) {
             let columns = [k, self.abscissa];
             let mut value = |u: f64, precision: SamplePrecision| {
-                let [mut value, at] = self.evaluate(columns, (u, precision))?;
+                let [mut value, at] = self.evaluate(columns, u, precision)?;
                 if unwraps {
                     value += TAU * ((sign * near - value) / TAU).round();
                 }
@@ -366,7 +366,7 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         let ([u, value], at) = *first.min_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]))?;
         let at = match at {
             Some(at) => at,
-            None => self.evaluate([self.abscissa], (event_at(u, points), Exact))?[0],
+            None => self.evaluate([self.abscissa], event_at(u, points), Exact)?[0],
         };
         Some(Extremum {
             value: sign * value,
@@ -389,7 +389,7 @@ fn event_at(u: f64, points: &[Point]) -> f64 {
 }
 
 /// Only some of all columns are evaluated.
-fn limit(evaluators: &mut [impl RowEvaluator], (all, columns): (&[Column], &[usize])) {
+fn limit(evaluators: &mut [impl RowEvaluator], all: &[Column], columns: &[usize]) {
     for evaluator in evaluators {
         evaluator.limit_to(columns.iter().map(|&k| all[k].quantity));
     }

@@ -65,7 +65,7 @@ impl<'a> ForceEvaluator<'a> {
                     self.pose.clone_from(state.pose());
                 }
                 self.body_states.copy_from(state.bodies_at(q_ddot));
-                check_tables((model, self.has_tables), t, &self.body_states)?;
+                check_tables(model, self.has_tables, t, &self.body_states)?;
                 return Ok(None);
             }
             Analysis::Kinetostatics | Analysis::FreeMotion => {
@@ -82,7 +82,7 @@ impl<'a> ForceEvaluator<'a> {
         if self.analysis != Analysis::Statics {
             self.body_states.copy_from(state.bodies());
         }
-        check_tables((model, self.has_tables), t, state.bodies())?;
+        check_tables(model, self.has_tables, t, state.bodies())?;
         Ok(Some(state))
     }
 
@@ -101,7 +101,8 @@ impl<'a> ForceEvaluator<'a> {
 
 /// Fails at the first load of a model whose table, if any has one, does not cover the state of the bodies at time `t` (s).
 fn check_tables(
-    (model, has_tables): (&Model, bool),
+    model: &Model,
+    has_tables: bool,
     t: f64,
     states: &BodyStates,
 ) -> Result<(), StopCause> {

@@ -53,9 +53,10 @@ impl PlaneColumns<'_> {
         let scene = self.scene;
         let name = scene.mechanism.body_name(body);
         let force = format!("{}.actuator_force", scene.mechanism.actuators[0].name);
-        let [of_rotation, of_travel] = match self.plan.is_angle(0) {
-            true => ["", "1/m"],
-            false => ["m", ""],
+        let [of_rotation, of_travel] = if self.plan.is_angle(0) {
+            ["", "1/m"]
+        } else {
+            ["m", ""]
         };
         let meaning = format!(
             "mechanical advantage dq/dθ: output moment of {name} per unit of {force}, statically and without other \

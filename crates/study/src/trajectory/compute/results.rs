@@ -185,12 +185,11 @@ impl TrajectoryResults {
         let mut row = Vec::with_capacity(self.columns.len());
         for (column, last) in self.columns.iter().zip(&mut self.last_angles) {
             let value = evaluator.value(column.quantity, sample);
-            row.push(match column.unwraps {
-                true => {
-                    let speed = evaluator.angular_velocity(column.quantity);
-                    unwrap_angle(last, value, speed, sample.t)
-                }
-                false => value,
+            row.push(if column.unwraps {
+                let speed = evaluator.angular_velocity(column.quantity);
+                unwrap_angle(last, value, speed, sample.t)
+            } else {
+                value
             });
         }
         row
@@ -236,7 +235,8 @@ impl TrajectoryResults {
         &mut self,
         trajectory: &Trajectory<'_>,
         early_stop: Option<StudyError>,
-        (size, evaluators): (f64, &[impl RowEvaluator]),
+        size: f64,
+        evaluators: &[impl RowEvaluator],
         between: Option<MotionBetweenRows<'_>>,
     ) -> Result<Option<StudyError>, StudyError> {
         match early_stop {

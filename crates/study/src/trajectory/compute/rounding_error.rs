@@ -28,13 +28,8 @@ pub struct LargestErrors {
 }
 
 impl LargestErrors {
-    /// The estimate for a trajectory of this number of positions; `None` for a free motion, whose error is that of its
-    /// integration.
-    fn new(
-        (analysis, points): (Analysis, usize),
-        size: f64,
-        is_force: [Vec<bool>; 2],
-    ) -> Option<Self> {
+    /// For a trajectory of so many positions; none of a free motion, whose error is that of its integration.
+    fn new(analysis: Analysis, points: usize, size: f64, is_force: [Vec<bool>; 2]) -> Option<Self> {
         // WebAssembly has no fused multiply–add, on which these numbers are built: the estimate would take most of the time.
         let is_estimated = !cfg!(target_family = "wasm") && analysis != Analysis::FreeMotion;
         is_estimated.then(|| Self {
@@ -115,14 +110,15 @@ impl<M: TableModel> RoundingError<M> {
     /// The estimate for a trajectory of this number of positions; `None` for a free motion.
     pub(super) fn new(
         evaluator: &impl RowEvaluator<Model = M>,
-        of: (Analysis, usize),
+        analysis: Analysis,
+        points: usize,
     ) -> Option<Self> {
         let model = evaluator.model();
         let actuators = (0..model.actuators()).map(|i| !model.is_angle(i));
         let reactions = (0..evaluator.result_reactions()).map(|k| model.reaction_unit(k) == "N");
         let is_force = [actuators.collect(), reactions.collect()];
         Some(Self {
-            largest: LargestErrors::new(of, model.size(), is_force)?,
+            largest: LargestErrors::new(analysis, points, model.size(), is_force)?,
             precise: model.pass_workspace(),
         })
     }
@@ -130,7 +126,8 @@ impl<M: TableModel> RoundingError<M> {
     /// Adds position `k`, a sample that was evaluated last, with the loads at time `t`, if it is one of those evaluated again.
     pub(super) fn add_position(
         &mut self,
-        (k, t): (usize, f64),
+        k: usize,
+        t: f64,
         sample: &TrajectorySample,
         evaluator: &impl RowEvaluator<Model = M>,
     ) {

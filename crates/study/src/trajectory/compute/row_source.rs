@@ -88,19 +88,19 @@ impl<'s: 'r, 'r, S: RowScene> RowSource<'s, 'r, S> {
         let mut results = self.results(rows, &trajectory);
         results.keep_rows_in(self.storage, trajectory.points)?;
         let mut evaluators = self.evaluators(rows, &trajectory, &results.columns)?;
-        let of = (trajectory.analysis, trajectory.points);
-        let mut rounding = RoundingError::new(&evaluators[0], of);
+        let (analysis, points) = (trajectory.analysis, trajectory.points);
+        let mut rounding = RoundingError::new(&evaluators[0], analysis, points);
         let early_stop = self.evaluate(&trajectory, &mut evaluators, |k, t, evaluator, sample| {
             results.add_position(k, evaluator, sample);
             if let Some(rounding) = &mut rounding {
-                rounding.add_position((k, t), sample, evaluator);
+                rounding.add_position(k, t, sample, evaluator);
             }
             trajectory.report(k, progress);
         });
         let early_stop = early_stop.map(|stop| scene.explain_stop(model, stop));
         results.rounding_error = rounding.map(|error| error.max_relative());
-        let of = (model.size(), &evaluators[..]);
-        let early_stop = results.finish(&trajectory, early_stop, of, between)?;
+        let early_stop =
+            results.finish(&trajectory, early_stop, model.size(), &evaluators, between)?;
         Ok(ComputedTrajectory {
             table: results.table(),
             early_stop,

@@ -47,9 +47,10 @@ impl ComputedTrajectory<'_> {
             // Next to a change point a reaction may be undefined.
             let known = values.filter(|(a, b)| a.is_finite() && b.is_finite());
             let (one, two): (Vec<f64>, Vec<f64>) = known.unzip();
-            match one.is_empty() {
-                true => f64::INFINITY,
-                false => estimate::over_motion(&one, &two, 0.0),
+            if one.is_empty() {
+                f64::INFINITY
+            } else {
+                estimate::over_motion(&one, &two, 0.0)
             }
         };
         self.results.errors = (0..self.results.columns.len()).map(error).collect();

@@ -48,17 +48,18 @@ pub(crate) fn check_variables<S: RowScene>(scene: &S, rows: &S::Rows) -> Result<
     };
     let joint_of = |name: &str| name.split('.').next().map(str::to_owned);
     let mut open = scene.open_reactions(rows).into_iter();
-    let (message, help, label) = match open.any(|open| joint_of(&open) == joint_of(name)) {
-        true => (
+    let (message, help, label) = if open.any(|open| joint_of(&open) == joint_of(name)) {
+        (
             format!("`{name}` is statically indeterminate: redundant constraints share the load"),
             format!("`dwell check` lists such reactions; {}", S::TO_DETERMINE),
             "indeterminate",
-        ),
-        false => (
+        )
+    } else {
+        (
             format!("there is no column `{name}`"),
             suggestion(name, &columns),
             "unknown column",
-        ),
+        )
     };
     let place = (SceneLocation::Variable(k), label);
     Err(scene_error(scene, message, help, [place]))

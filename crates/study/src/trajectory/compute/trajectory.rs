@@ -129,7 +129,8 @@ impl<'a> Trajectory<'a> {
         };
         let points = points.unwrap_or(prescribed.points);
         Ok(Self::prescribed(
-            (prescribed, Spacing::EqualTimes),
+            prescribed,
+            Spacing::EqualTimes,
             scene.period,
             analysis,
             points,
@@ -138,7 +139,8 @@ impl<'a> Trajectory<'a> {
 
     /// A prescribed motion.
     pub(crate) fn prescribed(
-        (motion, spacing): (&'a PrescribedMotion, Spacing),
+        motion: &'a PrescribedMotion,
+        spacing: Spacing,
         period: Option<f64>,
         analysis: Analysis,
         points: usize,

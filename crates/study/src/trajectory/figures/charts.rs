@@ -215,7 +215,8 @@ impl<'a> ChartContext<'a> {
     /// Titles number several charts.
     pub(crate) fn even_charts(
         &self,
-        (title, label): (&str, &str),
+        title: &str,
+        label: &str,
         mut curves: Vec<(String, usize)>,
     ) -> Vec<Panel> {
         curves.retain(|(_, k)| !self.is_zero(*k));
@@ -282,10 +283,11 @@ impl<'a> ChartContext<'a> {
         let panels: Vec<Panel> = kinds.into_iter().filter_map(chart).collect();
         let text = "Required actuator forces: the force or moment of the first body on the second.";
         let moments = self.columns_where(|c| is_force(c) && c.unit == "N m");
-        let title = match moments.iter().any(|k| !self.is_zero(*k)) {
-            true if panels.len() > 1 => "Actuator forces and moments",
-            true => "Actuator moments",
-            false => "Actuator forces",
+        let has_moments = moments.iter().any(|k| !self.is_zero(*k));
+        let title = match (has_moments, panels.len() > 1) {
+            (true, true) => "Actuator forces and moments",
+            (true, false) => "Actuator moments",
+            (false, _) => "Actuator forces",
         };
         (!panels.is_empty()).then(|| self.figure("actuator-forces", title, text, panels))
     }
@@ -332,8 +334,8 @@ impl<'a> ChartContext<'a> {
         };
         let totals = [(0, "actuators"), (1, "loads"), (2, "kinetic")];
         let mut curves: Vec<_> = totals.into_iter().filter_map(total).collect();
-        let each = self.columns_where(|c| matches!(c.quantity, Quantity::LoadPower(_)));
-        let mut each = self.labelled(&each, ".power");
+        let powers = self.columns_where(|c| matches!(c.quantity, Quantity::LoadPower(_)));
+        let mut each = self.labelled(&powers, ".power");
         each.retain(|(_, k)| !self.is_zero(*k));
         // Of few loads and drives each has a curve.
         if curves.len() == 3 && !self.results.is_limited && each.len() + 2 <= MAX_CURVES {

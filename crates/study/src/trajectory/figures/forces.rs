@@ -36,7 +36,7 @@ impl FigureContext<'_> {
             ("Joint forces of fixed direction", "force", single("N")),
             ("Joint moments", "moment", single("N m")),
         ] {
-            panels.extend(self.even_charts((title, label), curves));
+            panels.extend(self.even_charts(title, label, curves));
         }
         // Three panels fill a page.
         let (shown, note) =

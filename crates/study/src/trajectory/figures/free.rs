@@ -113,9 +113,12 @@ impl FigureContext<'_> {
             let (q, speed) = (self.coordinate(i, 0)?, self.coordinate(i, 1)?);
             let name = symbol(&actuator.name);
             let angle = actuator.coordinate().is_angle();
-            let at = |row: &Vec<f64>| match angle {
-                true => [within(row[q].to_degrees()), row[speed]],
-                false => [row[q], row[speed]],
+            let at = |row: &Vec<f64>| {
+                if angle {
+                    [within(row[q].to_degrees()), row[speed]]
+                } else {
+                    [row[q], row[speed]]
+                }
             };
             let y = Axis::new(format!("d{name}/dt"), if angle { "rad/s" } else { "m/s" });
             let points: Vec<[f64; 2]> = self.drawn_rows().map(at).collect();

@@ -35,9 +35,10 @@ impl FigureContext<'_> {
         };
         let all = self.distinct_bodies(&all, angle);
         let requested: Vec<BodyId> = all.iter().copied().filter(is_requested).collect();
-        let shown = match requested.is_empty() {
-            true => self.of_interest_first(&all, MAX_BODIES),
-            false => self.of_interest_first(&requested, MAX_CURVES),
+        let shown = if requested.is_empty() {
+            self.of_interest_first(&all, MAX_BODIES)
+        } else {
+            self.of_interest_first(&requested, MAX_CURVES)
         };
         let curves = |order: usize, label: &str| {
             let indices: Vec<usize> = shown.iter().filter_map(|b| angle(*b, order)).collect();
