@@ -3,10 +3,11 @@
 mod closed_forms;
 mod construct;
 mod factored_group;
+mod solution;
 
 use crate::error::PositionError;
 use crate::motion::Motion;
-use crate::plan::{ActuatedFrame, AssurGroup, GroupKind, PlacementMethod, Plan, Pose, Step};
+use crate::plan::{ActuatedFrame, GroupKind, PlacementMethod, Plan, Pose, Step};
 use crate::plane::{Vec2, vec2};
 use crate::structure::groups::Unknown;
 use crate::structure::lower::Owner;
@@ -31,6 +32,8 @@ pub(crate) enum InitialIterate {
     StoredPose,
     /// From the values in the pose (while the branch is being followed).
     CurrentPose,
+    /// From the values in the pose, which solve the equations: one step of Newton's method makes their derivatives exact.
+    Solution,
 }
 
 impl<C: Constant> Plan<C> {
@@ -73,13 +76,6 @@ impl<C: Constant> Plan<C> {
                 && !assur.counts_revolutions
                 && of.iter().all(|&r| self.couplings[r].law.is_none())
         })
-    }
-
-    /// The first group that is solved by iterations, if there is one.
-    pub fn first_iterated_group(&self) -> Option<usize> {
-        let method = |g: &AssurGroup<C>| g.kind.placement_method().filter(|_| !g.pruned);
-        let is_iterated = |g| method(g) == Some(PlacementMethod::Newton);
-        self.groups.iter().position(is_iterated)
     }
 
     /// Whether every group is a dyad or a guided body, whose closed forms are inlined into an evaluation. The

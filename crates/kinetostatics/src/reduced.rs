@@ -185,7 +185,9 @@ impl Model {
             unit_passes: unit,
             ..
         } = workspace;
-        self.pass_model.reduce(q, pose, motion, unit, out)
+        self.plan().positions(&[q], pose)?;
+        self.pass_model.reduce_at_pose(pose, motion, unit, out);
+        Ok(())
     }
 
     /// A buffer for the coefficients of this model.
@@ -195,18 +197,16 @@ impl Model {
 }
 
 impl<C: Constant> PassModel<C> {
-    /// The reduced coefficients at `q` (rad or m), by (3) and (4).
+    /// The reduced coefficients at a pose, by (3) and (4).
     #[inline(always)]
-    pub(crate) fn reduce<T: Lift<C>>(
+    pub(crate) fn reduce_at_pose<T: Lift<C>>(
         &self,
-        q: T,
-        pose: &mut Pose<T>,
+        pose: &Pose<T>,
         motion: &mut Motion<T>,
         passes: &mut RecursivePass<T, 2>,
         out: &mut Coefficients<T>,
-    ) -> PositionResult {
+    ) {
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-        self.plan.positions(&[q], pose)?;
         self.plan.velocities(pose, &[one], motion);
         self.plan.accelerations(pose, &[zero], motion);
         passes.evaluate(self, pose, UnitMotions(motion), None);
@@ -214,7 +214,6 @@ impl<C: Constant> PassModel<C> {
         for (k, (a, b)) in out.a.iter_mut().zip(&mut out.b).enumerate() {
             [*b, *a] = passes.reaction(self, pose, k);
         }
-        Ok(())
     }
 }
 

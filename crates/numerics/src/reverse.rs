@@ -130,7 +130,8 @@ mod tests {
                 v: inputs[i],
                 d: f64::from(u8::from(i == k)),
             });
-            let by_duals = function(x, y).iter().zip(weights).map(|(f, w)| w * f.d);
+            let by_duals = function(x, y).into_iter().zip(weights);
+            let by_duals = by_duals.map(|(f, w)| w * f.d);
             // Seen: 4.5e-16.
             assert!((by_duals.sum::<f64>() - found).abs() < 1e-14);
         }

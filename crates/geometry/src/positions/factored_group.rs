@@ -124,7 +124,11 @@ impl<C: Constant> Plan<C> {
                 if initial_iterate == InitialIterate::StoredPose {
                     self.set_predicted_pose(group, pose)?;
                 }
-                self.solve_by_newton(group, factored_group, pose)?
+                if initial_iterate == InitialIterate::Solution {
+                    self.step_at_solution(group, factored_group, pose)?
+                } else {
+                    self.solve_by_newton(group, factored_group, pose)?
+                }
             }
             PlacementMethod::Linear => self.solve_linear(group, factored_group, pose)?,
             PlacementMethod::GearTrain => self.gear_train_positions(group, factored_group, pose)?,

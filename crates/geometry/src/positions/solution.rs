@@ -1,0 +1,79 @@
+//! Positions from known solutions of the groups that iterations solve: no decision depends on the iterations, and one step of
+//! Newton's method, u − J⁻¹ f(u), has the derivatives of the solution.
+
+use super::InitialIterate;
+use crate::error::PositionError;
+use crate::plan::{FactoredGroup, PlacementMethod, Plan, Pose};
+use crate::structure::groups::Unknown;
+use dwell_numerics::{Constant, FactorOutcome, Lift, Scalar};
+
+impl<C: Constant> Plan<C> {
+    /// The unknowns of the groups that iterations solve, pruned groups left out.
+    fn iterated_unknowns(&self) -> impl Iterator<Item = Unknown> {
+        let is_iterated = |method| method == Some(PlacementMethod::Newton);
+        let groups = self.groups.iter().filter(|g| !g.pruned);
+        let groups = groups.filter(move |g| is_iterated(g.kind.placement_method()));
+        groups.flat_map(|g| g.group.unknowns.iter().copied())
+    }
+
+    /// The values of the unknowns of these groups in a pose: (cos, sin) of an angle, a counted angle (rad), a travel (m).
+    pub fn iterated_values<T: Scalar>(&self, pose: &Pose<T>) -> Vec<T> {
+        let values = self.iterated_unknowns().flat_map(|unknown| match unknown {
+            Unknown::ClassAngle(class) => {
+                let frame = self.class_frame(class);
+                if self.revolution_counted[frame] {
+                    vec![pose.angle[frame]]
+                } else {
+                    vec![pose.rotation[frame].x, pose.rotation[frame].y]
+                }
+            }
+            Unknown::SlideTravel(slide) => vec![pose.slide_travel[slide]],
+        });
+        values.collect()
+    }
+
+    /// Computes the positions at the coordinates `q` (rad or m), at which the unknowns of the groups that iterations solve have the
+    /// `values` of [`iterated_values`](Self::iterated_values).
+    ///
+    /// # Errors
+    /// [`PositionError`] when a group cannot close or is singular.
+    pub fn positions_at_solution<T: Lift<C>>(
+        &self,
+        q: &[T],
+        values: &[T],
+        pose: &mut Pose<T>,
+    ) -> Result<(), PositionError> {
+        let mut next = values.iter().copied();
+        let mut value = || next.next().unwrap_or_default();
+        for unknown in self.iterated_unknowns() {
+            match unknown {
+                Unknown::ClassAngle(class) => {
+                    let frame = self.class_frame(class);
+                    if self.revolution_counted[frame] {
+                        self.set_class_angle(class, value(), pose);
+                    } else {
+                        pose.rotation[frame].x = value();
+                        pose.rotation[frame].y = value();
+                    }
+                }
+                Unknown::SlideTravel(slide) => pose.slide_travel[slide] = value(),
+            }
+        }
+        self.positions_from(q, pose, InitialIterate::Solution)
+    }
+
+    /// One step of Newton's method at a solution; leaves the factors of the Jacobian after it.
+    pub(super) fn step_at_solution<T: Lift<C>>(
+        &self,
+        group: usize,
+        factored_group: &FactoredGroup,
+        pose: &mut Pose<T>,
+    ) -> Result<FactorOutcome, PositionError> {
+        self.rotate_group(group, pose);
+        self.residual(group, pose);
+        self.factor_jacobian(group, factored_group, pose)?;
+        self.apply_newton_step(group, factored_group, pose);
+        self.rotate_group(group, pose);
+        self.factor_jacobian(group, factored_group, pose)
+    }
+}
