@@ -77,8 +77,8 @@ impl MotionCase {
             stop(case, "no motion")
         };
         let (q, q_dot) = (motion.initial_coordinates[0], motion.initial_velocities[0]);
-        let orbit = Orbit::new(&exact, ReducedState { t: 0.0, q, q_dot });
-        let orbit = orbit.unwrap_or_else(|e| stop(case, &e.to_string()));
+        let orbit = Orbit::new(&exact, ReducedState { t: 0.0, q, q_dot })
+            .unwrap_or_else(|e| stop(case, &e.to_string()));
         Self {
             case,
             plant: Plant::Free(exact),
@@ -176,8 +176,8 @@ impl MotionCase {
                 self.integrate(&mut ode, by, tolerance)
             }
             (Computation::Quadrature, Plant::Free(exact)) => {
-                let orbit = Orbit::to_accuracy(exact, self.state(), tolerance);
-                let orbit = orbit.map_err(|e| message(&e))?;
+                let orbit =
+                    Orbit::to_accuracy(exact, self.state(), tolerance).map_err(|e| message(&e))?;
                 let statistics = Statistics {
                     evaluations: orbit.points,
                     ..Statistics::default()
@@ -204,8 +204,8 @@ impl MotionCase {
             Some(self.end),
             &options,
             &mut observer,
-        );
-        let termination = termination.map_err(|e| e.to_string())?;
+        )
+        .map_err(|e| e.to_string())?;
         match termination.error {
             Some(error) => Err(error.to_string()),
             None => Ok(RunResult {

@@ -138,8 +138,7 @@ impl<M: MovingModel> ConservativeSystem for LoadedSystem<M> {
             inverse_dynamics: result,
             ..
         } = self;
-        let state = KinematicState::new(model, [&[q], &[0.0]], workspace)?;
-        let state = state.apply_loads(0.0)?;
+        let state = KinematicState::new(model, [&[q], &[0.0]], workspace)?.apply_loads(0.0)?;
         let loads = 0..model.loads().len();
         let potential = loads.filter_map(|load| state.potential_energy(load)).sum();
         let mut state = state.inverse_dynamics(&[0.0], result)?;

@@ -274,8 +274,7 @@ impl<M: MovingModel> Machine<M> {
             M::evaluate_on_fit(self, fit, (t, drive_states), (offsets, inner), equation)?
         } else {
             let at = [&equation.q[..], &equation.q_dot[..]];
-            let state = KinematicState::new(&self.model, at, inner)?;
-            let mut state = state.apply_loads(t)?;
+            let mut state = KinematicState::new(&self.model, at, inner)?.apply_loads(t)?;
             self.evaluate_drives(t, drive_states, offsets, &mut state, equation)?;
             let result = &mut equation.inverse_dynamics;
             let mut state = state.inverse_dynamics(&equation.q_ddot, result)?;

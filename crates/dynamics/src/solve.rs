@@ -143,8 +143,7 @@ pub fn solve_further<M: MovingModel>(
     options: &Options,
     events: &[Event<M::CoordinateFunction>],
 ) -> Result<Solution> {
-    let recorder_state = RecorderState::new(0.0, events, options);
-    let recorder_state = recorder_state.sampled_until(start.t, options);
+    let recorder_state = RecorderState::new(0.0, events, options).sampled_until(start.t, options);
     record_machine(machine, output_model, recorder_state, start, end, options)
 }
 

@@ -155,14 +155,14 @@ impl TabulatedMachine {
             return Err(TabulationError::Friction { load });
         }
         let mut builder = TableBuilder::new(machine.model().plan().range(), domain, accuracy)?;
-        let exact = ExactModel::new(machine.model().without_reactions());
-        let exact = exact.ok_or(TabulationError::DegreesOfFreedom { actuators, free })?;
+        let exact = ExactModel::new(machine.model().without_reactions())
+            .ok_or(TabulationError::DegreesOfFreedom { actuators, free })?;
         let both = [TableQuantity::M, TableQuantity::HalfDm];
         let inertia = builder.curve(both, &mut TotalInertia::new(machine, &exact))?;
         let both = [TableQuantity::V, TableQuantity::HalfDv];
-        let potential = TotalPotential::new(machine);
-        let potential = potential.map(|mut source| builder.curve(both, &mut source));
-        let potential = potential.transpose()?;
+        let potential = TotalPotential::new(machine)
+            .map(|mut source| builder.curve(both, &mut source))
+            .transpose()?;
         let (loads, work_places) = loads_and_works(machine);
         let mut auxiliary = AuxiliaryColumns::new(machine, &builder, &loads);
         let mut tabulated_loads = Vec::with_capacity(loads.len());

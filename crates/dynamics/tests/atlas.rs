@@ -181,8 +181,8 @@ fn a_slider_is_followed_through_its_dead_points() {
         Mass::uniform_bar(0.8, 0.35),
         piston,
     ]);
-    let crank = Setup::new(&chain, angle([0, 1]), &masses, 1.0, &[0.0, 1.0, -0.2, 0.0]);
-    let crank = crank.with_loads(&[gravity()], &[]);
+    let crank = Setup::new(&chain, angle([0, 1]), &masses, 1.0, &[0.0, 1.0, -0.2, 0.0])
+        .with_loads(&[gravity()], &[]);
     let cylinder = length([0, 3], [vec2(-0.1, 0.02), Vec2::ZERO]);
     assert!(Pair::new(crank, cylinder, 7.0, 10.0).check_agreement(1) >= 10);
 }

@@ -226,8 +226,8 @@ fn a_curved_change_point() {
         Mass::uniform_bar(0.8, 0.22),
         Mass::uniform_bar(0.5, 0.18),
     ];
-    let setup = Setup::new(&chain, angle([0, 1]), &masses, 1.0, &[0.0, 1.0, 0.5, 1.5]);
-    let setup = setup.with_loads(&[gravity()], &[]);
+    let setup = Setup::new(&chain, angle([0, 1]), &masses, 1.0, &[0.0, 1.0, 0.5, 1.5])
+        .with_loads(&[gravity()], &[]);
     for speed in [25.0, -25.0] {
         let mut atlas = setup.atlas();
         let start = setup.initial_state(&atlas, speed);
@@ -266,8 +266,8 @@ fn a_piston_passes_the_pivot() {
         piston,
     ];
     let chain = slider_crank(r, r, 0.0);
-    let setup = Setup::new(&chain, angle([0, 1]), &masses, 0.4, &[0.0, 0.4, -0.4, 0.0]);
-    let setup = setup.with_loads(&[gravity()], &[]);
+    let setup = Setup::new(&chain, angle([0, 1]), &masses, 0.4, &[0.0, 0.4, -0.4, 0.0])
+        .with_loads(&[gravity()], &[]);
     let mut atlas = setup.atlas();
     let start = setup.initial_state(&atlas, 12.0);
     let motion = solve_setup(&mut atlas, &start, [3.0, 0.01], Method::Tsit45, &[]);

@@ -137,8 +137,8 @@ impl<E> CWriter<'_, E> {
         ] {
             marks += if holds { mark } else { "" };
         }
-        let numbers = [("zero", 0.0), ("half", 0.5), ("two", 2.0), ("six", 6.0)];
-        let numbers = numbers.map(|(name, value)| (name, self.number(value)));
+        let numbers = [("zero", 0.0), ("half", 0.5), ("two", 2.0), ("six", 6.0)]
+            .map(|(name, value)| (name, self.number(value)));
         let order = [("order", self.order().to_string())];
         let all = own.iter().chain(&numbers).chain(&order);
         all.fold(lines_for(template, &marks), |text, (name, own)| {

@@ -11,8 +11,7 @@ use std::ops::{Add, Div, Mul, Sub};
 pub(crate) fn with_slopes(code: &StraightLine, first: usize, wanted: &[bool]) -> StraightLine {
     let evaluate = |q: RecordedNumber| {
         let all = code.evaluate(&[Sloped::new(q, RecordedNumber::from_f64(1.0))]);
-        let slopes = all[first..].iter().zip(wanted);
-        let slopes = slopes.map(|(of, &wanted)| {
+        let slopes = all[first..].iter().zip(wanted).map(|(of, &wanted)| {
             if wanted {
                 of.slope
             } else {

@@ -192,8 +192,8 @@ fn chain(n: usize) -> ExactModel {
             .collect(),
         ..AssemblyConfiguration::default()
     };
-    let model = Model::new(&mechanism, &vec![bar; 2 * n + 2], &assembly, &[]);
-    let model = model.unwrap_or_else(|e| stop("chain", &e.to_string()));
+    let model = Model::new(&mechanism, &vec![bar; 2 * n + 2], &assembly, &[])
+        .unwrap_or_else(|e| stop("chain", &e.to_string()));
     ExactModel::new(model).unwrap_or_else(|| stop("chain", "it has several actuators"))
 }
 

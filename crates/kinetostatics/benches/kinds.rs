@@ -375,11 +375,11 @@ fn library(exact: &ExactModel, length: f64, accuracy: f64) {
 
 fn read(case: &str) -> ExactModel {
     let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
-    let scene = PlaneScene::read(home.join(case).join("scene.toml"));
-    let scene = scene.unwrap_or_else(|e| stop(&e.to_string()));
+    let scene = PlaneScene::read(home.join(case).join("scene.toml"))
+        .unwrap_or_else(|e| stop(&e.to_string()));
     let assembly = scene.assembly.to_configuration();
-    let model = Model::new(&scene.mechanism, &scene.masses, &assembly, &[]);
-    let model = model.unwrap_or_else(|e| stop(&e.to_string()));
+    let model = Model::new(&scene.mechanism, &scene.masses, &assembly, &[])
+        .unwrap_or_else(|e| stop(&e.to_string()));
     ExactModel::new(model).unwrap_or_else(|| stop("it has several actuators"))
 }
 

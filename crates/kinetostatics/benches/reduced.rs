@@ -47,8 +47,8 @@ fn main() {
     assert_eq!(pruned.plan().pruned_groups(), [false, true]);
     agree_in_force(&closed_form_four_bar, &[&bars.0, &dyad.0, &pruned]);
     let without_reactions = dyad.0.without_reactions();
-    let exact = ExactModel::new(dyad.0.clone());
-    let exact = exact.unwrap_or_else(|| stop("four-bar", "it has several actuators"));
+    let exact = ExactModel::new(dyad.0.clone())
+        .unwrap_or_else(|| stop("four-bar", "it has several actuators"));
 
     let mut subjects = vec![
         Subject::new(
@@ -124,20 +124,19 @@ fn in_space(name: &str, reaction: &str) -> ExactModel<space::Model> {
         .filter(|&r| scene.reaction_name(r) == reaction)
         .collect();
     assert_eq!(wanted.len(), 1, "{reaction}");
-    let model = space::Model::new(&scene.mechanism, &scene.masses, &scene.assembly, &wanted);
-    let model = model.unwrap_or_else(|e| stop(name, &e.to_string()));
+    let model = space::Model::new(&scene.mechanism, &scene.masses, &scene.assembly, &wanted)
+        .unwrap_or_else(|e| stop(name, &e.to_string()));
     ExactModel::new(model).unwrap_or_else(|| stop(name, "it has several actuators"))
 }
 
 /// A mechanism under its loads with every reaction, and its scene.
 fn loaded_model(text: &str) -> (Model, PlaneScene) {
-    let scene = PlaneScene::parse("four-bar.toml", text);
-    let scene = scene.unwrap_or_else(|e| stop("four-bar", &e.to_string()));
+    let scene = PlaneScene::parse("four-bar.toml", text)
+        .unwrap_or_else(|e| stop("four-bar", &e.to_string()));
     let case = Case { scene };
     let model = case.model(&case.scene.mechanism.reactions());
     let loads = case.scene.loads.clone();
-    let model = model.model().clone();
-    let model = model.with_loads(loads);
+    let model = model.model().clone().with_loads(loads);
     let model = model.unwrap_or_else(|e| stop("four-bar", &e.to_string()));
     (model, case.scene)
 }

@@ -134,8 +134,8 @@ fn make(case: &str) {
 fn measure(case: &str) {
     let exact = read(case, true);
     let made = Instant::now();
-    let table = TabulatedModel::new(&exact, ACCURACY, TableDomain::Full);
-    let table = table.unwrap_or_else(|e| stop(&e.to_string()));
+    let table = TabulatedModel::new(&exact, ACCURACY, TableDomain::Full)
+        .unwrap_or_else(|e| stop(&e.to_string()));
     let made = made.elapsed().as_secs_f64() * 1e3;
     let cubic = Cubic::new(&exact, table.cells()[0]);
     let difference = agree(&exact, &table, &cubic);
@@ -220,16 +220,16 @@ fn agree(exact: &ExactModel, table: &TabulatedModel, cubic: &Cubic) -> [f64; 2] 
 
 fn read(case: &str, all_reactions: bool) -> ExactModel {
     let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
-    let scene = PlaneScene::read(home.join(case).join("scene.toml"));
-    let scene = scene.unwrap_or_else(|e| stop(&e.to_string()));
+    let scene = PlaneScene::read(home.join(case).join("scene.toml"))
+        .unwrap_or_else(|e| stop(&e.to_string()));
     let assembly = scene.assembly.to_configuration();
     let reactions = if all_reactions {
         scene.mechanism.reactions()
     } else {
         Vec::new()
     };
-    let model = Model::new(&scene.mechanism, &scene.masses, &assembly, &reactions);
-    let model = model.unwrap_or_else(|e| stop(&e.to_string()));
+    let model = Model::new(&scene.mechanism, &scene.masses, &assembly, &reactions)
+        .unwrap_or_else(|e| stop(&e.to_string()));
     ExactModel::new(model).unwrap_or_else(|| stop("it has several actuators"))
 }
 

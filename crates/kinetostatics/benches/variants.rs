@@ -36,8 +36,8 @@ impl Subject {
         let reaction = reaction.unwrap_or_else(|| stop(case, "no such reaction"));
         let typical = variant(&scene, 0);
         let start = typical.assembly.to_configuration();
-        let model = Model::new(&typical.mechanism, &typical.masses, &start, &[reaction]);
-        let model = model.unwrap_or_else(|e| stop(case, &e.to_string()));
+        let model = Model::new(&typical.mechanism, &typical.masses, &start, &[reaction])
+            .unwrap_or_else(|e| stop(case, &e.to_string()));
         let structure = VariantModel::new(model);
         let structure = structure.unwrap_or_else(|| stop(case, "no structure for variants"));
         let numbers = (1..=VARIANTS).map(|k| {

@@ -229,10 +229,8 @@ fn read<D: Sections>(
         };
         events = section.map_or_else(Vec::new, |f| reader.events(&f));
     }
-    let prescribed = section("prescribed");
-    let prescribed = prescribed.and_then(|f| prescribed_motion(&f, &by_name, &start));
-    let sweep = section("coordinate-sweep");
-    let sweep = sweep.and_then(|f| coordinate_sweep(&f, &by_name, &start));
+    let prescribed = section("prescribed").and_then(|f| prescribed_motion(&f, &by_name, &start));
+    let sweep = section("coordinate-sweep").and_then(|f| coordinate_sweep(&f, &by_name, &start));
     let load_section = section("loads");
     let friction = section("friction");
     let loads = D::loads(load_section.as_ref(), friction.as_ref(), parts, &magnitudes);
@@ -247,8 +245,7 @@ fn read<D: Sections>(
         let coordinates = actuators.iter().map(|a| a.coordinate);
         reject_drives_of_prescribed(&drives, motion, by_name.iter().zip(coordinates));
     }
-    let stops = section("stops");
-    let stops = stops.map_or_else(Vec::new, |f| stops_of(&f, &by_name, motion.as_ref()));
+    let stops = section("stops").map_or_else(Vec::new, |f| stops_of(&f, &by_name, motion.as_ref()));
     let requested = section("requests").map(|f| requests(&f, parts));
     let is_calibrated = D::table("scene").contains_key("calibration");
     let calibration_section = is_calibrated.then(|| section("calibration")).flatten();

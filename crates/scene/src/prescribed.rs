@@ -195,8 +195,8 @@ pub(crate) fn coordinate_sweep(
         fields.log().report(message, &labels, help);
     }
     let is_angle = swept.is_none_or(|k| actuators[k].is_angle());
-    let rule = NumberRule::new(fields.units().coordinate_unit(is_angle), SignRule::Positive);
-    let rule = rule.because("the order of the interval's ends gives the direction");
+    let rule = NumberRule::new(fields.units().coordinate_unit(is_angle), SignRule::Positive)
+        .because("the order of the interval's ends gives the direction");
     let speed = fields.number_or(1.0, "speed", &rule);
     Some(CoordinateSweep {
         actuator: ActuatorId(swept?),

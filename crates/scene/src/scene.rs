@@ -53,8 +53,8 @@ impl Scene {
     }
 
     fn build(name: String, source: &Source) -> Result<Self, SceneError> {
-        let root = syntax(source)?;
-        let root = root.get_ref();
+        let parsed = syntax(source)?;
+        let root = parsed.get_ref();
         Ok(match three_numbers(root) {
             Some(_) => SpaceScene::of_root(name, source, root)?.into(),
             None => PlaneScene::of_root(name, source, root)?.into(),

@@ -391,7 +391,7 @@ pub fn symbolic<S: StudyScene>(
         coordinate: scene.actuator(0).unwrap_or_default().0,
         notes: &scene.closed_form_notes(&form),
     };
-    Ok(closed_form_outcome(&written, form, findings, format))
+    Ok(closed_form_outcome(&written, &form, findings, format))
 }
 
 /// Fits the functions of a scene's machine for export.

@@ -264,8 +264,8 @@ impl CalibratedScene for PlaneScene {
             return Ok(ConservativeMotion::Unloaded(Box::new(exact)));
         }
         let model = compile_model(self, &[])?;
-        let machine = Machine::new(model, &self.loads, vec![CoordinateMode::Free], &[]);
-        let machine = machine.map_err(|e| explain_machine(self, e))?;
+        let machine = Machine::new(model, &self.loads, vec![CoordinateMode::Free], &[])
+            .map_err(|e| explain_machine(self, e))?;
         Ok(ConservativeMotion::Loaded(Box::new(machine)))
     }
 
@@ -327,8 +327,7 @@ fn period_with_error(scene: &impl CalibratedScene) -> Result<(f64, f64), StudyEr
         let q_dot = start.q_dot * factor;
         motion.orbit(ReducedState { q_dot, ..start })
     };
-    let error = estimate::of_period(&orbit, perturbed);
-    let error = error.map_err(|e| explained(scene, &e))?;
+    let error = estimate::of_period(&orbit, perturbed).map_err(|e| explained(scene, &e))?;
     Ok((orbit.period, error))
 }
 
@@ -351,8 +350,7 @@ fn orbit_of<S: CalibratedScene>(scene: &S) -> Result<FoundOrbit<S::Model>, Study
         ));
     };
     let start = ReducedState { t: 0.0, q, q_dot };
-    let orbit = motion.orbit(start);
-    let orbit = orbit.map_err(|e| explained(scene, &e))?;
+    let orbit = motion.orbit(start).map_err(|e| explained(scene, &e))?;
     Ok((orbit, motion, start))
 }
 

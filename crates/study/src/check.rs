@@ -181,8 +181,7 @@ fn describe_range(
         }
         range => range_text(file, name, is_angle, range, note, record),
     };
-    let limits = plan.range_limits().into_iter().flatten();
-    let limits = limits.map(|limit| {
+    let limits = plan.range_limits().into_iter().flatten().map(|limit| {
         let beyond = match (limit.change_point, limit.separation) {
             (true, Some(half_width)) => {
                 let width = own_coordinate(file, half_width, is_angle);

@@ -387,8 +387,7 @@ impl DenseMechanism {
     /// Jᵀ λ = q, by factors of the transposed matrix. Those of rows that are not solved are zero.
     pub(crate) fn multipliers(&self, at: &Configuration, q: &[f64]) -> Result<Vec<f64>> {
         let rows = part(&self.scaled_jacobian(&at.poses), &at.rows);
-        let lu = Lu::new(rows.transpose().to_owned());
-        let lu = lu.map_err(DenseError::Singular)?;
+        let lu = Lu::new(rows.transpose().to_owned()).map_err(DenseError::Singular)?;
         let mut right = Mat::from_fn(q.len(), 1, |c, _| q[c] * self.column_scale(c));
         lu.solve(&mut right);
         let mut multipliers = vec![0.0; self.rows.len()];

@@ -95,8 +95,7 @@ impl DenseMechanism {
 
 fn rank_of(dense: &DenseMechanism, matrix: MatRef<'_, f64>) -> Result<Rank> {
     let (rows, columns) = matrix.shape();
-    let svd = matrix.svd();
-    let svd = svd.map_err(|_| DenseError::Singular(f64::NAN))?;
+    let svd = matrix.svd().map_err(|_| DenseError::Singular(f64::NAN))?;
     let singular_values: Vec<f64> = svd.S().column_vector().iter().copied().collect();
     let largest = singular_values.first().copied().unwrap_or(0.0);
     let is_zero = |&&s: &&f64| s <= ZERO_SINGULAR_VALUE * largest;

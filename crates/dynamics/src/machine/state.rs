@@ -201,8 +201,7 @@ impl<M: MovingModel> MachineState<'_, f64, M> {
         }
         let equation = &*self.equation;
         let at = [&equation.q[..], &equation.q_dot[..]];
-        let state = KinematicState::new(output_model, at, workspace)?;
-        let mut state = state.apply_loads(self.t)?;
+        let mut state = KinematicState::new(output_model, at, workspace)?.apply_loads(self.t)?;
         for load in self.machine.given_loads() {
             state.set_magnitude(load, self.magnitudes()[load]);
         }

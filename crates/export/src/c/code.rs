@@ -117,8 +117,7 @@ impl<E> CWriter<'_, E> {
 
     /// A line for each current: `@c@` is its member, `@k@` its place.
     pub(crate) fn each_current(&self, line: &str) -> String {
-        let lines = self.currents().into_iter();
-        let lines = lines.map(|(_, member, place)| {
+        let lines = self.currents().into_iter().map(|(_, member, place)| {
             let line = line.replace("@c@", &member);
             line.replace("@k@", &place.to_string())
         });

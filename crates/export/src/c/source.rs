@@ -213,10 +213,10 @@ impl CWriter<'_, Export> {
         let array = |array: &'static str, count: usize| {
             (0..count).map(move |k| (format!("terms->{array}"), k))
         };
-        let targets = array("a", n)
+        let targets: Vec<_> = array("a", n)
             .chain(array("b", n))
-            .chain(array("c", n * loads));
-        let targets: Vec<_> = targets.collect();
+            .chain(array("c", n * loads))
+            .collect();
         *text += "static void reactions_at(@p@_real q, @p@_reaction_terms *terms)\n{\n";
         self.columns_body(PartKind::Reactions, &targets, text);
         *text += "}\n\n@p@_status @p@_reaction_terms_at(@p@_real q, @p@_reaction_terms *terms)\n{\n    const @p@_status status = wrap(&q);\n    if (status == @U@_OK) {\n        reactions_at(q, terms);\n    } else {\n";

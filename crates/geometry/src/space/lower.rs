@@ -30,8 +30,7 @@ fn bearings(mechanism: &Mechanism) -> Result<Vec<bool>, StructureError> {
             continue;
         };
         for wheel in joint.bodies {
-            let chain = chain_between(mechanism, carrier, wheel);
-            let chain = chain.ok_or(StructureError::Gear {
+            let chain = chain_between(mechanism, carrier, wheel).ok_or(StructureError::Gear {
                 joint: JointId(j),
                 reason: "no joints with one axis connect a wheel with the carrier",
             })?;

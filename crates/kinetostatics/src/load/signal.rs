@@ -144,8 +144,7 @@ impl<C> Magnitude<C> {
                 moving.map(|(i, [_, rate])| slope(i) * rate).sum()
             }
             Self::Function(..) => {
-                let numbers = signals.iter().map(|&[v, d]| Dual { v, d });
-                let numbers: Vec<Dual> = numbers.collect();
+                let numbers: Vec<Dual> = signals.iter().map(|&[v, d]| Dual { v, d }).collect();
                 self.eval(&numbers, &values, held).d
             }
             Self::Constant(_) | Self::Friction(_) | Self::Separating(_) | Self::External(_) => 0.0,

@@ -47,8 +47,8 @@ impl InPlane {
             inertia: mass.inertia[2],
         });
         let masses: Vec<Mass> = masses.collect();
-        let model = PlanarModel::new(&equivalent.mechanism, &masses, &equivalent.assembly, &[]);
-        let model = model.ok()?;
+        let model =
+            PlanarModel::new(&equivalent.mechanism, &masses, &equivalent.assembly, &[]).ok()?;
         let lifted = LiftedReactions::new(of, &equivalent, &in_space, model.plan())?;
         let model = model.with_reactions(lifted.planar_reactions()).ok()?;
         let model = model.pruned_for(lifted.bodies());

@@ -14,9 +14,8 @@ pub(super) fn gear(fields: &TableReader<'_>) -> Option<JointKind> {
         "radii",
         "add `radii = [30, 20]`: the pitch radius of each gear",
     )?;
-    let rule = NumberRule::new(&fields.units().length, SignRule::Positive);
-    let rule =
-        rule.because("the pitch radius of a ring gear is positive, too: add `internal = true`");
+    let rule = NumberRule::new(&fields.units().length, SignRule::Positive)
+        .because("the pitch radius of a ring gear is positive, too: add `internal = true`");
     let names = ["the first", "the second"];
     let radius = |value: Value<'_>, name: String| value.quantity_with_sign(&rule, name);
     let all = format!("the radii of {what}");
@@ -49,8 +48,8 @@ pub(super) fn pressure_angle(fields: &TableReader<'_>) -> Option<(f64, Span)> {
 pub(super) fn on_a_line(fields: &TableReader<'_>) -> Option<(Vec2, f64)> {
     let axis = axis(fields);
     // Its sign gives the side of the line on which the wheel is.
-    let rule = NumberRule::new(&fields.units().length, SignRule::NotZero);
-    let rule = rule.because("a wheel without a radius cannot roll");
+    let rule = NumberRule::new(&fields.units().length, SignRule::NotZero)
+        .because("a wheel without a radius cannot roll");
     let help = "add `radius = 20`: positive to the left of the axis, negative to its right";
     let radius = fields.number("radius", help, &rule);
     Some((axis?, radius?))

@@ -51,8 +51,8 @@ pub(super) fn weld(fields: &TableReader<'_>) -> Option<JointKind> {
 
 pub(super) fn distance(fields: &TableReader<'_>) -> Option<JointKind> {
     let help = "add `length = 200`: the distance the two points keep";
-    let rule = NumberRule::new(&fields.units().length, SignRule::Positive);
-    let rule = rule.because("two coinciding points are a revolute joint");
+    let rule = NumberRule::new(&fields.units().length, SignRule::Positive)
+        .because("two coinciding points are a revolute joint");
     let length = fields.number("length", help, &rule)?;
     Some(JointKind::Distance { length })
 }

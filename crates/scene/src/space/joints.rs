@@ -159,8 +159,8 @@ fn with_numbers(kind: JointKind, fields: &TableReader<'_>) -> Option<JointKind> 
     Some(match kind {
         JointKind::Helical { .. } => {
             let help = "add `pitch = 5`: the travel for one revolution";
-            let rule = NumberRule::new(&fields.units().length, SignRule::NotZero);
-            let rule = rule.because("without travel it is a revolute joint");
+            let rule = NumberRule::new(&fields.units().length, SignRule::NotZero)
+                .because("without travel it is a revolute joint");
             let pitch = fields.number("pitch", help, &rule)? / TAU;
             JointKind::Helical { pitch }
         }
@@ -168,8 +168,8 @@ fn with_numbers(kind: JointKind, fields: &TableReader<'_>) -> Option<JointKind> 
         JointKind::Distance { .. } if fields.get("length").is_none() => kind,
         JointKind::Distance { .. } => {
             let help = "add `length = 200`: the distance the two points keep";
-            let rule = NumberRule::new(&fields.units().length, SignRule::Positive);
-            let rule = rule.because("two coinciding points are a spherical joint");
+            let rule = NumberRule::new(&fields.units().length, SignRule::Positive)
+                .because("two coinciding points are a spherical joint");
             let length = fields.number("length", help, &rule)?;
             JointKind::Distance { length }
         }

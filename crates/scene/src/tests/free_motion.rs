@@ -106,8 +106,8 @@ fn loads_and_friction() {
             dry_friction(5, 0.05, guide(0.0), None),
         ),
         ("W.viscous", damper([GROUND, WHEEL]), constant(0.003)),
-    ];
-    let expected = expected.map(|(name, kind, magnitude)| Load {
+    ]
+    .map(|(name, kind, magnitude)| Load {
         name: name.to_owned(),
         kind,
         magnitude,
@@ -169,8 +169,8 @@ fn drives() {
         ("pump", RISE, DriveKind::Motor(pump)),
         ("governor", OMEGA, DriveKind::SpeedController(governor)),
         ("brake", RISE, DriveKind::SpeedController(brake)),
-    ];
-    let expected = expected.map(|(name, coordinate, kind)| Drive {
+    ]
+    .map(|(name, coordinate, kind)| Drive {
         name: name.to_owned(),
         coordinate,
         kind,
@@ -238,16 +238,16 @@ fn defaults_of_a_motion() {
         .replace(
             "[motion.prescribed]\n",
             "[motion.prescribed]\nomega = { speed = 45 }\n",
+        )
+        .replace(
+            "initial-velocity = { phi = 90, omega = 180 }\nduration",
+            "initial-velocity = 90\nduration",
+        )
+        .replace("applied-force = \"omega\"", "applied-force = \"phi\"")
+        .replace(
+            "speed-controller = \"omega\", speed = 180",
+            "speed-controller = \"phi\", speed = 180",
         );
-    let one = one.replace(
-        "initial-velocity = { phi = 90, omega = 180 }\nduration",
-        "initial-velocity = 90\nduration",
-    );
-    let one = one.replace("applied-force = \"omega\"", "applied-force = \"phi\"");
-    let one = one.replace(
-        "speed-controller = \"omega\", speed = 180",
-        "speed-controller = \"phi\", speed = 180",
-    );
     let motion = parse(&one).unwrap().motion.unwrap();
     assert_eq!(
         motion.initial_coordinates,
@@ -276,8 +276,8 @@ fn events() {
         ("off", normal(4, 0.0), true),
         ("hard", normal(5, -15.0), false),
         ("again", EventTrigger::Revolution(PHI), false),
-    ];
-    let expected = expected.map(|(name, trigger, terminal)| NamedEvent {
+    ]
+    .map(|(name, trigger, terminal)| NamedEvent {
         name: name.to_owned(),
         trigger,
         terminal,

@@ -93,12 +93,12 @@ fn assembly_loads_and_requests_are_read_in_si() {
     };
     assert_eq!(of(twist.kind), [BodyId(0), BodyId(1)]);
     assert_eq!(of(drag.kind), [BodyId(0), BodyId(2)]);
-    let names = scene
+    let names: Vec<_> = scene
         .requests
         .reactions
         .iter()
-        .map(|&r| scene.reaction_name(r));
-    let names: Vec<_> = names.collect();
+        .map(|&r| scene.reaction_name(r))
+        .collect();
     assert_eq!(
         names,
         [

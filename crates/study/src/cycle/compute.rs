@@ -261,8 +261,8 @@ fn find_cycle(
         ..*options
     };
     let (machine, start) = (&prepared.machine, prepared.initial_state());
-    let guess = initial_transient(machine, &start, RUN_UP_REVOLUTIONS, &coarse);
-    let guess = guess.map_err(|e| run_up_error(prepared, &e, options.max_step))?;
+    let guess = initial_transient(machine, &start, RUN_UP_REVOLUTIONS, &coarse)
+        .map_err(|e| run_up_error(prepared, &e, options.max_step))?;
     let explain = |e: DynamicsError| prepared.explain(&e);
     let steady = in_first_revolution(steady_cycle(machine, &guess, options).map_err(explain)?);
     let errors = estimated_errors(prepared, machine, &steady, options)?;

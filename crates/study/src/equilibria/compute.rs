@@ -143,8 +143,8 @@ pub(crate) fn force_extent(
     interval: [f64; 2],
 ) -> Result<[f64; 2], StudyError> {
     let values =
-        static_force_and_potential(&prepared.machine, &equally_spaced(interval, POSITIONS));
-    let values = values.map_err(|e| prepared.explain(&e))?;
+        static_force_and_potential(&prepared.machine, &equally_spaced(interval, POSITIONS))
+            .map_err(|e| prepared.explain(&e))?;
     Ok(extent(values.into_iter().map(|[force, _]| force)))
 }
 

@@ -165,8 +165,8 @@ fn rows(
                 let values = table.rows.iter().map(|row| Number(row[k]));
                 (column.name.clone(), column.unit.clone(), values.collect())
             };
-            let columns = table.columns.iter().enumerate();
-            let columns: Vec<(String, String, Vec<Number>)> = columns.map(column).collect();
+            let columns: Vec<(String, String, Vec<Number>)> =
+                table.columns.iter().enumerate().map(column).collect();
             outcome.files.add(format!("{stem}.json"), json(&columns)?);
         }
     }

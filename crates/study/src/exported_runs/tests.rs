@@ -112,8 +112,8 @@ fn errors(model: &SampledModel) -> [f64; 4] {
         let slide = prepared
             .reaction_units()
             .iter()
-            .position(|(name, _)| name == "slide.normal");
-        let slide = slide.expect("the reaction");
+            .position(|(name, _)| name == "slide.normal")
+            .expect("the reaction");
         for (i, exact) in [at.m, at.a[slide], at.b[slide]].into_iter().enumerate() {
             largest[i] = largest[i].max(exact.abs());
             differences[i] = differences[i].max((exact - found[[0, 2, 3][i]]).abs());

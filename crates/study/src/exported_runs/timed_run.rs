@@ -50,21 +50,26 @@ pub(super) fn with_speeds(
             "export a run in which the coordinate grows, without repeated instants",
         ));
     }
-    let first = q[0];
     let (speed, acceleration) = match (&run.speed, &run.acceleration) {
         (Some(speed), Some(acceleration)) => (speed.values.clone(), acceleration.values.clone()),
         (None, None) => {
-            let (text, of): (_, fn(f64) -> (f64, f64)) = if accelerates {
-                let of = |travelled: f64| ((2.0 * travelled).sqrt(), 1.0);
-                ("unit acceleration from rest", of)
+            let (text, acceleration) = if accelerates {
+                ("unit acceleration from rest", 1.0)
             } else {
-                ("unit speed without acceleration", |_| (1.0, 0.0))
+                ("unit speed without acceleration", 0.0)
+            };
+            let speed = |travelled: f64| {
+                if accelerates {
+                    (2.0 * travelled).sqrt()
+                } else {
+                    1.0
+                }
             };
             notes.push(format!(
                 "`{}` has no speeds and accelerations: {text} is assumed",
                 run.file
             ));
-            q.iter().map(|q| of(q - first)).unzip()
+            q.iter().map(|at| (speed(at - q[0]), acceleration)).unzip()
         }
         _ => {
             let message = format!(

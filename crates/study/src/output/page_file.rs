@@ -67,8 +67,7 @@ fn links(outcome: &Outcome, own: &str) -> Vec<FileLink> {
             path,
         }
     };
-    let written = outcome.files.paths();
-    let written = written.map(|path| path.display().to_string());
+    let written = outcome.files.paths().map(|path| path.display().to_string());
     let all = written.chain(outcome.record.files.iter().cloned());
     all.filter(|path| path != own)
         .map(|path| link(&path))

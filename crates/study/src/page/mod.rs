@@ -141,8 +141,8 @@ mod tests {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation");
         let scene = PlaneScene::read(format!("{folder}/{name}/scene.toml")).expect("a scene");
         let analysis = Analysis::Kinetostatics;
-        let computed = compute_trajectory(&scene, analysis, Some(25), &no_progress);
-        let computed = computed.expect("a trajectory");
+        let computed =
+            compute_trajectory(&scene, analysis, Some(25), &no_progress).expect("a trajectory");
         plane_page(&scene, &computed)
     }
 

@@ -113,9 +113,9 @@ pub fn coefficients(
     }
     let (drawn, note) = reaction_figure_count(prepared.lists_reactions(), pages.len());
     let pages = pages.iter().take(drawn).enumerate();
-    let figures =
-        pages.map(|(k, (some, of))| coefficient_figure(prepared, curves, is_rounding, some, of, k));
-    let mut figures: Vec<Figure> = figures.collect();
+    let mut figures: Vec<Figure> = pages
+        .map(|(k, (some, of))| coefficient_figure(prepared, curves, is_rounding, some, of, k))
+        .collect();
     add_note(&mut figures, note.as_deref());
     (figures, note)
 }

@@ -37,9 +37,9 @@ pub(crate) fn check_study(
             }
         }
         Err(error) if error.kind() == ErrorKind::NotFound => {
-            let entries = study.iter();
-            let entries =
-                entries.map(|(key, value)| ((*key).to_owned(), toml::Value::from(value.as_str())));
+            let entries = study
+                .iter()
+                .map(|(key, value)| ((*key).to_owned(), toml::Value::from(value.as_str())));
             let table: toml::Table = entries.collect();
             let text = toml::to_string_pretty(&table).map_err(|e| reason(e.to_string()))?;
             // Shards may write it at the same time, with the same content.

@@ -27,7 +27,7 @@ pub(crate) struct WrittenForm<'a> {
 /// Closed forms as formulas or code.
 pub(crate) fn closed_form_outcome(
     scene: &WrittenForm<'_>,
-    form: ClosedForm,
+    form: &ClosedForm,
     findings: Vec<Finding>,
     format: FormulaFormat,
 ) -> Outcome {
@@ -39,7 +39,7 @@ pub(crate) fn closed_form_outcome(
         record.add(format!("{}.tolerance", f.key), "", f.tolerance);
     }
     let mut outcome = Outcome {
-        summary: summary(scene, &form, &findings),
+        summary: summary(scene, form, &findings),
         record,
         findings,
         ..Outcome::default()
@@ -47,7 +47,7 @@ pub(crate) fn closed_form_outcome(
     let about = format!("{}: closed forms, written by dwell", scene.file.title);
     let name = function_name(&scene.file.name);
     let (extension, text) = match format {
-        FormulaFormat::Latex => ("md", document(scene, &form)),
+        FormulaFormat::Latex => ("md", document(scene, form)),
         FormulaFormat::Code(language) => {
             let extension = match language {
                 Language::Rust => "rs",

@@ -84,8 +84,7 @@ impl<'a> Document<'a> {
         let (name, unit) = (&columns[abscissa].name, columns[abscissa].unit);
         // The abscissa itself is not a result, nor is the time.
         let is_result = |&k: &usize| k != abscissa && columns[k].quantity != Quantity::Time;
-        let listed = results.written.iter().copied().filter(is_result);
-        let listed: Vec<usize> = listed.collect();
+        let listed: Vec<usize> = results.written.iter().copied().filter(is_result).collect();
         Self {
             scene,
             movement: Movement {

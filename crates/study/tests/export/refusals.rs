@@ -24,8 +24,7 @@ fn drags_of_several_freedoms_are_refused_by_name() {
         env!("CARGO_MANIFEST_DIR"),
         "/../../validation/five-bar/scene.toml"
     );
-    let text = std::fs::read_to_string(path).expect("the file");
-    let text = text.replace(
+    let text = std::fs::read_to_string(path).expect("the file").replace(
         "[loads]",
         "[loads]\nwind = { drag = \"left.B\", coefficient = 1 }",
     );

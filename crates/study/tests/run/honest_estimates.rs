@@ -34,8 +34,8 @@ fn kinetic(motion: &FreeMotion) -> Vec<f64> {
     let column = table
         .columns
         .iter()
-        .position(|c| c.name == "energy.kinetic");
-    let column = column.unwrap();
+        .position(|c| c.name == "energy.kinetic")
+        .unwrap();
     table.rows.iter().map(|row| row[column]).collect()
 }
 
@@ -75,8 +75,8 @@ fn energies_to_an_accuracy_err_by_no_more_than_is_said() {
                 let (found, numbers) = (run(&scene, solver), recorded(&scene, solver));
                 let estimate = number(&numbers, "error.kinetic_energy");
                 let balance = number(&numbers, "energy_balance_error");
-                let pairs = kinetic(&found);
-                let pairs = pairs.iter().zip(&exact);
+                let energies = kinetic(&found);
+                let pairs = energies.iter().zip(&exact);
                 let error = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest;
                 let title = &scene.title;
                 let what =

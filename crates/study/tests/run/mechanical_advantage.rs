@@ -107,8 +107,8 @@ fn a_piston_has_no_pole_but_an_advantage() {
         "piston.mechanical_advantage",
         "piston.C.mechanical_advantage",
         "phi.velocity",
-    ];
-    let names = names.map(str::to_owned);
+    ]
+    .map(str::to_owned);
     scene.requests.variables = Some(names.to_vec());
     let table = table(&scene, Analysis::Kinematics, 37);
     let [pole, turning, speed, phi, force] = columns(

@@ -13,8 +13,8 @@ fn kinematics_states_its_rounding_error() {
             .summary;
         let line = summary
             .lines()
-            .find(|line| line.contains("estimated rounding error"));
-        let line = line.unwrap_or_else(|| panic!("{summary}"));
+            .find(|line| line.contains("estimated rounding error"))
+            .unwrap_or_else(|| panic!("{summary}"));
         let number = line.split("below ").nth(1).unwrap();
         number.split(' ').next().unwrap().parse::<f64>().unwrap()
     };

@@ -226,8 +226,8 @@ pub(super) fn simulated(
 fn a_free_motion_passes_the_dead_points_of_its_coordinate() {
     let motion = "[motion]\nduration = 1\ninitial-velocity = -1\nevents.low = { reaches = \"s\", value = 0.25 }\n";
     let (plane, space) = both(SLIDE, ["", ""], motion);
-    let plane = simulate_with(&plane, &by_dop853(), None, &no_progress);
-    let plane = plane.unwrap_or_else(|e| panic!("{e:?}"));
+    let plane =
+        simulate_with(&plane, &by_dop853(), None, &no_progress).unwrap_or_else(|e| panic!("{e:?}"));
     assert!(plane.early_stop.is_none(), "{:?}", plane.early_stop);
     let plane_table = written(&plane);
     let found = simulated(&space, &by_dop853(), None);

@@ -55,8 +55,8 @@ fn of_scene(name: &&str) -> (Vec<String>, usize) {
         Analysis::Kinetostatics,
     ] {
         let span = PictureSpan::default();
-        let done = analyse_trajectory_within(&scene, analysis, None, span, &no_progress);
-        let done = done.unwrap_or_else(|e| panic!("{name}: {e:?}"));
+        let done = analyse_trajectory_within(&scene, analysis, None, span, &no_progress)
+            .unwrap_or_else(|e| panic!("{name}: {e:?}"));
         add(analysis.name(), &done.outcome.pictures);
     }
     (all, count)
@@ -79,8 +79,8 @@ fn pictures_of_a_sweep_say_where_the_swept_coordinate_is() {
         "\n[coordinate-sweep]\npoints = 61\ns = [0.3, 0.7]\n",
     );
     let span = PictureSpan::default();
-    let done = analyse_trajectory_within(&scene, Analysis::Kinematics, None, span, &no_progress);
-    let done = done.unwrap_or_else(|e| panic!("{e:?}"));
+    let done = analyse_trajectory_within(&scene, Analysis::Kinematics, None, span, &no_progress)
+        .unwrap_or_else(|e| panic!("{e:?}"));
     let words = |ending: &str| {
         let mut pictures = done.outcome.pictures.iter();
         let picture = pictures.find(|picture| picture.path.ends_with(ending));

@@ -272,8 +272,8 @@ fn compare_forces(scene: &SpaceScene, row: &Row<'_>, dense: &DenseSpace, found: 
 fn compare(name: &str, analysis: Analysis) -> usize {
     let scene = accelerated(name);
     let done =
-        analyse_trajectory_within(&scene, analysis, None, PictureSpan::default(), &no_progress);
-    let done = done.unwrap_or_else(|e| panic!("{name}: {e:?}"));
+        analyse_trajectory_within(&scene, analysis, None, PictureSpan::default(), &no_progress)
+            .unwrap_or_else(|e| panic!("{name}: {e:?}"));
     assert!(done.early_stop.is_none(), "{name}");
     let kinematics = analyse_trajectory_within(
         &scene,
@@ -318,8 +318,8 @@ fn compare(name: &str, analysis: Analysis) -> usize {
             &placements,
             [&q_dot, &q_ddot],
             &loads,
-        );
-        let dense = dense.expect("singular values");
+        )
+        .expect("singular values");
         if analysis == Analysis::Kinematics {
             compare_motion(&scene, &row, &dense, &mut motion);
             continue;

@@ -72,8 +72,7 @@ fn four_joints_let_go_together() {
     // The acceleration of the sliding mechanism is zero there: as the regularised friction has it at full strength.
     let smooth = |t: f64| {
         let couple = format!("{t:?}");
-        let text = slider_crank(&couple, "initial-velocity = 1e-7\nduration = 1e-9");
-        let text = text.replace(
+        let text = slider_crank(&couple, "initial-velocity = 1e-7\nduration = 1e-9").replace(
             "radius = 0.02",
             "radius = 0.02, regularization-speed = 1e-12",
         );

@@ -111,8 +111,8 @@ fn a_lift_stands_on_its_floor_until_it_is_lifted() {
     // At zero the positions soon after are not rounded to the stop's own.
     let methods = Method::ALL.into_iter();
     for (method, floor) in methods.flat_map(|method| [(method, 1.0), (method, 0.0)]) {
-        let text = ball(&format!("min = {floor:?}"), loads, "duration = 3.0");
-        let text = text.replace("z = 1.0", &format!("z = {floor:?}"));
+        let text = ball(&format!("min = {floor:?}"), loads, "duration = 3.0")
+            .replace("z = 1.0", &format!("z = {floor:?}"));
         let [rtol, allowed] = tolerance(method);
         let run = run(&text, method, rtol);
         assert_eq!(run.stops(is_impact), Vec::<f64>::new());
@@ -226,12 +226,12 @@ duration = 5.0
 fn a_block_with_friction_rests_on_its_stop() {
     let loads =
         r#"push = { force = "ball.A", direction = [0, -1], magnitude = "if(t < 1, 30, 0)" }"#;
-    let text = ball("min = 0.5, restitution = 0.2", loads, "duration = 2.0");
-    let text = text.replace("gravity = [0, -9.81]", "gravity = [-9.81, 0]");
-    let text = text.replace(
-        "[motion]",
-        "[friction]\nline = { coefficient = 0.3 }\n[motion]",
-    );
+    let text = ball("min = 0.5, restitution = 0.2", loads, "duration = 2.0")
+        .replace("gravity = [0, -9.81]", "gravity = [-9.81, 0]")
+        .replace(
+            "[motion]",
+            "[friction]\nline = { coefficient = 0.3 }\n[motion]",
+        );
     for method in Method::ALL {
         let [rtol, _] = tolerance(method);
         let run = run(&text, method, rtol);

@@ -41,8 +41,8 @@ impl DensePose<'_> {
                 units: units.iter().map(of).collect(),
             }
         });
-        let forces = contact_forces(&contacts.collect::<Vec<_>>());
-        let forces = forces.unwrap_or_else(|| vec![f64::NAN; given.len()]);
+        let forces = contact_forces(&contacts.collect::<Vec<_>>())
+            .unwrap_or_else(|| vec![f64::NAN; given.len()]);
         let mut all = loads.to_vec();
         for ((load, _), force) in given.into_iter().zip(forces) {
             all[load].1 = force;

@@ -55,8 +55,8 @@ pub(super) fn rolling_arrows(of: &JointForces<'_>, axis: Vec2, radius: f64) -> V
         parts: Vec::new(),
         offset: point(normal * -radius),
     };
-    let parts = [(Component::Normal, normal), (Component::Tangent, axis)];
-    let parts = parts.map(|(component, axis)| of.part(component, axis));
+    let parts = [(Component::Normal, normal), (Component::Tangent, axis)]
+        .map(|(component, axis)| of.part(component, axis));
     let what = match &parts {
         [Some(_), Some(_)] => "contact force",
         [Some(_), None] => "normal force",

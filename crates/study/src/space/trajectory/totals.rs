@@ -96,8 +96,7 @@ impl Totals {
         workspace: &mut Workspace<f64>,
         results: &mut InverseDynamics<f64>,
     ) -> Result<(), StopCause> {
-        let state = model.kinematic_state(q, q_dot, workspace)?;
-        let mut state = state.apply_loads(t)?;
+        let mut state = model.kinematic_state(q, q_dot, workspace)?.apply_loads(t)?;
         for &(load, magnitude) in given {
             state.set_magnitude(load, magnitude);
         }

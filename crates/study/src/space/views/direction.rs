@@ -77,8 +77,8 @@ impl View {
 pub(super) fn best_view(points: &[Vec3]) -> View {
     let size = points
         .iter()
-        .flat_map(|a| points.iter().map(move |b| (*a - *b).norm()));
-    let size = size.fold(0.0, f64::max);
+        .flat_map(|a| points.iter().map(move |b| (*a - *b).norm()))
+        .fold(0.0, f64::max);
     let clearance = |view: &View| {
         let pairs = points
             .iter()

@@ -171,8 +171,8 @@ impl<'a> Scenery<'a> {
                 let axis = self.turned(ends[0].body, axis);
                 let (at, margin) = (in_space[0], GUIDE_MARGIN * unit);
                 let apart = axis.dot(in_space[1] - at);
-                let ends = [apart.min(0.0) - margin, apart.max(0.0) + margin];
-                let ends = ends.map(|s| at + axis.scaled(s));
+                let ends =
+                    [apart.min(0.0) - margin, apart.max(0.0) + margin].map(|s| at + axis.scaled(s));
                 let color = body.map_or(Paint::Grey, |body| self.drawing.color(body));
                 return self.bar(ends, color, ROD, None);
             }

@@ -145,8 +145,7 @@ impl SpacePositions<'_> {
         let [(first, _), .., (last, _)] = &self.all[..] else {
             return false;
         };
-        let size = first.iter().map(|p| p.position.norm());
-        let size = size.fold(0.0, f64::max);
+        let size = first.iter().map(|p| p.position.norm()).fold(0.0, f64::max);
         let same = |(a, b): (&Placement, &Placement)| {
             let turned = (0..3).map(|k| (a.rotation.columns[k] - b.rotation.columns[k]).norm());
             (a.position - b.position).norm() <= 1e-6 * size && turned.fold(0.0, f64::max) <= 1e-6

@@ -56,8 +56,8 @@ impl SweptScene for PlaneScene {
     fn inertia_extremes(&self, model: &Model) -> Result<ExtremeValues, StudyError> {
         let exact = exact_model(self, model.without_reactions())?;
         let (limits, ..) = default_limits(self, model.plan());
-        let curves = RangeCurves::of_inertia(exact, limits);
-        let curves = curves.map_err(|e| explain_position(self, model.plan(), &e))?;
+        let curves = RangeCurves::of_inertia(exact, limits)
+            .map_err(|e| explain_position(self, model.plan(), &e))?;
         Ok(curves.extremes())
     }
 

@@ -53,8 +53,8 @@ pub(crate) fn motion_values<S: SweptScene>(
     compiled: &S::Rows,
 ) -> Result<Vec<(String, f64)>, StudyError> {
     let solver = MotionSolver::Settings(SolverSettings::default());
-    let motion = scene.simulate_then(&solver, None, &no_progress, |_, of| of.motion.computed);
-    let mut motion = motion?;
+    let mut motion =
+        scene.simulate_then(&solver, None, &no_progress, |_, of| of.motion.computed)?;
     if let Some(error) = motion.early_stop.take() {
         return Err(error);
     }

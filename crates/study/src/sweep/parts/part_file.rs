@@ -43,8 +43,8 @@ type Cells = Vec<Option<f64>>;
 impl PartFormat {
     /// `headings` are those of the inputs and of the results.
     pub(super) fn new(headings: [&[String]; 2], study_hash: String) -> Result<Self, ParquetError> {
-        let index = Type::primitive_type_builder(INDEX, Physical::INT64);
-        let index = index.with_repetition(Repetition::REQUIRED);
+        let index = Type::primitive_type_builder(INDEX, Physical::INT64)
+            .with_repetition(Repetition::REQUIRED);
         let mut columns = vec![Arc::new(index.build()?)];
         let [inputs, results] = headings;
         for (names, repetition) in [
@@ -56,9 +56,9 @@ impl PartFormat {
                 columns.push(Arc::new(double.with_repetition(repetition).build()?));
             }
         }
-        let message = Type::primitive_type_builder(MESSAGE, Physical::BYTE_ARRAY);
-        let message = message.with_repetition(Repetition::OPTIONAL);
-        let message = message.with_logical_type(Some(LogicalType::String));
+        let message = Type::primitive_type_builder(MESSAGE, Physical::BYTE_ARRAY)
+            .with_repetition(Repetition::OPTIONAL)
+            .with_logical_type(Some(LogicalType::String));
         columns.push(Arc::new(message.build()?));
         let schema = Type::group_type_builder("points").with_fields(columns);
         let single = |name: &str| ColumnPath::new(vec![name.to_owned()]);
@@ -254,9 +254,9 @@ fn write_column<T: DataType>(
     values: &[T::T],
     levels: Option<&[i16]>,
 ) -> Result<(), ParquetError> {
-    let column = group.next_column()?;
-    let mut column =
-        column.ok_or_else(|| ParquetError::General("the schema has fewer columns".to_owned()))?;
+    let mut column = group
+        .next_column()?
+        .ok_or_else(|| ParquetError::General("the schema has fewer columns".to_owned()))?;
     column.typed::<T>().write_batch(values, levels, None)?;
     column.close()
 }
