@@ -5,7 +5,7 @@ use super::InitialIterate;
 use crate::error::PositionError;
 use crate::plan::{FactoredGroup, PlacementMethod, Plan, Pose};
 use crate::structure::groups::Unknown;
-use dwell_numerics::{Constant, FactorOutcome, Lift, Scalar};
+use dwell_numerics::{Constant, FactorOutcome, Lift};
 
 impl<C: Constant> Plan<C> {
     /// The unknowns of the groups that iterations solve, pruned groups left out.
@@ -16,20 +16,20 @@ impl<C: Constant> Plan<C> {
         groups.flat_map(|g| g.group.unknowns.iter().copied())
     }
 
-    /// The values of the unknowns of these groups in a pose: (cos, sin) of an angle, a counted angle (rad), a travel (m).
-    pub fn iterated_values<T: Scalar>(&self, pose: &Pose<T>) -> Vec<T> {
-        let values = self.iterated_unknowns().flat_map(|unknown| match unknown {
+    /// The values of the unknowns of these groups in a pose, rad or m.
+    pub fn iterated_values(&self, pose: &Pose<f64>) -> Vec<f64> {
+        let value = |unknown| match unknown {
             Unknown::ClassAngle(class) => {
                 let frame = self.class_frame(class);
                 if self.revolution_counted[frame] {
-                    vec![pose.angle[frame]]
+                    pose.angle[frame]
                 } else {
-                    vec![pose.rotation[frame].x, pose.rotation[frame].y]
+                    pose.rotation[frame].angle()
                 }
             }
-            Unknown::SlideTravel(slide) => vec![pose.slide_travel[slide]],
-        });
-        values.collect()
+            Unknown::SlideTravel(slide) => pose.slide_travel[slide],
+        };
+        self.iterated_unknowns().map(value).collect()
     }
 
     /// Computes the positions at the coordinates `q` (rad or m), at which the unknowns of the groups that iterations solve have the
@@ -43,20 +43,10 @@ impl<C: Constant> Plan<C> {
         values: &[T],
         pose: &mut Pose<T>,
     ) -> Result<(), PositionError> {
-        let mut next = values.iter().copied();
-        let mut value = || next.next().unwrap_or_default();
-        for unknown in self.iterated_unknowns() {
+        for (unknown, &value) in self.iterated_unknowns().zip(values) {
             match unknown {
-                Unknown::ClassAngle(class) => {
-                    let frame = self.class_frame(class);
-                    if self.revolution_counted[frame] {
-                        self.set_class_angle(class, value(), pose);
-                    } else {
-                        pose.rotation[frame].x = value();
-                        pose.rotation[frame].y = value();
-                    }
-                }
-                Unknown::SlideTravel(slide) => pose.slide_travel[slide] = value(),
+                Unknown::ClassAngle(class) => self.set_class_angle(class, value, pose),
+                Unknown::SlideTravel(slide) => pose.slide_travel[slide] = value,
             }
         }
         self.positions_from(q, pose, InitialIterate::Solution)
