@@ -72,6 +72,7 @@ fn a_recording_at_other_numbers_is_the_model_compiled_for_them() {
                 worst = worst.max((found - expected).abs() / scale(k));
             }
         }
+        // Seen: 1.9e-15 (jansen).
         assert!(worst < 1e-13, "{case}: an output differs by {worst:e}");
     }
 }
@@ -95,7 +96,11 @@ fn the_gradient_of_a_recording_is_the_difference_of_compiled_models() {
         // A solution does not depend on where the iterations began.
         let (of_numbers, of_unknowns) = gradient.split_at(recording.numbers.len());
         let largest = |of: &[f64]| of.iter().fold(0.0, |max: f64, v| max.max(v.abs()));
-        assert!(largest(of_unknowns) <= 1e-9 * largest(of_numbers), "{case}");
+        // Seen: 1.1e-17.
+        assert!(
+            largest(of_unknowns) <= 1e-15 * largest(of_numbers),
+            "{case}"
+        );
         let mut worst = 0.0_f64;
         for path in base.number_paths() {
             let value = base.value(&path).expect("a number");
@@ -122,6 +127,7 @@ fn the_gradient_of_a_recording_is_the_difference_of_compiled_models() {
             // The error of the difference: the third derivative times the step cubed, and rounding.
             worst = worst.max((found - difference).abs() / (2.0 * STEP * scale));
         }
+        // Seen: 4.8e-7 (jansen), the error of the difference.
         assert!(worst < 1e-6, "{case}: a derivative differs by {worst:e}");
     }
 }

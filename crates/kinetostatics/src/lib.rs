@@ -34,6 +34,7 @@ pub mod load;
 mod mass;
 pub mod model;
 mod pass;
+mod recorded;
 pub mod reduced;
 mod reducible_model;
 pub mod results;
@@ -57,9 +58,9 @@ pub use model::{
     Workspace,
 };
 pub use pass::InverseDynamics;
+pub use recorded::{CoefficientsRecordingError, RecordedCoefficients};
 pub use reduced::{
-    Batch, Coefficients, CoefficientsRecordingError, ExactModel, ExactWorkspace, Inertia,
-    RecordedCoefficients, ReducedModel, ReducibleModel,
+    Batch, Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel, ReducibleModel,
 };
 pub use results::{
     Distribution, FreeBodyForces, LinkForces, PowerBalance, Section, ShakingForce, Wrench,

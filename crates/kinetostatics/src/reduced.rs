@@ -11,14 +11,12 @@
 
 mod batch;
 mod lane_work;
-mod recorded;
 #[cfg(target_arch = "x86_64")]
 mod registers;
 
 pub use batch::Batch;
 pub(crate) use batch::{LANES, LaneScalar, MAX_LANES};
 pub(crate) use lane_work::{LaneWork, in_lanes};
-pub use recorded::{CoefficientsRecordingError, RecordedCoefficients};
 
 use crate::error::PositionResult;
 use crate::model::{Model, Workspace};

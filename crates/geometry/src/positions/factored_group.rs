@@ -121,14 +121,7 @@ impl<C: Constant> Plan<C> {
     ) -> Result<(), PositionError> {
         let outcome = match factored_group.method {
             PlacementMethod::Newton => {
-                if initial_iterate == InitialIterate::StoredPose {
-                    self.set_predicted_pose(group, pose)?;
-                }
-                if initial_iterate == InitialIterate::Solution {
-                    self.step_at_solution(group, factored_group, pose)?
-                } else {
-                    self.solve_by_newton(group, factored_group, pose)?
-                }
+                self.iterated_positions(group, factored_group, pose, initial_iterate)?
             }
             PlacementMethod::Linear => self.solve_linear(group, factored_group, pose)?,
             PlacementMethod::GearTrain => self.gear_train_positions(group, factored_group, pose)?,
@@ -190,7 +183,7 @@ impl<C: Constant> Plan<C> {
     }
 
     /// Sets a group's unknowns to the polynomial between its stored poses with their derivatives.
-    fn set_predicted_pose<T: Scalar>(
+    pub(super) fn set_predicted_pose<T: Scalar>(
         &self,
         group: usize,
         pose: &mut Pose<T>,
@@ -225,7 +218,7 @@ impl<C: Constant> Plan<C> {
     }
 
     /// Newton's method; leaves the factors of the Jacobian where it ends.
-    fn solve_by_newton<T: Lift<C>>(
+    pub(super) fn solve_by_newton<T: Lift<C>>(
         &self,
         group: usize,
         factored_group: &FactoredGroup,

@@ -52,8 +52,24 @@ impl<C: Constant> Plan<C> {
         self.positions_from(q, pose, InitialIterate::Solution)
     }
 
+    /// The positions of a group by Newton's method, from where it starts; leaves the factors of the Jacobian where it ends.
+    pub(super) fn iterated_positions<T: Lift<C>>(
+        &self,
+        group: usize,
+        factored_group: &FactoredGroup,
+        pose: &mut Pose<T>,
+        initial_iterate: InitialIterate,
+    ) -> Result<FactorOutcome, PositionError> {
+        match initial_iterate {
+            InitialIterate::StoredPose => self.set_predicted_pose(group, pose)?,
+            InitialIterate::CurrentPose => {}
+            InitialIterate::Solution => return self.step_at_solution(group, factored_group, pose),
+        }
+        self.solve_by_newton(group, factored_group, pose)
+    }
+
     /// One step of Newton's method at a solution; leaves the factors of the Jacobian after it.
-    pub(super) fn step_at_solution<T: Lift<C>>(
+    fn step_at_solution<T: Lift<C>>(
         &self,
         group: usize,
         factored_group: &FactoredGroup,

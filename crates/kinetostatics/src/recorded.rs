@@ -1,11 +1,11 @@
 //! The reduced coefficients as straight-line code of the coordinate, the dimensions and the mass properties: what a gradient by
 //! all numbers of a mechanism is computed from.
 
-use super::Coefficients;
 use crate::error::PositionResult;
 use crate::mass::Mass;
 use crate::model::Model;
 use crate::pass::{PassModel, RecursivePass};
+use crate::reduced::Coefficients;
 use crate::variants::{PER_BODY, mass_of};
 use dwell_geometry::{Mechanism, PositionError};
 use dwell_numerics::{RecordedNumber, RecordingError, StraightLine, record_at};
