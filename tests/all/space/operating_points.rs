@@ -135,6 +135,31 @@ fn equilibria_are_where_the_dense_static_force_vanishes() {
 }
 
 /// The state matrix of the governor as it turns: the accelerations of the dense equations by differences of coordinates and speeds.
+/// The massless gimbals of the gyroscope are in line where its rotor stands or hangs, and the inertia is singular there. Each of the two is
+/// one equilibrium all the same, neutral in both coordinates about the vertical, with λ² = ± m g l / I for the distance l of the centre of
+/// mass from the axis of nutation.
+#[test]
+fn a_gyroscope_at_rest_stands_or_hangs() {
+    let scene = scene("gyroscope", "");
+    let found = compute_equilibria(&scene).expect("equilibria");
+    let square = 0.3 * 9.81 * 0.05 / (0.001 + 0.3 * 0.05 * 0.05);
+    let mut squares: Vec<f64> = Vec::new();
+    for equilibrium in &found.found {
+        assert_eq!(equilibrium.neutral.len(), 2);
+        assert!(equilibrium.y[1].sin().abs() < 1e-7);
+        // The square of the greatest eigenvalue, real or imaginary.
+        let parts = equilibrium.eigenvalues.iter();
+        let signed = parts.map(|[re, im]| re * re - im * im);
+        squares.extend(signed.max_by(|a, b| a.abs().total_cmp(&b.abs())));
+    }
+    squares.sort_by(f64::total_cmp);
+    assert_eq!(squares.len(), 2, "{squares:?}");
+    for (found, expected) in squares.iter().zip([-square, square]) {
+        // Seen: 5.6e-16 of it.
+        assert!((found - expected).abs() < 5e-14 * square, "{found}");
+    }
+}
+
 #[test]
 fn the_state_matrix_is_the_slope_of_the_dense_accelerations() {
     let text = "\n[motion]\nduration = 1\ninitial-velocity.q = 0.7\ninitial-velocity.s = 4.0\n";

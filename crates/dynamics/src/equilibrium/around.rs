@@ -129,7 +129,7 @@ impl<M: MovingModel> AtRest<'_, M> {
 }
 
 /// The part of a vector that lies in the span of some directions (Gram and Schmidt).
-fn projection(vector: &[f64], directions: &[Vec<f64>]) -> Vec<f64> {
+pub(super) fn projection(vector: &[f64], directions: &[Vec<f64>]) -> Vec<f64> {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let mut basis: Vec<Vec<f64>> = Vec::new();
     let mut sum = vec![0.0; vector.len()];

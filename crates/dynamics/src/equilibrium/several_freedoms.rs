@@ -4,6 +4,7 @@
 //! additive sequence of Roberts (2018), the same in every run.
 
 use super::Equilibrium;
+use super::around::projection;
 use super::at_rest::{AtRest, none};
 use crate::error::{DynamicsError, Result};
 use crate::machine::{Machine, MovingModel};
@@ -57,7 +58,7 @@ pub fn equilibria_from_starts<M: MovingModel>(
     if search.found.is_empty() {
         return Err(cause(machine, &forces, failure));
     }
-    let mut found = search.found;
+    let mut found = search.distinct()?;
     // Coordinates that differ by rounding are in no order.
     let key = |e: &Equilibrium| -> Vec<i64> {
         let coordinates = e.y[..n].iter();
@@ -129,6 +130,46 @@ impl<M: MovingModel> Search<'_, '_, M> {
             self.found.push(found);
         }
         Ok(())
+    }
+
+    /// One equilibrium of each that continue into each other, that with the most neutral directions. They are several where a slide
+    /// towards the start ended early, because the inertia is singular: massless gimbals in line.
+    fn distinct(mut self) -> Result<Vec<Equilibrium>> {
+        let mut all = std::mem::take(&mut self.found);
+        all.sort_by_key(|found| std::cmp::Reverse(found.neutral.len()));
+        let mut kept = Vec::new();
+        for found in all {
+            if !self.continues_one_of(&kept, &found)? {
+                kept.push(found);
+            }
+        }
+        Ok(kept)
+    }
+
+    /// Whether an equilibrium differs from a known one along neutral directions alone, and no force acts half-way.
+    fn continues_one_of(&mut self, kept: &[Equilibrium], found: &Equilibrium) -> Result<bool> {
+        let n = self.at_rest.free();
+        for known in kept {
+            let neutral = known.neutral.iter().chain(&found.neutral);
+            let directions: Vec<Vec<f64>> = neutral.map(|n| n.direction.clone()).collect();
+            let apart: Vec<f64> = (0..n).map(|k| found.y[k] - known.y[k]).collect();
+            let along = projection(&apart, &directions);
+            let errors = known.errors.iter().zip(&found.errors);
+            let mut across = apart.iter().zip(&along).zip(errors);
+            let differs = |((apart, along), (one, other)): ((&f64, &f64), (&f64, &f64))| {
+                (apart - along).abs() > SAME + 4.0 * (one + other)
+            };
+            if known.neutral.is_empty() || across.any(differs) {
+                continue;
+            }
+            self.at_rest.y.copy_from_slice(&known.y);
+            let coordinates = self.at_rest.y.iter_mut().zip(&along);
+            coordinates.for_each(|(q, along)| *q += 0.5 * along);
+            if matches!(self.at_rest.has_forces(), Ok(false)) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// Turns angles by whole revolutions into their ranges; whether the state is then within them, and balanced.
