@@ -132,11 +132,20 @@ impl<M: MovingModel> Search<'_, '_, M> {
         Ok(())
     }
 
-    /// One equilibrium of each that continue into each other, that with the most neutral directions. They are several where a slide
-    /// towards the start ended early, because the inertia is singular: massless gimbals in line.
+    /// One equilibrium of those that continue into each other: of those with the most neutral directions the nearest to the start. They are
+    /// several where a slide towards the start ended early, because the inertia is singular: massless gimbals in line.
     fn distinct(mut self) -> Result<Vec<Equilibrium>> {
         let mut all = std::mem::take(&mut self.found);
-        all.sort_by_key(|found| std::cmp::Reverse(found.neutral.len()));
+        let n = self.at_rest.free();
+        let distance = |found: &Equilibrium| -> f64 {
+            let apart = found.y[..n].iter().zip(self.first);
+            apart.map(|(q, start)| (q - start) * (q - start)).sum()
+        };
+        all.sort_by(|one, other| {
+            let by_distance = distance(one).total_cmp(&distance(other));
+            let by_directions = other.neutral.len().cmp(&one.neutral.len());
+            by_directions.then(by_distance)
+        });
         let mut kept = Vec::new();
         for found in all {
             if !self.continues_one_of(&kept, &found)? {
