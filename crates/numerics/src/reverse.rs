@@ -132,7 +132,7 @@ mod tests {
             });
             let by_duals = function(x, y).into_iter().zip(weights);
             let by_duals = by_duals.map(|(f, w)| w * f.d);
-            // Seen: 4.5e-16.
+            // Seen: 8.9e-16.
             assert!((by_duals.sum::<f64>() - found).abs() < 1e-14);
         }
     }

@@ -12,6 +12,8 @@ use std::f64::consts::TAU;
 
 /// Two equilibria are equal if their coordinates differ by less than this, rad or m, in addition to their errors.
 const SAME: f64 = 1e-6;
+/// Steps from one equilibrium to another, between which no force must act if one continues into the other.
+const WAY_STEPS: usize = 16;
 
 /// The equilibria that Newton's method finds within the `ranges` of the free coordinates (rad or m), from the state `first`
 /// and from as many more `starts` in these ranges, in the order of the coordinates. If equilibria continue along some
@@ -155,7 +157,7 @@ impl<M: MovingModel> Search<'_, '_, M> {
         Ok(kept)
     }
 
-    /// Whether an equilibrium differs from a known one along neutral directions alone, and no force acts half-way.
+    /// Whether an equilibrium differs from a known one along neutral directions alone, and no force acts on the way.
     fn continues_one_of(&mut self, kept: &[Equilibrium], found: &Equilibrium) -> Result<bool> {
         let n = self.at_rest.free();
         for known in kept {
@@ -171,10 +173,13 @@ impl<M: MovingModel> Search<'_, '_, M> {
             if known.neutral.is_empty() || across.any(differs) {
                 continue;
             }
-            self.at_rest.y.copy_from_slice(&known.y);
-            let coordinates = self.at_rest.y.iter_mut().zip(&along);
-            coordinates.for_each(|(q, along)| *q += 0.5 * along);
-            if matches!(self.at_rest.has_forces(), Ok(false)) {
+            let is_free = |k: usize| {
+                self.at_rest.y.copy_from_slice(&known.y);
+                let coordinates = self.at_rest.y.iter_mut().zip(&along);
+                coordinates.for_each(|(q, along)| *q += along * k as f64 / WAY_STEPS as f64);
+                matches!(self.at_rest.has_forces(), Ok(false))
+            };
+            if (1..WAY_STEPS).all(is_free) {
                 return Ok(true);
             }
         }
