@@ -4,7 +4,7 @@
 use dwell_geometry::{Range, Reaction};
 use dwell_kinetostatics::variants::{Extremum, Turn, TurningVariant, VariantModel};
 use dwell_kinetostatics::{ExactModel, Model, ReducedModel};
-use dwell_scene::PlaneScene;
+use dwell_scene::{PlaneScene, SceneFile};
 use dwell_tests::fixtures;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -42,7 +42,7 @@ fn variant_base(case: &str, reaction: &str) -> (PlaneScene, Reaction) {
 }
 
 /// A number from −1 to 1 by a counter (splitmix64).
-fn random(counter: u64) -> f64 {
+pub(crate) fn random(counter: u64) -> f64 {
     let mut z = counter.wrapping_mul(0x9E37_79B9_7F4A_7C15);
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -51,22 +51,40 @@ fn random(counter: u64) -> f64 {
 
 /// All numbers of the bodies changed by up to a part of them; those that are zero, by a part of the reach.
 pub(crate) fn variant(scene: &PlaneScene, deviation: f64, number: u64) -> PlaneScene {
-    variant_in(scene, &scene.number_paths(), deviation, number)
+    variant_of_paths(scene, &scene.number_paths(), deviation, number)
 }
 
 /// The same of the numbers at some paths.
-fn variant_in(scene: &PlaneScene, paths: &[String], deviation: f64, number: u64) -> PlaneScene {
+fn variant_of_paths(
+    scene: &PlaneScene,
+    paths: &[String],
+    deviation: f64,
+    number: u64,
+) -> PlaneScene {
+    let length = scene.to_scene_unit(scene.mechanism.size(), false).0;
+    let values = variant_in(scene, paths, length, deviation, number);
+    scene.with_values(&values).expect("a scene")
+}
+
+/// The values of numbers at some paths changed in this way; `length` is a length of the order of the mechanism.
+pub(crate) fn variant_in<'a>(
+    scene: &SceneFile,
+    paths: &'a [String],
+    length: f64,
+    deviation: f64,
+    number: u64,
+) -> Vec<(&'a str, f64)> {
     let mut values = Vec::new();
     for (k, path) in paths.iter().enumerate() {
         let value = scene.value(path).expect("a number");
         let change = deviation * random(1 + 1000 * number + k as u64);
         let changed = match value {
-            0.0 => 0.01 * scene.to_scene_unit(scene.mechanism.size(), false).0 * change,
+            0.0 => 0.01 * length * change,
             value => value * (1.0 + change),
         };
         values.push((path.as_str(), changed));
     }
-    scene.with_values(&values).expect("a scene")
+    values
 }
 
 fn compile(scene: &PlaneScene, reaction: Reaction) -> Option<Model> {

@@ -3,7 +3,7 @@
 use crate::mechanism::{BodyId, Mechanism};
 use crate::plan::{Plan, Pose};
 use crate::plane::Vec2;
-use dwell_numerics::Scalar;
+use dwell_numerics::{Constant, Scalar};
 
 impl Plan {
     /// The orientation (cos, sin) of a body.
@@ -19,35 +19,10 @@ impl Plan {
         counted.unwrap_or_else(|| self.body_rotation(body, pose).angle())
     }
 
-    /// The angle of a body's frame with its whole revolutions, rad; `None` unless actuators turn the frame from the
-    /// ground or a coupling or load needs it.
-    pub(crate) fn counted_angle<T: Scalar>(&self, body: usize, pose: &Pose<T>) -> Option<T> {
-        let orientation = self.frames.orientations[body];
-        let offset = orientation.offset_angle;
-        if self.revolution_counted[orientation.frame] {
-            let revolution_offset = self.revolution_offsets.get(body).copied().unwrap_or(0.0);
-            return Some(pose.angle[orientation.frame] + T::from_f64(offset + revolution_offset));
-        }
-        let angle = self.actuated_angle(orientation.frame, pose)?;
-        Some(angle + T::from_f64(offset))
-    }
-
     /// Whether the angle of this body is known over all revolutions: it is counted, or actuators alone determine it.
     pub fn counts_revolutions(&self, body: BodyId) -> bool {
         let frame = self.frames.orientations[body.0].frame;
         self.revolution_counted[frame] || self.frames.frames[frame].orientation_class == 0
-    }
-
-    /// The angle of a frame that actuators alone rotate from the ground's, rad.
-    fn actuated_angle<T: Scalar>(&self, frame: usize, pose: &Pose<T>) -> Option<T> {
-        if self.frames.frames[frame].orientation_class != 0 {
-            return None;
-        }
-        let mut angle = T::from_f64(0.0);
-        for (actuator, sign) in self.frames.turned_by(frame) {
-            angle += T::from_f64(sign) * pose.q[actuator];
-        }
-        Some(angle)
     }
 
     /// The frame of every body, the ground's included: origin x, y (m) and
@@ -66,5 +41,32 @@ impl Plan {
             frames[moving_body.body] = [origin.x, origin.y, angle];
         }
         frames
+    }
+}
+
+impl<C: Constant> Plan<C> {
+    /// The angle of a body's frame with its whole revolutions, rad; `None` unless actuators turn the frame from the
+    /// ground or a coupling or load needs it.
+    pub(crate) fn counted_angle<T: Scalar>(&self, body: usize, pose: &Pose<T>) -> Option<T> {
+        let orientation = self.frames.orientations[body];
+        let offset = orientation.offset_angle;
+        if self.revolution_counted[orientation.frame] {
+            let revolution_offset = self.revolution_offsets.get(body).copied().unwrap_or(0.0);
+            return Some(pose.angle[orientation.frame] + T::from_f64(offset + revolution_offset));
+        }
+        let angle = self.actuated_angle(orientation.frame, pose)?;
+        Some(angle + T::from_f64(offset))
+    }
+
+    /// The angle of a frame that actuators alone rotate from the ground's, rad.
+    fn actuated_angle<T: Scalar>(&self, frame: usize, pose: &Pose<T>) -> Option<T> {
+        if self.frames.frames[frame].orientation_class != 0 {
+            return None;
+        }
+        let mut angle = T::from_f64(0.0);
+        for (actuator, sign) in self.frames.turned_by(frame) {
+            angle += T::from_f64(sign) * pose.q[actuator];
+        }
+        Some(angle)
     }
 }

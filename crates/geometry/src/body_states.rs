@@ -7,13 +7,13 @@ use crate::mechanism::{BodyId, Coordinate, Guide, JointId, Mechanism};
 use crate::motion::Motion;
 use crate::plan::{Plan, Pose};
 use crate::plane::{Vec2, vec2};
-use dwell_numerics::Scalar;
+use dwell_numerics::{Constant, Lift, Scalar};
 
 /// The state of one body, in ground axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BodyState<T = f64> {
+pub struct BodyState<T = f64, C = f64> {
     /// The body's joint origin in its own frame, m.
-    local_origin: Vec2,
+    local_origin: Vec2<C>,
     /// Its joint origin, from the [origin](BodyStates::origin) of the states, m.
     pub joint_origin: Vec2<T>,
     /// Velocity of the joint origin, m/s.
@@ -31,10 +31,10 @@ pub struct BodyState<T = f64> {
     pub angular_acceleration: T,
 }
 
-impl<T: Scalar> BodyState<T> {
+impl<C: Constant, T: Lift<C>> BodyState<T, C> {
     /// From the body's joint origin to one of its points (in its frame, m), in ground axes, m.
     #[inline]
-    pub fn moment_arm(&self, point: Vec2) -> Vec2<T> {
+    pub fn moment_arm(&self, point: Vec2<C>) -> Vec2<T> {
         (point - self.local_origin).cast().rotate(self.rotation)
     }
 
@@ -81,17 +81,17 @@ pub struct Separation<T = f64> {
 
 /// A coordinate with the bodies, points and axis that its evaluation needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum CoordinateFunction {
+pub enum CoordinateFunction<C = f64> {
     /// Angle of the second body from the first.
     Angle([BodyId; 2]),
     /// Travel t·(P₂ − P₁).
-    Travel(Guide),
+    Travel(Guide<Vec2<C>>),
     /// Distance of two points.
     Length {
         /// The bodies.
         bodies: [BodyId; 2],
         /// The point on each, m.
-        points: [Vec2; 2],
+        points: [Vec2<C>; 2],
     },
 }
 
@@ -115,18 +115,18 @@ impl CoordinateFunction {
 
 /// The state of every body at a pose and a motion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct BodyStates<T = f64> {
+pub struct BodyStates<T = f64, C = f64> {
     /// The ground's joint origin, from which all positions are measured. Differences of positions therefore do not
     /// depend on the position of the mechanism.
-    origin: Vec2,
+    origin: Vec2<C>,
     /// One state for each body, including the ground.
-    bodies: Vec<BodyState<T>>,
+    bodies: Vec<BodyState<T, C>>,
 }
 
-impl<T: Scalar> BodyStates<T> {
+impl<C: Constant, T: Lift<C>> BodyStates<T, C> {
     /// Room for the states of a plan's bodies, all at rest.
-    pub fn new(plan: &Plan) -> Self {
-        let rest = |&local: &Vec2| BodyState {
+    pub fn new(plan: &Plan<C>) -> Self {
+        let rest = |&local: &Vec2<C>| BodyState {
             local_origin: local,
             joint_origin: Vec2::zero(),
             velocity: Vec2::zero(),
@@ -143,7 +143,7 @@ impl<T: Scalar> BodyStates<T> {
     }
 
     /// Takes over the dimensions of a plan whose numbers have changed since these states were made.
-    pub fn set_dimensions(&mut self, plan: &Plan) {
+    pub fn set_dimensions(&mut self, plan: &Plan<C>) {
         self.origin = plan.tree().joint_origins[plan.lowered.ground];
         let bodies = self.bodies.iter_mut().zip(&plan.tree().joint_origins);
         bodies.for_each(|(state, &local)| state.local_origin = local);
@@ -156,13 +156,13 @@ impl<T: Scalar> BodyStates<T> {
     }
 
     /// Fills the states from a pose and a motion with accelerations.
-    pub fn fill(&mut self, plan: &Plan, pose: &Pose<T>, motion: &Motion<T>) {
+    pub fn fill(&mut self, plan: &Plan<C>, pose: &Pose<T>, motion: &Motion<T>) {
         self.fill_velocities(plan, pose, motion);
         self.fill_accelerations(plan, pose, motion);
     }
 
     /// Positions and velocities from a pose and a motion; the accelerations are not changed.
-    pub fn fill_velocities(&mut self, plan: &Plan, pose: &Pose<T>, motion: &Motion<T>) {
+    pub fn fill_velocities(&mut self, plan: &Plan<C>, pose: &Pose<T>, motion: &Motion<T>) {
         for (moving_body, tree_joint) in plan.moving_bodies().iter().zip(&plan.tree().joints) {
             let body = moving_body.body;
             let parent = &self.bodies[tree_joint.parent];
@@ -193,7 +193,7 @@ impl<T: Scalar> BodyStates<T> {
     }
 
     /// Accelerations from a pose and a motion whose velocities the states have.
-    pub fn fill_accelerations(&mut self, plan: &Plan, pose: &Pose<T>, motion: &Motion<T>) {
+    pub fn fill_accelerations(&mut self, plan: &Plan<C>, pose: &Pose<T>, motion: &Motion<T>) {
         for (moving_body, tree_joint) in plan.moving_bodies().iter().zip(&plan.tree().joints) {
             let body = moving_body.body;
             let parent = &self.bodies[tree_joint.parent];
@@ -219,7 +219,7 @@ impl<T: Scalar> BodyStates<T> {
     }
 
     /// The point of the ground from which joint origins are measured, m.
-    pub fn origin(&self) -> Vec2 {
+    pub fn origin(&self) -> Vec2<C> {
         self.origin
     }
 
@@ -235,13 +235,13 @@ impl<T: Scalar> BodyStates<T> {
 
     /// The state of a body.
     #[inline]
-    pub fn body(&self, body: BodyId) -> &BodyState<T> {
+    pub fn body(&self, body: BodyId) -> &BodyState<T, C> {
         &self.bodies[body.0]
     }
 
     /// A point of a body, given in its frame, m.
     #[inline]
-    pub fn point(&self, body: BodyId, point: Vec2) -> PointState<T> {
+    pub fn point(&self, body: BodyId, point: Vec2<C>) -> PointState<T> {
         let state = self.body(body);
         let moment_arm = state.moment_arm(point);
         PointState {
@@ -252,7 +252,7 @@ impl<T: Scalar> BodyStates<T> {
     }
 
     /// The separation of two points, m. Each point is given in its body's frame.
-    pub fn separation(&self, bodies: [BodyId; 2], points: [Vec2; 2]) -> Separation<T> {
+    pub fn separation(&self, bodies: [BodyId; 2], points: [Vec2<C>; 2]) -> Separation<T> {
         let [one, two] = bodies.map(|b| self.body(b));
         let [a, b] = [one.moment_arm(points[0]), two.moment_arm(points[1])];
         let gap = (two.joint_origin - one.joint_origin) + (b - a);
@@ -285,7 +285,7 @@ impl<T: Scalar> BodyStates<T> {
 
     /// Value, speed and acceleration of a coordinate: rad or m, per s, per s². Angles are those of [`angle`](Self::angle).
     /// If two points coincide, the derivatives of their distance are one-sided, for increasing time.
-    pub fn coordinate(&self, function: CoordinateFunction) -> [T; 3] {
+    pub fn coordinate(&self, function: CoordinateFunction<C>) -> [T; 3] {
         match function {
             CoordinateFunction::Angle(bodies) => self.angle(bodies),
             CoordinateFunction::Travel(guide) => {

@@ -51,6 +51,7 @@ mod lower;
 mod mechanism;
 mod motion;
 mod multipliers;
+mod numbers;
 mod plan;
 mod planar_equivalent;
 mod planes;
@@ -65,10 +66,12 @@ mod wrench;
 
 pub use branch_fit::{BranchFit, BranchFitWorkspace};
 pub use change_points::ChangePoint;
-pub use coordinate::{Coordinate, CoordinateFunction, Counting};
+pub use coordinate::{Coordinate, CoordinateFunction, CountedRevolutions, Counting};
 pub use frames::{BodyMotion, Frame};
 pub use joint_kinds::{Condition, JointKind};
-pub use mechanism::{Actuator, ActuatorKind, Assembly, Joint, Mechanism, Placement, Side};
+pub use mechanism::{
+    Actuator, ActuatorKind, Assembly, Joint, JointNumbers, Mechanism, Placement, Side,
+};
 pub use multipliers::Forces;
 pub use plan::{GroupDescription, Plan, Pose, PoseMotion};
 pub use planar_equivalent::PlanarEquivalent;

@@ -58,7 +58,9 @@ pub use model::{
     Workspace,
 };
 pub use pass::InverseDynamics;
-pub use recorded::{CoefficientsRecordingError, RecordedCoefficients};
+pub use recorded::{
+    Described, RecordableModel, RecordedState, StateLayout, StateRecordingError, WantedMotion,
+};
 pub use reduced::{
     Batch, Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel, ReducibleModel,
 };

@@ -24,7 +24,7 @@ pub(crate) use signal::{SignalWorkspace, compile_signals, compile_signals_by};
 pub(crate) use strength::{Line, drag};
 pub use strength::{LoadSymbol, Strength, StrengthWords};
 pub use wrench::{AppliedWrench, ForceSource};
-pub(crate) use wrench::{find_couple_points, on_two_bodies};
+pub(crate) use wrench::{LoadPlaces, find_couple_points, on_two_bodies};
 
 pub use dwell_geometry::Guide;
 

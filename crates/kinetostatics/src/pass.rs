@@ -19,7 +19,7 @@ pub(crate) use sources::ReactionSources;
 use crate::mass::Mass;
 use crate::varying_inertia::FrameInertia;
 use dwell_geometry::{Mechanism, Plan, Vec2};
-use dwell_numerics::{Constant, Lift, Scalar};
+use dwell_numerics::{Constant, Lift};
 use replaced_vectors::{replace_vector, vector_to};
 
 /// The parts of a model that a pass reads: the plan, the inertia of the bodies, and the sources of the reactions.
@@ -57,7 +57,7 @@ impl PassModel {
 
     /// The same with dimensions (m) and masses (kg) in another type: constants of it, until
     /// [`set_masses`](PassModel::set_masses) makes them what an evaluation depends on.
-    pub(crate) fn lifted<C: Constant + Lift<f64>>(&self) -> PassModel<C> {
+    pub(crate) fn lifted<C: Constant>(&self) -> PassModel<C> {
         let inertial = |body: &InertialBody| InertialBody {
             moving_body: body.moving_body,
             body: body.body,
@@ -88,7 +88,7 @@ impl PassModel {
     }
 }
 
-impl<C: Constant + Scalar> PassModel<C> {
+impl<C: Constant> PassModel<C> {
     /// Sets other masses, and takes over the dimensions of its plan. Returns false if the structure has no place for
     /// them: for the mass of a massless body, or for a centre of mass away from an origin.
     pub(crate) fn set_masses(&mut self, masses: &[Mass<C>]) -> bool {

@@ -1,108 +1,195 @@
-//! The reduced coefficients as straight-line code of the coordinate, the dimensions and the mass properties: what a gradient by
-//! all numbers of a mechanism is computed from.
+//! A state of prescribed motion as straight-line code of the motion, the magnitudes of the loads and all numbers of a mechanism: what
+//! gradients by these numbers are computed from.
+//!
+//! ```text
+//! inputs    q, q̇, q̈, magnitudes F of the loads, numbers p, solution u of the closures
+//! outputs   actuator forces τ, reactions, wanted coordinates s, ṡ, s̈, wanted points with velocity and acceleration
+//! ```
+//!
+//! Everything about a mechanism of prescribed motion follows from it: at q̇ = 0, q̈ = 1 and F = 0 the outputs are m and all a, at q̇ = 1, q̈ = 0
+//! they are ½m′ and all b. The code holds at other poses on the same branch; by its solution u it has no iterations, and its derivatives by
+//! u are zero.
+
+mod numbered;
+mod plane;
+
+pub(crate) use numbered::Numbered;
 
 use crate::error::PositionResult;
-use crate::mass::Mass;
-use crate::model::Model;
-use crate::pass::{PassModel, RecursivePass};
-use crate::reduced::Coefficients;
-use crate::variants::{PER_BODY, mass_of};
-use dwell_geometry::{Mechanism, PositionError};
+use crate::model::{MachineModel, ModelLoad};
+use dwell_geometry::{BodyId, PositionError};
 use dwell_numerics::{RecordedNumber, RecordingError, StraightLine, record_at};
 use thiserror::Error;
 
-/// Why the coefficients of a mechanism cannot be recorded.
+/// Why a state cannot be recorded.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum CoefficientsRecordingError {
-    /// It has another structure than the model, or a vector, a mass or an inertia that is zero in the model.
-    #[error(
-        "the mechanism has another structure than the model, or a number where the model has none"
-    )]
+pub enum StateRecordingError {
+    /// The numbers do not fit the structure of the model.
+    #[error("the numbers do not fit the structure of the model")]
     Structure,
-    /// It has not one actuator.
-    #[error("it has {0} actuators, not one")]
-    Actuators(usize),
-    /// An evaluation failed or has no straight-line code.
+    /// A wanted coordinate does not exist.
+    #[error("{0}")]
+    Coordinate(&'static str),
+    /// A load that has no direction at the pose.
+    #[error("load {0} has no direction at the pose")]
+    NoDirection(usize),
+    /// There is no pose.
     #[error(transparent)]
-    Recording(#[from] RecordingError<PositionError>),
+    Position(#[from] PositionError),
 }
 
-/// The reduced coefficients of a mechanism as operations.
+/// What is wanted of a state beside the forces of the actuators and the reactions of the model.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RecordedCoefficients {
-    /// The operations. [`inputs`](Self::inputs) are the coordinate (rad or m), the numbers, and the unknowns of groups that are solved by
-    /// iterations; outputs are m, ½m′, all a, all b.
-    pub code: StraightLine,
-    /// The dimensions, m, and by body the mass (kg), the centre of mass (m, m) and the moment of inertia about it (kg m²), in the
-    /// order of [`VariantModel::numbers`](crate::variants::VariantModel::numbers).
-    pub numbers: Vec<f64>,
-    model: PassModel,
+pub struct WantedMotion<K, V> {
+    /// Coordinates.
+    pub coordinates: Vec<K>,
+    /// Points, m in the frames of their bodies.
+    pub points: Vec<(BodyId, V)>,
 }
 
-impl RecordedCoefficients {
-    /// The inputs of the operations at a coordinate, rad or m: the coordinate, [`numbers`](Self::numbers), the unknowns there.
-    ///
-    /// # Errors
-    /// [`PositionError`] if there is no pose.
-    pub fn inputs(&self, q: f64) -> PositionResult<Vec<f64>> {
-        inputs(&self.model, &self.numbers, q)
+impl<K, V> Default for WantedMotion<K, V> {
+    fn default() -> Self {
+        Self {
+            coordinates: Vec::new(),
+            points: Vec::new(),
+        }
     }
 }
 
-fn inputs(model: &PassModel, numbers: &[f64], q: f64) -> PositionResult<Vec<f64>> {
-    let mut pose = model.plan.pose();
-    model.plan.positions(&[q], &mut pose)?;
-    Ok([&[q], numbers, &model.plan.iterated_values(&pose)].concat())
+/// The description of a machine by its numbers.
+#[derive(Debug)]
+pub struct Described<'a, M: RecordableModel> {
+    /// The mechanism.
+    pub mechanism: &'a M::Mechanism,
+    /// By body: its mass.
+    pub masses: &'a [M::Mass],
+    /// The loads.
+    pub loads: &'a [ModelLoad<M>],
+    /// What is wanted.
+    pub wanted: &'a WantedMotion<M::Coordinate, M::Point>,
 }
 
-impl Model {
-    /// Records the reduced coefficients of a mechanism of the structure of this model, of one actuator, with these masses: at each of
-    /// the coordinates, rad or m, where the operations must be the same.
+impl<M: RecordableModel> Clone for Described<'_, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<M: RecordableModel> Copy for Described<'_, M> {}
+
+/// A model whose states of motion can be recorded.
+pub trait RecordableModel: MachineModel {
+    /// The description of a mechanism.
+    type Mechanism;
+    /// The description of a mass.
+    type Mass;
+    /// A point of a body, m.
+    type Point: Copy;
+
+    /// All numbers on which a state depends, of a machine of this structure: of its joints, masses and loads, and of what is wanted. `None`
+    /// if it has another structure.
+    fn numbers(&self, of: Described<'_, Self>) -> Option<Vec<f64>>;
+
+    /// The solution of the closures at coordinates, rad or m.
     ///
     /// # Errors
-    /// [`CoefficientsRecordingError`].
-    pub fn record_coefficients(
+    /// [`PositionError`] when there is no pose.
+    fn solution(&self, q: &[f64], workspace: &mut Self::Workspace<f64>)
+    -> PositionResult<Vec<f64>>;
+
+    /// The outputs of a state of the machine `of`, whose structure is that of this model, at these inputs.
+    ///
+    /// # Errors
+    /// [`StateRecordingError`].
+    fn outputs(
         &self,
-        mechanism: &Mechanism,
-        masses: &[Mass],
-        coordinates: &[f64],
-    ) -> Result<RecordedCoefficients, CoefficientsRecordingError> {
-        if self.plan().actuators() != 1 {
-            return Err(CoefficientsRecordingError::Actuators(
-                self.plan().actuators(),
-            ));
-        }
-        let dimensions = self.plan().dimensions(mechanism);
-        let dimensions = dimensions.ok_or(CoefficientsRecordingError::Structure)?;
-        let mut model = self.pass_model.clone();
-        if !model.set_numbers(&dimensions, masses) {
-            return Err(CoefficientsRecordingError::Structure);
-        }
-        let count = dimensions.len();
-        let mut numbers = dimensions;
-        numbers.extend((masses.iter()).flat_map(|m| [m.mass, m.center.x, m.center.y, m.inertia]));
-        let positions = coordinates.iter().map(|&q| inputs(&model, &numbers, q));
-        let positions: Vec<Vec<f64>> = positions
-            .collect::<PositionResult<_>>()
-            .map_err(RecordingError::Evaluation)?;
-        let code = record_at(&positions, |inputs| {
-            let (q, rest) = inputs.split_at(1);
-            let (dimensions, rest) = rest.split_at(count);
-            let (masses, unknowns) = rest.split_at(numbers.len() - count);
-            let masses: Vec<_> = masses.chunks_exact(PER_BODY).map(mass_of).collect();
-            let mut lifted = self.pass_model.lifted::<RecordedNumber>();
-            lifted.set_numbers(dimensions, &masses);
-            let (mut pose, mut motion) = (lifted.plan.pose(), lifted.plan.motion());
-            let mut passes = RecursivePass::new(&lifted);
-            let mut out = Coefficients::buffer(self.reactions().len());
-            lifted.plan.positions_at_solution(q, unknowns, &mut pose)?;
-            lifted.reduce_at_pose(&pose, &mut motion, &mut passes, &mut out);
-            Ok([vec![out.m, out.half_dm], out.a, out.b].concat())
-        })?;
-        Ok(RecordedCoefficients {
-            code,
+        of: Described<'_, Self>,
+        at: &StateInputs<'_>,
+    ) -> Result<Vec<RecordedNumber>, StateRecordingError>;
+}
+
+/// The inputs of a state, in parts.
+#[derive(Debug, Clone, Copy)]
+pub struct StateInputs<'a> {
+    pub(crate) q: &'a [RecordedNumber],
+    pub(crate) q_dot: &'a [RecordedNumber],
+    pub(crate) q_ddot: &'a [RecordedNumber],
+    pub(crate) magnitudes: &'a [RecordedNumber],
+    pub(crate) numbers: &'a [RecordedNumber],
+    pub(crate) solution: &'a [RecordedNumber],
+}
+
+/// Where the inputs and outputs of a recorded state are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StateLayout {
+    /// Number of coordinates.
+    pub actuators: usize,
+    /// Number of loads.
+    pub loads: usize,
+    /// Number of the machine's numbers.
+    pub numbers: usize,
+}
+
+impl StateLayout {
+    /// Where the magnitudes of the loads begin.
+    pub fn magnitudes(&self) -> usize {
+        3 * self.actuators
+    }
+
+    /// Where the machine's numbers begin.
+    pub fn first_number(&self) -> usize {
+        self.magnitudes() + self.loads
+    }
+
+    /// Where the solution begins.
+    pub fn solution(&self) -> usize {
+        self.first_number() + self.numbers
+    }
+
+    fn parts<'a>(&self, inputs: &'a [RecordedNumber]) -> StateInputs<'a> {
+        let (q, rest) = inputs.split_at(self.actuators);
+        let (q_dot, rest) = rest.split_at(self.actuators);
+        let (q_ddot, rest) = rest.split_at(self.actuators);
+        let (magnitudes, rest) = rest.split_at(self.loads);
+        let (numbers, solution) = rest.split_at(self.numbers);
+        StateInputs {
+            q,
+            q_dot,
+            q_ddot,
+            magnitudes,
             numbers,
-            model,
-        })
+            solution,
+        }
+    }
+}
+
+/// A state of motion as operations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordedState {
+    /// The operations.
+    pub code: StraightLine,
+    /// Where its inputs are.
+    pub layout: StateLayout,
+}
+
+impl RecordedState {
+    /// Records the states of a machine of the structure of a model at some inputs, where the operations must be the same. Each list of
+    /// inputs has q, q̇, q̈, magnitudes, [numbers](RecordableModel::numbers), [solution](RecordableModel::solution).
+    ///
+    /// # Errors
+    /// [`RecordingError`].
+    pub fn record<M: RecordableModel>(
+        model: &M,
+        of: Described<'_, M>,
+        inputs: &[Vec<f64>],
+    ) -> Result<Self, RecordingError<StateRecordingError>> {
+        let numbers = model.numbers(of).ok_or(StateRecordingError::Structure);
+        let layout = StateLayout {
+            actuators: model.actuators(),
+            loads: of.loads.len(),
+            numbers: numbers.map_err(RecordingError::Evaluation)?.len(),
+        };
+        let code = record_at(inputs, |inputs| model.outputs(of, &layout.parts(inputs)))?;
+        Ok(Self { code, layout })
     }
 }

@@ -44,6 +44,8 @@ mod machine;
 mod mass;
 mod model;
 mod on_fit;
+mod pass;
+mod recorded;
 mod reduced;
 mod response;
 mod surface_friction;

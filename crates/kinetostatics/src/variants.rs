@@ -16,7 +16,7 @@ use crate::model::{MachineModel as _, Model};
 use crate::pass::PassModel;
 use crate::reduced::in_lanes;
 use dwell_geometry::{Mechanism, ModeGuess, Reaction, vec2};
-use dwell_numerics::{Constant, Lift};
+use dwell_numerics::Constant;
 use turn::Turns;
 
 /// Numbers of the mass properties of a body: mass, centre (x, y) and moment of inertia.
@@ -162,7 +162,7 @@ pub(crate) fn mass_of<C: Constant>(numbers: &[C]) -> Mass<C> {
     }
 }
 
-impl<C: Constant + Lift<f64>> PassModel<C> {
+impl<C: Constant> PassModel<C> {
     /// Sets the dimensions, in the order of [`Plan::dimensions`], and the mass properties by body; returns false if they do not
     /// fit the structure.
     ///

@@ -155,6 +155,10 @@ fn key(operand: Operand) -> OperandKey {
 
 impl Constant for RecordedNumber {
     const IS_PREPARED: bool = false;
+
+    fn length([x, y, z]: [Self; 3]) -> Self {
+        (x * x + y * y + z * z).sqrt()
+    }
 }
 
 impl Lift<Self> for RecordedNumber {

@@ -83,14 +83,20 @@ pub fn uniform<T: Scalar>(test: impl Fn(usize) -> bool) -> Option<bool> {
 }
 
 /// A number that constants of an evaluation may be: the dimensions of a mechanism, its masses.
-pub trait Constant: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
+pub trait Constant: Scalar + PartialEq {
     /// Whether what follows from constants alone, such as the square of a length, is computed once and kept. It is not where
     /// an evaluation is to depend on the constants themselves.
     const IS_PREPARED: bool;
+    /// The length of a vector of these components; of `f64` without overflow at the extremes.
+    fn length(components: [Self; 3]) -> Self;
 }
 
 impl Constant for f64 {
     const IS_PREPARED: bool = true;
+
+    fn length([x, y, z]: [Self; 3]) -> Self {
+        x.hypot(y).hypot(z)
+    }
 }
 
 /// A number type in which constants of type `C` take part: `f64` in any, recorded numbers in recorded ones.

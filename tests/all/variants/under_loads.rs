@@ -2,7 +2,7 @@
 //! them.
 
 use super::{
-    DEVIATIONS, POSITIONS, TOLERANCE, VARIANTS, compile, golden_maximum, random, variant_in,
+    DEVIATIONS, POSITIONS, TOLERANCE, VARIANTS, compile, golden_maximum, random, variant_of_paths,
 };
 use dwell_geometry::{Range, Reaction};
 use dwell_kinetostatics::Model;
@@ -53,7 +53,7 @@ impl Subject {
     }
 
     fn variant(&self, deviation: f64, number: u64) -> PlaneScene {
-        variant_in(&self.scene, &self.paths, deviation, number)
+        variant_of_paths(&self.scene, &self.paths, deviation, number)
     }
 }
 

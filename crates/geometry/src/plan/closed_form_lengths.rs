@@ -2,9 +2,9 @@
 
 use crate::plan::{GuidedPoint, RrrDyad};
 use crate::plane::Vec2;
-use dwell_numerics::{Constant, Scalar};
+use dwell_numerics::Constant;
 
-impl<C: Constant + Scalar> RrrDyad<C> {
+impl<C: Constant> RrrDyad<C> {
     /// Derives the constants from the two vectors that turn and from the loop's part on the ground, m.
     pub(crate) fn set_lengths(&mut self, local: [Vec2<C>; 2], fixed: Vec2<C>) {
         let local = local.map(Vec2::values);
@@ -20,7 +20,7 @@ impl<C: Constant + Scalar> RrrDyad<C> {
     }
 }
 
-impl<C: Constant + Scalar> GuidedPoint<C> {
+impl<C: Constant> GuidedPoint<C> {
     /// Derives the constants from the direction of the line and the loop's vector in the turning frame and from the
     /// loop's part on the ground, m.
     pub(crate) fn set_lengths(&mut self, axis: Vec2<C>, local: Vec2<C>, fixed: Vec2<C>) {

@@ -49,6 +49,7 @@ impl Plan {
             first_links: Vec::new(),
             last_links: Vec::new(),
             drivers,
+            split: Vec::new(),
             start: Node::default(),
             predictions: Predictions::default(),
             revolutions: Revolutions::default(),

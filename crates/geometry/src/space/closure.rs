@@ -10,38 +10,38 @@
 
 use super::frames::{BodyMotion, Frame};
 use super::joint_kinds::{Condition, JointKind};
-use super::mechanism::{Joint, Mechanism, Side};
+use super::mechanism::{Mechanism, Side};
 use super::tree::Tree;
 use super::vector::Vec3;
 use super::wrench::Wrench;
 use crate::error::StructureError;
 use crate::mechanism::JointId;
-use dwell_numerics::{Scalar, map_array};
+use dwell_numerics::{Constant, Lift, Scalar, map_array};
 use std::ops::Range;
 
 /// The condition of a row. Directions are in the internal frames of the bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum RowKind {
+pub(super) enum RowKind<C = f64> {
     /// The points coincide along this axis of the ground.
     Point(usize),
     /// The points coincide along this direction of the first body.
-    Along(Vec3),
+    Along(Vec3<C>),
     /// A direction of the first body is at right angles to one of the second.
-    Parallel(Vec3, Vec3),
+    Parallel(Vec3<C>, Vec3<C>),
     /// The second point lies in a plane of the first body through its point.
-    InPlane(Vec3),
+    InPlane(Vec3<C>),
     /// The points keep this distance, m.
-    Length(f64),
+    Length(C),
     /// The points have the distance that an actuator gives, the coordinate of this number.
     Driven(usize),
     /// The second body moves at the point as the first does along this direction of the carrier. Its residual is a sum over the freedoms
     /// of its path, by [`Closure::ratios`].
-    Mesh(Vec3),
+    Mesh(Vec3<C>),
     /// The second body, between two balls, does not turn about their line.
-    NoSpin(Vec3),
+    NoSpin(Vec3<C>),
 }
 
-impl RowKind {
+impl<C: Copy> RowKind<C> {
     /// Whether its residual is a length, m, and not the cosine of an angle.
     pub(super) fn is_length(self) -> bool {
         match self {
@@ -54,16 +54,18 @@ impl RowKind {
 
 /// A joint that closes a loop.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Closure {
+pub(super) struct Closure<C = f64> {
     /// None for the row that holds an idle freedom.
     pub(super) joint: Option<JointId>,
     pub(super) bodies: [usize; 2],
     /// The bodies in whose frames the points are: the same, or the carrier of a gear pair.
     pub(super) on: [usize; 2],
-    pub(super) points: [Vec3; 2],
+    pub(super) points: [Vec3<C>; 2],
     /// For a gear pair: the travel of the teeth for a unit of each freedom of its path, m.
-    pub(super) ratios: Vec<f64>,
-    pub(super) kinds: Vec<RowKind>,
+    pub(super) ratios: Vec<C>,
+    pub(super) kinds: Vec<RowKind<C>>,
+    /// By body: the normal of the [plane](super::planes) to which it keeps and along which its rows are, if it does.
+    pub(super) plane: Option<[Vec3; 2]>,
     /// The range of its rows among all rows.
     pub(super) rows: Range<usize>,
     /// The links on the path from the first body to the second, with their signs: those towards the second are positive.
@@ -100,7 +102,7 @@ pub(super) fn closures(mechanism: &Mechanism, tree: &Tree) -> Result<Vec<Closure
         let driven = tree.driven_lengths.iter().find(|(j, _)| *j == id);
         let kinds = match driven {
             Some((_, freedom)) => Some(vec![RowKind::Driven(*freedom)]),
-            None => rows_of(joint, &sides),
+            None => rows_of(joint.kind, joint.numbers().number, &sides),
         };
         let Some(kinds) = kinds else {
             let reason = "a screw closes a loop";
@@ -119,8 +121,12 @@ pub(super) fn closures(mechanism: &Mechanism, tree: &Tree) -> Result<Vec<Closure
     Ok(found)
 }
 
-/// The rows of a joint; none of a helical one.
-pub(super) fn rows_of(joint: &Joint, [a, b]: &[Side; 2]) -> Option<Vec<RowKind>> {
+/// The rows of a joint of a kind, with its number and its sides in the frames of the tree; none of a helical one.
+pub(super) fn rows_of<C: Scalar>(
+    kind: JointKind,
+    number: C,
+    [a, b]: &[Side<C>; 2],
+) -> Option<Vec<RowKind<C>>> {
     use RowKind::{InPlane, Length, Mesh, Parallel, Point};
     let across = a.axis.cross(a.normal);
     let of_condition = |condition: &Condition| {
@@ -132,15 +138,12 @@ pub(super) fn rows_of(joint: &Joint, [a, b]: &[Side; 2]) -> Option<Vec<RowKind>>
             Condition::AxesAcross => vec![Parallel(a.axis, b.axis)],
             Condition::Normals => vec![Parallel(a.normal, b.axis.cross(b.normal))],
             Condition::Teeth => vec![Mesh(a.axis)],
-            Condition::Length => match joint.kind {
-                JointKind::Distance { length } => vec![Length(length)],
-                _ => return None,
-            },
+            Condition::Length => vec![Length(number)],
             Condition::Thread => return None,
         })
     };
-    let conditions = joint.kind.conditions().iter();
-    let rows: Option<Vec<Vec<RowKind>>> = conditions.map(of_condition).collect();
+    let conditions = kind.conditions().iter();
+    let rows: Option<Vec<Vec<RowKind<C>>>> = conditions.map(of_condition).collect();
     Some(rows?.concat())
 }
 
@@ -188,6 +191,7 @@ impl Closure {
             ratios: Vec::new(),
             rows: rows..rows + kinds.len(),
             kinds,
+            plane: None,
             path: links.iter().flat_map(freedoms).collect(),
             links,
             unmoved: Vec::new(),
@@ -195,6 +199,25 @@ impl Closure {
         }
     }
 
+    /// How far the axes are from the same sense: of revolute and sliding joints they must not be opposite.
+    pub(super) fn is_flipped(
+        &self,
+        frames: &[Frame<f64>],
+        mechanism: &Mechanism,
+        tree: &Tree,
+    ) -> bool {
+        let Some(joint) = self.joint.map(|j| &mechanism.joints[j.0]) else {
+            return false;
+        };
+        let axis = |k: usize| {
+            let side = joint.sides[k].in_frame(&tree.internal[self.bodies[k]]);
+            frames[self.bodies[k]].rotation.apply(side.axis)
+        };
+        joint.kind.holds(Condition::Axes) && axis(0).dot(axis(1)) < 0.0
+    }
+}
+
+impl<C: Constant> Closure<C> {
     /// Whether a freedom of the path, by its place there, changes a row.
     #[inline(always)]
     pub(super) fn is_moved(&self, row: usize, place: usize) -> bool {
@@ -208,16 +231,16 @@ impl Closure {
 
     /// The points of both bodies and their difference d.
     #[inline(always)]
-    pub(super) fn ends<T: Scalar>(&self, frames: &[Frame<T>]) -> [Vec3<T>; 3] {
+    pub(super) fn ends<T: Lift<C>>(&self, frames: &[Frame<T>]) -> [Vec3<T>; 3] {
         let [a, b] = map_array([0, 1], |k| frames[self.on[k]].point(self.points[k]));
         [a, b, b - a]
     }
 
     /// The residual of a row and its wrench.
     #[inline(always)]
-    pub(super) fn row<T: Scalar>(
+    pub(super) fn row<T: Lift<C>>(
         &self,
-        kind: RowKind,
+        kind: RowKind<C>,
         frames: &[Frame<T>],
         coordinates: &[T],
         d: Vec3<T>,
@@ -243,12 +266,12 @@ impl Closure {
                 let u = a.apply(u.cast());
                 of(u.dot(d), u, zero)
             }
-            RowKind::Length(length) => distance(T::from_f64(length)),
+            RowKind::Length(length) => distance(T::lift(length)),
             RowKind::Driven(freedom) => distance(coordinates[freedom]),
             RowKind::Mesh(n) => {
                 let path = self.path.iter().zip(&self.ratios);
                 let travel = path.fold(T::from_f64(0.0), |sum, ((freedom, _), ratio)| {
-                    sum + coordinates[*freedom] * T::from_f64(*ratio)
+                    sum + coordinates[*freedom] * T::lift(*ratio)
                 });
                 let n = frames[self.on[0]].rotation.apply(n.cast());
                 of(travel, n, zero)
@@ -259,7 +282,7 @@ impl Closure {
 
     /// The difference d of the points with its first two derivatives, at the velocities and accelerations of the bodies.
     #[inline(always)]
-    pub(super) fn point_motion<T: Scalar>(
+    pub(super) fn point_motion<T: Lift<C>>(
         &self,
         frames: &[Frame<T>],
         states: &[BodyMotion<T>],
@@ -279,15 +302,15 @@ impl Closure {
 
     /// The second derivative of a row with respect to time, from the derivatives of the difference of the points.
     #[inline(always)]
-    pub(super) fn row_acceleration<T: Scalar>(
+    pub(super) fn row_acceleration<T: Lift<C>>(
         &self,
-        kind: RowKind,
+        kind: RowKind<C>,
         frames: &[Frame<T>],
         states: &[BodyMotion<T>],
         [d, d1, d2]: [Vec3<T>; 3],
     ) -> T {
         let [a, b] = self.bodies;
-        let direction = |body: usize, u: Vec3| {
+        let direction = |body: usize, u: Vec3<C>| {
             let u = frames[body].rotation.apply(u.cast());
             let (first, second) = states[body].direction_derivatives(u);
             (u, first, second)
@@ -317,22 +340,5 @@ impl Closure {
                 e.dot(states[b].angular_acceleration)
             }
         }
-    }
-
-    /// How far the axes are from the same sense: of revolute and sliding joints they must not be opposite.
-    pub(super) fn is_flipped(
-        &self,
-        frames: &[Frame<f64>],
-        mechanism: &Mechanism,
-        tree: &Tree,
-    ) -> bool {
-        let Some(joint) = self.joint.map(|j| &mechanism.joints[j.0]) else {
-            return false;
-        };
-        let axis = |k: usize| {
-            let side = joint.sides[k].in_frame(&tree.internal[self.bodies[k]]);
-            frames[self.bodies[k]].rotation.apply(side.axis)
-        };
-        joint.kind.holds(Condition::Axes) && axis(0).dot(axis(1)) < 0.0
     }
 }

@@ -13,17 +13,17 @@
 
 use super::closure::RowKind;
 use super::frames::BodyMotion;
-use super::mechanism::{ActuatorKind, Joint, Mechanism};
+use super::mechanism::{ActuatorKind, Joint, JointNumbers, Mechanism};
 use super::plan::{Plan, Pose};
 use super::tree::FreedomKind;
 use super::vector::{Rotation, Vec3};
 use crate::mechanism::{BodyId, Guide, JointId};
-use dwell_numerics::Scalar;
+use dwell_numerics::{Constant, Lift};
 use std::f64::consts::TAU;
 
 /// A coordinate of a mechanism in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Coordinate {
+pub enum Coordinate<C = f64> {
     /// The angle of a revolute, cylindrical or helical joint, from the first body's normal to the second's about the axis, rad.
     Angle(JointId),
     /// The travel of a joint whose second point is on the axis of the first, along that axis from the first point, m.
@@ -33,11 +33,11 @@ pub enum Coordinate {
         /// The bodies.
         bodies: [BodyId; 2],
         /// The point on each.
-        points: [Vec3; 2],
+        points: [Vec3<C>; 2],
     },
 }
 
-impl Coordinate {
+impl<C: Copy> Coordinate<C> {
     /// Whether it is an angle.
     pub fn is_angle(self) -> bool {
         matches!(self, Self::Angle(_))
@@ -60,26 +60,26 @@ impl ActuatorKind {
 
 /// A [`Coordinate`] of a compiled mechanism. Points and directions are in the [evaluation frames](Plan::frame) of the bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum CoordinateFunction {
+pub enum CoordinateFunction<C = f64> {
     /// An angle about an axis.
     Angle {
         /// The bodies.
         bodies: [BodyId; 2],
         /// The axis on the first.
-        axis: Vec3,
+        axis: Vec3<C>,
         /// The direction on each between which it is counted.
-        normals: [Vec3; 2],
+        normals: [Vec3<C>; 2],
         /// How its revolutions are counted.
         counting: Counting,
     },
     /// A travel along an axis.
-    Travel(Guide<Vec3>),
+    Travel(Guide<Vec3<C>>),
     /// A distance.
     Distance {
         /// The bodies.
         bodies: [BodyId; 2],
         /// The point on each.
-        points: [Vec3; 2],
+        points: [Vec3<C>; 2],
     },
 }
 
@@ -95,6 +95,15 @@ pub enum Counting {
     Stored(usize),
     /// Revolutions are not counted: the value is between −π and π. A force along the coordinate needs only its axis.
     None,
+}
+
+/// Whether the revolutions of an angle have to be counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CountedRevolutions {
+    /// They are.
+    Always,
+    /// They are where that is possible: of a coordinate along which something acts, or whose rate alone is needed.
+    IfPossible,
 }
 
 /// The angles of a joint that closes a loop, with their revolutions.
@@ -115,50 +124,8 @@ impl Plan {
         mechanism: &Mechanism,
         coordinate: Coordinate,
     ) -> Result<CoordinateFunction, &'static str> {
-        self.function(mechanism, coordinate, |joint| self.counting(joint))
-    }
-
-    fn function(
-        &self,
-        mechanism: &Mechanism,
-        coordinate: Coordinate,
-        counting: impl Fn(JointId) -> Result<Counting, &'static str>,
-    ) -> Result<CoordinateFunction, &'static str> {
-        let unknown = "the mechanism does not have its coordinate";
-        let in_frame = |body: BodyId, point| self.tree.internal[body.0].inner_point(point);
-        if let Coordinate::Distance { bodies, points } = coordinate {
-            if bodies.iter().any(|b| b.0 >= mechanism.bodies.len()) {
-                return Err(unknown);
-            }
-            let points = [0, 1].map(|k| in_frame(bodies[k], points[k]));
-            return Ok(CoordinateFunction::Distance { bodies, points });
-        }
-        let (Coordinate::Angle(id) | Coordinate::Travel(id)) = coordinate else {
-            return Err(unknown);
-        };
-        let joint = mechanism.joints.get(id.0).ok_or(unknown)?;
-        let bodies = joint.bodies;
-        let sides = [0, 1].map(|k| joint.sides[k].in_frame(&self.tree.internal[bodies[k].0]));
-        let axis = sides[0].axis;
-        if coordinate.is_angle() {
-            if !joint.kind.has_angle() {
-                return Err("its joint has no angle about an axis");
-            }
-            return Ok(CoordinateFunction::Angle {
-                bodies,
-                axis,
-                normals: sides.map(|side| side.normal),
-                counting: counting(id)?,
-            });
-        }
-        if !joint.kind.has_travel() {
-            return Err("its joint has no travel along an axis");
-        }
-        Ok(CoordinateFunction::Travel(Guide {
-            bodies,
-            points: sides.map(|side| side.point),
-            axis,
-        }))
+        let numbers = |joint: JointId| mechanism.joints[joint.0].numbers();
+        self.function_of(mechanism, numbers, coordinate, CountedRevolutions::Always)
     }
 
     /// A coordinate along which something acts, or whose rate alone is needed: the revolutions of an angle are counted if possible.
@@ -170,19 +137,12 @@ impl Plan {
         mechanism: &Mechanism,
         coordinate: Coordinate,
     ) -> Result<CoordinateFunction, &'static str> {
-        self.function(mechanism, coordinate, |joint| {
-            Ok(self.counting(joint).unwrap_or(Counting::None))
-        })
-    }
-
-    /// How the revolutions of a joint are counted.
-    fn counting(&self, joint: JointId) -> Result<Counting, &'static str> {
-        if let Some(driver) = self.tree.driven(ActuatorKind::Angle(joint)) {
-            return Ok(Counting::Freedom(driver.freedom, driver.factor));
-        }
-        let stored = self.closure_angles.iter().position(|s| s.joint == joint);
-        stored.map(Counting::Stored).ok_or(
-            "its joint closes a loop of a mechanism with several coordinates, where its revolutions are not counted",
+        let numbers = |joint: JointId| mechanism.joints[joint.0].numbers();
+        self.function_of(
+            mechanism,
+            numbers,
+            coordinate,
+            CountedRevolutions::IfPossible,
         )
     }
 
@@ -256,18 +216,83 @@ impl Plan {
         geared.dedup();
         geared
     }
+}
+
+impl<C: Constant> Plan<C> {
+    /// A coordinate of the mechanism with these numbers of its joints.
+    ///
+    /// # Errors
+    /// Why there is no such coordinate.
+    pub fn function_of(
+        &self,
+        mechanism: &Mechanism,
+        numbers: impl Fn(JointId) -> JointNumbers<C>,
+        coordinate: Coordinate<C>,
+        revolutions: CountedRevolutions,
+    ) -> Result<CoordinateFunction<C>, &'static str> {
+        let unknown = "the mechanism does not have its coordinate";
+        let in_frame = |body: BodyId, point| self.tree.internal[body.0].inner_point(point);
+        if let Coordinate::Distance { bodies, points } = coordinate {
+            if bodies.iter().any(|b| b.0 >= mechanism.bodies.len()) {
+                return Err(unknown);
+            }
+            let points = [0, 1].map(|k| in_frame(bodies[k], points[k]));
+            return Ok(CoordinateFunction::Distance { bodies, points });
+        }
+        let (Coordinate::Angle(id) | Coordinate::Travel(id)) = coordinate else {
+            return Err(unknown);
+        };
+        let joint = mechanism.joints.get(id.0).ok_or(unknown)?;
+        let bodies = joint.bodies;
+        let of_joint = numbers(id);
+        let sides = [0, 1].map(|k| of_joint.sides[k].in_frame(&self.tree.internal[bodies[k].0]));
+        let axis = sides[0].axis;
+        if coordinate.is_angle() {
+            if !joint.kind.has_angle() {
+                return Err("its joint has no angle about an axis");
+            }
+            return Ok(CoordinateFunction::Angle {
+                bodies,
+                axis,
+                normals: sides.map(|side| side.normal),
+                counting: match (self.counting(id), revolutions) {
+                    (Err(_), CountedRevolutions::IfPossible) => Counting::None,
+                    (counting, _) => counting?,
+                },
+            });
+        }
+        if !joint.kind.has_travel() {
+            return Err("its joint has no travel along an axis");
+        }
+        Ok(CoordinateFunction::Travel(Guide {
+            bodies,
+            points: sides.map(|side| side.point),
+            axis,
+        }))
+    }
+
+    /// How the revolutions of a joint are counted.
+    fn counting(&self, joint: JointId) -> Result<Counting, &'static str> {
+        if let Some(driver) = self.tree.driven(ActuatorKind::Angle(joint)) {
+            return Ok(Counting::Freedom(driver.freedom, driver.factor.value()));
+        }
+        let stored = self.closure_angles.iter().position(|s| s.joint == joint);
+        stored.map(Counting::Stored).ok_or(
+            "its joint closes a loop of a mechanism with several coordinates, where its revolutions are not counted",
+        )
+    }
 
     /// An angle without its revolutions, from −π to π.
     #[inline(always)]
-    fn wrapped_angle<T: Scalar>(
+    fn wrapped_angle<T: Lift<C>>(
         &self,
         pose: &Pose<T>,
         bodies: [BodyId; 2],
-        axis: Vec3,
-        normals: [Vec3; 2],
+        axis: Vec3<C>,
+        normals: [Vec3<C>; 2],
     ) -> T {
         let rotation = |k: usize| &pose.frames[bodies[k].0].rotation;
-        let turned = |rotation: &Rotation<T>, v: Vec3| rotation.apply(v.cast());
+        let turned = |rotation: &Rotation<T>, v: Vec3<C>| rotation.apply(v.cast());
         let [first, second] = [0, 1].map(|k| turned(rotation(k), normals[k]));
         let across = turned(rotation(0), axis.cross(normals[0]));
         second.dot(across).atan2(second.dot(first))
@@ -284,21 +309,21 @@ impl Plan {
 
     /// The first coordinate at a pose.
     #[inline(always)]
-    fn first_coordinate<T: Scalar>(&self, pose: &Pose<T>) -> f64 {
+    fn first_coordinate<T: Lift<C>>(&self, pose: &Pose<T>) -> f64 {
         let driver = self.drivers.first();
         driver.map_or(0.0, |driver| {
-            pose.coordinates[driver.freedom].value() / driver.factor
+            pose.coordinates[driver.freedom].value() / driver.factor.value()
         })
     }
 
     /// The value of an angle with its revolutions.
     #[inline(always)]
-    fn counted_angle<T: Scalar>(
+    fn counted_angle<T: Lift<C>>(
         &self,
         pose: &Pose<T>,
         bodies: [BodyId; 2],
-        axis: Vec3,
-        normals: [Vec3; 2],
+        axis: Vec3<C>,
+        normals: [Vec3<C>; 2],
         counting: Counting,
     ) -> T {
         match counting {
@@ -340,7 +365,7 @@ impl Plan {
 
     /// The rate of a coordinate, rad/s or m/s: without the value of an angle.
     #[inline]
-    pub fn coordinate_rate<T: Scalar>(&self, pose: &Pose<T>, of: CoordinateFunction) -> T {
+    pub fn coordinate_rate<T: Lift<C>>(&self, pose: &Pose<T>, of: CoordinateFunction<C>) -> T {
         match of {
             CoordinateFunction::Angle { bodies, axis, .. } => {
                 let [a, b] = bodies.map(|body| pose.motion.states[body.0].angular_velocity);
@@ -355,7 +380,7 @@ impl Plan {
 
     /// A coordinate with its rate and its acceleration, rad or m, per s and s²; the last after [`Plan::accelerations`].
     #[inline]
-    pub fn coordinate<T: Scalar>(&self, pose: &Pose<T>, of: CoordinateFunction) -> [T; 3] {
+    pub fn coordinate<T: Lift<C>>(&self, pose: &Pose<T>, of: CoordinateFunction<C>) -> [T; 3] {
         match of {
             CoordinateFunction::Angle {
                 bodies,
@@ -395,11 +420,11 @@ impl Plan {
 
     /// The vector from a point of one body to one of another, with its first and second derivatives. Points are in the evaluation frames.
     #[inline]
-    pub fn separation<T: Scalar>(
+    pub fn separation<T: Lift<C>>(
         &self,
         pose: &Pose<T>,
         bodies: [BodyId; 2],
-        points: [Vec3; 2],
+        points: [Vec3<C>; 2],
     ) -> [Vec3<T>; 3] {
         let at = |k: usize| {
             let (frame, state) = (&pose.frames[bodies[k].0], &pose.motion.states[bodies[k].0]);

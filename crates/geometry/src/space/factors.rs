@@ -3,9 +3,9 @@
 
 use super::groups::Group;
 use super::plan::{Plan, Pose};
-use dwell_numerics::{FactorOutcome, Scalar, lu, qr};
+use dwell_numerics::{Constant, FactorOutcome, Scalar, lu, qr};
 
-impl Plan {
+impl<C: Constant> Plan<C> {
     /// Factors a group's Jacobian, scaled.
     #[inline(always)]
     pub(super) fn factor<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) -> FactorOutcome {
@@ -87,7 +87,9 @@ impl Plan {
             *value = *value * T::from_f64(*scale);
         }
     }
+}
 
+impl Plan {
     /// The inverse of a group's factored Jacobian, unknowns by rows; the least-squares inverse if equations are
     /// redundant.
     pub(super) fn inverse(&self, group: &Group, pose: &mut Pose) -> Vec<f64> {

@@ -14,7 +14,7 @@ use super::vector::{Rotation, Vec3, vec3};
 use crate::error::{AssemblyError, PositionError};
 use crate::mechanism::JointId;
 use crate::plan::range::Range;
-use dwell_numerics::Scalar;
+use dwell_numerics::{Constant, Scalar};
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
@@ -58,21 +58,6 @@ impl Plan {
         {
             let turn = first.scaled(ahead) + second.scaled(0.5 * ahead * ahead);
             *ball = stored.turned_by(turn).cast();
-        }
-    }
-
-    /// The coordinate in the range of the stored poses.
-    pub(super) fn within_range(&self, q: f64) -> Result<f64, PositionError> {
-        let [first, last] = self.predictions.range().unwrap_or([self.start.q; 2]);
-        if q >= first && q < last {
-            return Ok(q);
-        }
-        match (self.period(), self.range.limits()) {
-            (Some(period), _) => Ok(first + (q - first).rem_euclid(period)),
-            (None, Some((from, to))) if q < from || q > to => {
-                Err(PositionError::OutOfRange { q, from, to })
-            }
-            (None, _) => Ok(q),
         }
     }
 
@@ -191,12 +176,6 @@ impl Plan {
                 && freedoms.all(|f| same(a, b, f))
                 && balls.all(|(a, b)| a.inverse().after(b).vector().norm() <= SAME)
         })
-    }
-
-    /// The change of the only coordinate after which the pose repeats, except for freedoms that change by a constant
-    /// amount each time.
-    pub(super) fn period(&self) -> Option<f64> {
-        self.range.period().or(self.repetition)
     }
 
     /// Refuses redundant constraints that hold at the assembly and open along the range, before its end: that is no limit position.
@@ -329,6 +308,29 @@ impl Plan {
             .zip(&pose.balls)
             .map(|(a, b)| a.inverse().after(b).vector().norm());
         scalar.chain(turned).fold(0.0, f64::max)
+    }
+}
+
+impl<C: Constant> Plan<C> {
+    /// The coordinate in the range of the stored poses.
+    pub(super) fn within_range(&self, q: f64) -> Result<f64, PositionError> {
+        let [first, last] = self.predictions.range().unwrap_or([self.start.q; 2]);
+        if q >= first && q < last {
+            return Ok(q);
+        }
+        match (self.period(), self.range.limits()) {
+            (Some(period), _) => Ok(first + (q - first).rem_euclid(period)),
+            (None, Some((from, to))) if q < from || q > to => {
+                Err(PositionError::OutOfRange { q, from, to })
+            }
+            (None, _) => Ok(q),
+        }
+    }
+
+    /// The change of the only coordinate after which the pose repeats, except for freedoms that change by a constant
+    /// amount each time.
+    pub(super) fn period(&self) -> Option<f64> {
+        self.range.period().or(self.repetition)
     }
 }
 

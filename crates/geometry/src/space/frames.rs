@@ -1,10 +1,9 @@
 //! Positions, velocities and accelerations of the bodies from those of the freedoms, along the tree.
 
-use super::mechanism::Placement;
 use super::tree::{FreedomKind, Link, Step, next_axis};
 use super::vector::{Rotation, Vec3};
 use super::wrench::Wrench;
-use dwell_numerics::Scalar;
+use dwell_numerics::{Constant, Lift, Scalar};
 
 /// A frame on a body, in that of the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,17 +26,37 @@ impl<T: Scalar> Default for Frame<T> {
 impl<T: Scalar> Frame<T> {
     /// A point of the body.
     #[inline(always)]
-    pub fn point(&self, point: Vec3) -> Vec3<T> {
+    pub fn point<C: Constant>(&self, point: Vec3<C>) -> Vec3<T>
+    where
+        T: Lift<C>,
+    {
         self.position + self.rotation.apply(point.cast())
     }
 
     /// A frame fixed in this one.
     #[inline(always)]
-    pub(super) fn then(&self, inner: &Placement) -> Self {
+    pub(super) fn then<C: Constant>(&self, inner: &Frame<C>) -> Self
+    where
+        T: Lift<C>,
+    {
         Self {
             position: self.point(inner.position),
             rotation: self.rotation.after(&inner.rotation.cast()),
         }
+    }
+
+    /// The frame outside in this one.
+    pub(super) fn inverse(&self) -> Self {
+        let rotation = self.rotation.inverse();
+        Self {
+            position: -rotation.apply(self.position),
+            rotation,
+        }
+    }
+
+    /// A point in this frame, of its coordinates outside: the difference comes first, which is exact where both are far away.
+    pub fn inner_point(&self, point: Vec3<T>) -> Vec3<T> {
+        self.rotation.apply_inverse(point - self.position)
     }
 }
 
@@ -72,19 +91,30 @@ impl<T: Scalar> Twist<T> {
 impl<T: Scalar> Screw<T> {
     /// The velocity of a point for a rate of `units`.
     #[inline(always)]
-    pub(super) fn velocity(&self, kind: FreedomKind, at: Vec3<T>, units: f64) -> Vec3<T> {
+    pub(super) fn velocity<C: Constant>(
+        &self,
+        kind: FreedomKind<C>,
+        at: Vec3<T>,
+        units: f64,
+    ) -> Vec3<T>
+    where
+        T: Lift<C>,
+    {
         self.twist(kind, at, units).linear
     }
 
     /// The power that a unit takes from a wrench about the origin of the frame that it places: turns come last, so that the origin is on
     /// their axes.
     #[inline(always)]
-    pub(super) fn power_at_origin(&self, kind: FreedomKind, wrench: &Wrench<T>) -> T {
+    pub(super) fn power_at_origin<C: Constant>(&self, kind: FreedomKind<C>, wrench: &Wrench<T>) -> T
+    where
+        T: Lift<C>,
+    {
         match kind {
             FreedomKind::Turn | FreedomKind::BallTurn => self.axis.dot(wrench.moment),
             FreedomKind::Slide => self.axis.dot(wrench.force),
             FreedomKind::Screw(pitch) => {
-                self.axis.dot(wrench.moment) + T::from_f64(pitch) * self.axis.dot(wrench.force)
+                self.axis.dot(wrench.moment) + T::lift(pitch) * self.axis.dot(wrench.force)
             }
             FreedomKind::Length => T::from_f64(0.0),
         }
@@ -92,14 +122,22 @@ impl<T: Scalar> Screw<T> {
 
     /// The twist at a point for a rate of `units`.
     #[inline(always)]
-    pub(super) fn twist(&self, kind: FreedomKind, at: Vec3<T>, units: f64) -> Twist<T> {
+    pub(super) fn twist<C: Constant>(
+        &self,
+        kind: FreedomKind<C>,
+        at: Vec3<T>,
+        units: f64,
+    ) -> Twist<T>
+    where
+        T: Lift<C>,
+    {
         let axis = self.axis.scaled(T::from_f64(units));
         let turned = || axis.cross(at - self.point);
         let (linear, angular) = match kind {
             FreedomKind::Turn | FreedomKind::BallTurn => (turned(), axis),
             FreedomKind::Slide => (axis, Vec3::zero()),
             FreedomKind::Length => (Vec3::zero(), Vec3::zero()),
-            FreedomKind::Screw(pitch) => (turned() + axis.scaled(T::from_f64(pitch)), axis),
+            FreedomKind::Screw(pitch) => (turned() + axis.scaled(T::lift(pitch)), axis),
         };
         Twist { linear, angular }
     }
@@ -162,10 +200,10 @@ impl<T: Scalar> BodyMotion<T> {
     }
 }
 
-impl Link {
+impl<C: Constant> Link<C> {
     /// The frame of its joint on the parent. The ground has the reference axes.
     #[inline(always)]
-    pub(super) fn base<T: Scalar>(&self, parent: &Frame<T>, is_ground: bool) -> Frame<T> {
+    pub(super) fn base<T: Lift<C>>(&self, parent: &Frame<T>, is_ground: bool) -> Frame<T> {
         if is_ground {
             return Frame {
                 position: parent.position + self.on_parent.position.cast(),
@@ -177,12 +215,12 @@ impl Link {
 
     /// The body's frame and the screws of the freedoms, from the joint's frame on the parent.
     #[inline]
-    pub(super) fn place<T: Scalar>(
+    pub(super) fn place<T: Lift<C>>(
         &self,
         mut frame: Frame<T>,
         coordinates: &[T],
         balls: &[Rotation<T>],
-        freedoms: &[FreedomKind],
+        freedoms: &[FreedomKind<C>],
         screws: &mut [Screw<T>],
     ) -> Frame<T> {
         for step in &self.steps {
@@ -190,7 +228,7 @@ impl Link {
                 Step::Turn(c) => {
                     let axis = frame.rotation.columns[2];
                     if let FreedomKind::Screw(pitch) = freedoms[c] {
-                        frame.position += axis.scaled(coordinates[c] * T::from_f64(pitch));
+                        frame.position += axis.scaled(coordinates[c] * T::lift(pitch));
                     }
                     let point = frame.position;
                     screws[c] = Screw { axis, point };
@@ -227,12 +265,12 @@ impl Link {
     /// with ω that of the frame in which the axis u is fixed, and r from the parent's origin to the body's. The three
     /// freedoms of a ball are components of the relative ω along axes of the ground: their c̈ is the whole of its change.
     #[inline(always)]
-    pub(super) fn motion<T: Scalar>(
+    pub(super) fn motion<T: Lift<C>>(
         &self,
         mut state: BodyMotion<T>,
         of_parent: &BodyMotion<T>,
         rates: &[T],
-        freedoms: &[FreedomKind],
+        freedoms: &[FreedomKind<C>],
         screws: &[Screw<T>],
     ) -> BodyMotion<T> {
         for c in self.freedoms.clone() {
@@ -245,7 +283,7 @@ impl Link {
             match freedoms[c] {
                 FreedomKind::Slide => slide(&mut state, along),
                 FreedomKind::Screw(pitch) => {
-                    slide(&mut state, along.scaled(T::from_f64(pitch)));
+                    slide(&mut state, along.scaled(T::lift(pitch)));
                     state.angular_acceleration += state.angular_velocity.cross(along);
                     state.angular_velocity += along;
                 }
@@ -267,12 +305,12 @@ impl Link {
     /// Δω̇ = Δω̇_p + Σ u c̈,     Δv̇ = Δv̇_p + Δω̇_p×r + Σ u c̈                                            (2)
     /// ```
     #[inline(always)]
-    pub(super) fn added<T: Scalar>(
+    pub(super) fn added<T: Lift<C>>(
         &self,
         arm: Vec3<T>,
         [origin, turn]: [Vec3<T>; 2],
         accelerations: &[T],
-        freedoms: &[FreedomKind],
+        freedoms: &[FreedomKind<C>],
         screws: &[Screw<T>],
     ) -> [Vec3<T>; 2] {
         let mut added = [origin + turn.cross(arm), turn];
@@ -281,7 +319,7 @@ impl Link {
             match freedoms[c] {
                 FreedomKind::Slide => added[0] += along,
                 FreedomKind::Screw(pitch) => {
-                    added[0] += along.scaled(T::from_f64(pitch));
+                    added[0] += along.scaled(T::lift(pitch));
                     added[1] += along;
                 }
                 FreedomKind::Turn | FreedomKind::BallTurn => added[1] += along,

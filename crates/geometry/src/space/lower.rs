@@ -16,7 +16,7 @@ pub(super) struct Lowered {
     /// By joint: whether it is in the tree.
     pub(super) in_tree: Vec<bool>,
     /// By massless body: the joint that moves it. Its weld has the same place among the welds.
-    split: Vec<JointId>,
+    pub(super) split: Vec<JointId>,
 }
 
 /// By joint: whether it is on the chain between a wheel of a gear pair and its carrier.

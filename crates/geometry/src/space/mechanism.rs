@@ -34,13 +34,22 @@ pub struct Joint {
 /// A joint on one of its bodies: its point (m) and two directions at right angles, unit vectors, in the frame of the body; for a
 /// gear pair, in the frame of the carrier.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Side {
+pub struct Side<C = f64> {
     /// The joint's point.
-    pub point: Vec3,
+    pub point: Vec3<C>,
     /// Its axis; for a planar joint, the normal of the plane. Spherical joints and distances ignore it.
-    pub axis: Vec3,
+    pub axis: Vec3<C>,
     /// The direction from which its angle is counted.
-    pub normal: Vec3,
+    pub normal: Vec3<C>,
+}
+
+/// The numbers of a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointNumbers<C = f64> {
+    /// The joint on each body.
+    pub sides: [Side<C>; 2],
+    /// The pitch of a helical joint, m/rad, or the length of a distance, m; zero of other joints.
+    pub number: C,
 }
 
 impl Default for Side {
@@ -54,6 +63,19 @@ impl Default for Side {
 }
 
 impl Joint {
+    /// Its numbers.
+    pub fn numbers(&self) -> JointNumbers {
+        let number = match self.kind {
+            JointKind::Helical { pitch } => pitch,
+            JointKind::Distance { length } => length,
+            _ => 0.0,
+        };
+        JointNumbers {
+            sides: self.sides,
+            number,
+        }
+    }
+
     /// The body in whose frame a side is given.
     pub fn side_body(&self, side: usize) -> BodyId {
         if let JointKind::Gear { carrier } = self.kind {

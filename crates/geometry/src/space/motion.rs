@@ -4,14 +4,14 @@ use super::frames::BodyMotion;
 use super::groups::Group;
 use super::plan::{Plan, Pose, PoseMotion};
 use super::vector::Vec3;
-use dwell_numerics::Scalar;
+use dwell_numerics::{Constant, Lift, Scalar};
 
-impl Plan {
+impl<C: Constant> Plan<C> {
     /// Computes the velocities of all freedoms and bodies from those of the actuators, rad/s or m/s. Sets the accelerations of
     /// the bodies to those at zero accelerations of the freedoms.
-    pub fn velocities<T: Scalar>(&self, q_dot: &[T], pose: &mut Pose<T>) {
+    pub fn velocities<T: Lift<C>>(&self, q_dot: &[T], pose: &mut Pose<T>) {
         for (driver, &rate) in self.drivers.iter().zip(q_dot) {
-            pose.motion.rates[driver.freedom] = rate * T::from_f64(driver.factor);
+            pose.motion.rates[driver.freedom] = rate * T::lift(driver.factor);
         }
         for group in &self.groups {
             self.carry_known(
@@ -29,13 +29,13 @@ impl Plan {
 
     /// Computes the accelerations of all freedoms and bodies from those of the actuators, rad/s² or m/s². Call it after
     /// `velocities`.
-    pub fn accelerations<T: Scalar>(&self, q_ddot: &[T], pose: &mut Pose<T>) {
+    pub fn accelerations<T: Lift<C>>(&self, q_ddot: &[T], pose: &mut Pose<T>) {
         if !std::mem::take(&mut pose.motion.has_no_acceleration) {
             self.fill_states(pose);
             pose.motion.has_no_acceleration = false;
         }
         for (driver, &acceleration) in self.drivers.iter().zip(q_ddot) {
-            pose.motion.accelerations[driver.freedom] = acceleration * T::from_f64(driver.factor);
+            pose.motion.accelerations[driver.freedom] = acceleration * T::lift(driver.factor);
         }
         for group in &self.groups {
             let (mut last, mut points) = (usize::MAX, [Vec3::zero(); 3]);
@@ -67,7 +67,7 @@ impl Plan {
 
     /// Solves a group with the known rates of the freedoms outside it and of its own rows.
     #[inline(always)]
-    fn carry_known<T: Scalar>(
+    fn carry_known<T: Lift<C>>(
         &self,
         group: &Group,
         pose: &mut Pose<T>,
@@ -86,7 +86,7 @@ impl Plan {
 
     /// The states of the bodies from the rates of the freedoms, without their accelerations.
     #[inline(always)]
-    pub(super) fn fill_states<T: Scalar>(&self, pose: &mut Pose<T>) {
+    pub(super) fn fill_states<T: Lift<C>>(&self, pose: &mut Pose<T>) {
         let freedoms = &self.tree.freedoms;
         let Pose { frames, screws, .. } = pose;
         let PoseMotion { rates, states, .. } = &mut pose.motion;
@@ -104,7 +104,7 @@ impl Plan {
 
     /// Adds the accelerations of the freedoms to the states of the bodies.
     #[inline(always)]
-    pub(super) fn add_accelerations<T: Scalar>(&self, pose: &mut Pose<T>) {
+    pub(super) fn add_accelerations<T: Lift<C>>(&self, pose: &mut Pose<T>) {
         let freedoms = &self.tree.freedoms;
         let Pose {
             frames,
@@ -135,7 +135,7 @@ impl Plan {
     }
 
     /// The motion of a body, with velocity and acceleration of its own frame's origin.
-    pub fn body_motion<T: Scalar>(&self, pose: &Pose<T>, body: usize) -> BodyMotion<T> {
+    pub fn body_motion<T: Lift<C>>(&self, pose: &Pose<T>, body: usize) -> BodyMotion<T> {
         let state = &pose.motion.states[body];
         let frame = &pose.frames[body];
         // From the internal origin to that of the body's frame.

@@ -3,7 +3,7 @@
 use super::plan::{JointPlace, Plan, Pose};
 use super::wrench::Wrench;
 use crate::mechanism::JointId;
-use dwell_numerics::{Scalar, map_array};
+use dwell_numerics::{Constant, Lift, Scalar, map_array};
 
 /// The forces of `N` passes at one pose, for one thread.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,7 +22,7 @@ pub struct Forces<T = f64, const N: usize = 1> {
     scratch: [Vec<T>; N],
 }
 
-impl Plan {
+impl<C: Constant> Plan<C> {
     /// Memory for the forces of `N` passes.
     pub fn forces<T: Scalar, const N: usize>(&self) -> Forces<T, N> {
         let zero = [T::from_f64(0.0); N];
@@ -41,7 +41,7 @@ impl Plan {
     /// The forces in all joints from the wrenches that the bodies require: Jᵀ [λ; τ] = M ẍ + h − f. If redundant constraints
     /// leave multipliers undetermined, the forces are one of the solutions.
     #[inline(always)]
-    pub fn balance<T: Scalar, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
+    pub fn balance<T: Lift<C>, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
         self.carry_down(pose, forces);
         for (_, freedom) in &self.tree.driven_lengths {
             forces.balance[*freedom] = [T::from_f64(0.0); N];
@@ -75,7 +75,7 @@ impl Plan {
 
     /// Sums the required wrenches from the outermost bodies to the ground.
     #[inline(always)]
-    fn carry_down<T: Scalar, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
+    fn carry_down<T: Lift<C>, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
         let wrenches = &mut forces.transmitted;
         wrenches.copy_from_slice(&forces.required);
         for link in self.tree.links.iter().rev() {
@@ -92,7 +92,7 @@ impl Plan {
     }
 
     #[inline(always)]
-    fn multipliers<T: Scalar, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
+    fn multipliers<T: Lift<C>, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
         let Forces {
             balance,
             multipliers,
@@ -118,7 +118,7 @@ impl Plan {
 
     /// The forces of the closures from the multipliers.
     #[inline(always)]
-    fn close_forces<T: Scalar, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
+    fn close_forces<T: Lift<C>, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
         forces.closure_actions.fill([Wrench::default(); N]);
         // Rows that nothing moves are in no group.
         for group in &self.groups {
@@ -134,20 +134,20 @@ impl Plan {
 
     /// The action of an actuator, N·m or N, after [`Plan::balance`].
     #[inline(always)]
-    pub fn actuator_action<T: Scalar, const N: usize>(
+    pub fn actuator_action<T: Lift<C>, const N: usize>(
         &self,
         forces: &Forces<T, N>,
         actuator: usize,
     ) -> [T; N] {
         let driver = self.drivers[actuator];
-        let factor = T::from_f64(driver.factor);
+        let factor = T::lift(driver.factor);
         map_array(forces.balance[driver.freedom], |action| action * factor)
     }
 
     /// The wrench that a link transmits to its body, about the origin of that body's frame, including the actions of
     /// its actuators.
     #[inline(always)]
-    fn transmitted<T: Scalar, const N: usize>(
+    fn transmitted<T: Lift<C>, const N: usize>(
         &self,
         pose: &Pose<T>,
         forces: &Forces<T, N>,
@@ -171,7 +171,7 @@ impl Plan {
 
     /// The action of a joint's first body on the second, about the joint's point on the second, without that of an actuator.
     #[inline(always)]
-    pub fn reaction<T: Scalar, const N: usize>(
+    pub fn reaction<T: Lift<C>, const N: usize>(
         &self,
         pose: &Pose<T>,
         forces: &Forces<T, N>,

@@ -17,7 +17,7 @@ use super::wrench::Wrench;
 use crate::error::{AssemblyError, StructureError};
 use crate::mechanism::JointId;
 use crate::plan::range::Range;
-use dwell_numerics::Scalar;
+use dwell_numerics::{Constant, Scalar};
 
 /// Where a joint is in the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,13 +41,13 @@ pub struct GroupDescription {
 
 /// A compiled mechanism: constant, shared between threads.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
+pub struct Plan<C = f64> {
     pub(super) ground: usize,
     pub(super) size: f64,
     /// Whether loops that keep to a [plane](super::planes) are solved in it.
     pub(super) has_planes: bool,
-    pub(super) tree: Tree,
-    pub(super) closures: Vec<Closure>,
+    pub(super) tree: Tree<C>,
+    pub(super) closures: Vec<Closure<C>>,
     /// By joint.
     pub(super) joint_places: Vec<JointPlace>,
     pub(super) groups: Vec<Group>,
@@ -55,7 +55,9 @@ pub struct Plan {
     pub(super) first_links: Vec<usize>,
     pub(super) last_links: Vec<usize>,
     /// By actuator.
-    pub(super) drivers: Vec<Driver>,
+    pub(super) drivers: Vec<Driver<C>>,
+    /// The joints whose second body is a massless one that is [welded](super::lower) to their own; the welds follow in this order.
+    pub(super) split: Vec<JointId>,
     /// The stored pose of the assembly.
     pub(super) start: Node,
     /// The poses stored along the range of one actuator.
@@ -123,17 +125,6 @@ impl<T> Pose<T> {
 }
 
 impl Plan {
-    /// Memory for the velocities and accelerations of another motion of a pose.
-    pub fn pose_motion<T: Scalar>(&self) -> PoseMotion<T> {
-        let zeros = vec![T::from_f64(0.0); self.tree.freedoms.len()];
-        PoseMotion {
-            rates: zeros.clone(),
-            accelerations: zeros,
-            has_no_acceleration: false,
-            states: vec![BodyMotion::default(); self.tree.internal.len()],
-        }
-    }
-
     /// Assembles a mechanism and compiles it.
     ///
     /// # Errors
@@ -174,6 +165,7 @@ impl Plan {
         let (mechanism, assembly) = (&lowered.mechanism, &lowered.assembly(assembly));
         let mut plan = Self::whole(mechanism, &lowered.in_tree)?;
         plan.has_planes = has_planes;
+        plan.split.clone_from(&lowered.split);
         plan.measure_gears()?;
         let start = plan.assemble(mechanism, assembly)?;
         let start = plan.find_groups(mechanism, start)?;
@@ -192,16 +184,6 @@ impl Plan {
             plan.find_change_points();
         }
         Ok(plan)
-    }
-
-    /// Number of actuators.
-    pub fn actuators(&self) -> usize {
-        self.drivers.len()
-    }
-
-    /// Whether an actuator drives an angle; otherwise it drives a travel.
-    pub fn is_angle(&self, actuator: usize) -> bool {
-        !self.drivers[actuator].is_force
     }
 
     /// The range of the coordinate.
@@ -241,15 +223,70 @@ impl Plan {
         self.groups.iter().map(describe).collect()
     }
 
-    /// How many rows all closures have, and how many entries of the Jacobian.
-    pub(super) fn row_and_entry_counts(&self) -> [usize; 2] {
-        let end = |c: &Closure| [c.rows.end, c.entries + c.rows.len() * c.path.len()];
-        self.closures.last().map_or([0; 2], end)
-    }
-
     /// A length of the order of the mechanism, m.
     pub fn size(&self) -> f64 {
         self.size
+    }
+
+    /// For each hinge and screw: its angle, rad, and its rate in a motion of the pose, rad/s.
+    pub fn turns(&self, pose: &Pose<f64>, motion: &PoseMotion<f64>) -> Vec<[f64; 2]> {
+        let all = self.tree.freedoms.iter().zip(&pose.coordinates);
+        let turning = all
+            .zip(&motion.rates)
+            .filter(|((kind, _), _)| matches!(kind, FreedomKind::Turn | FreedomKind::Screw(_)));
+        turning.map(|((_, &angle), &rate)| [angle, rate]).collect()
+    }
+
+    /// The turns in the motion of the pose.
+    pub fn unit_turns(&self, pose: &Pose<f64>) -> Vec<[f64; 2]> {
+        self.turns(pose, &pose.motion)
+    }
+
+    /// The placement of a body: its own frame in that of the ground.
+    pub fn placement(&self, pose: &Pose<f64>, body: usize) -> Placement {
+        let mut placed = pose.frames[body].then(&self.tree.internal[body].inverse());
+        placed.position += self.origin();
+        placed
+    }
+
+    /// A point of a body, m in its frame, in the frame of the ground.
+    pub fn point(&self, pose: &Pose<f64>, body: usize, point: Vec3) -> Vec3 {
+        let inner = self.tree.internal[body].inner_point(point);
+        self.origin() + pose.frames[body].point(inner)
+    }
+}
+
+impl<C: Constant> Plan<C> {
+    /// The point of the ground from which the [frames](Plan::frame) are counted, m.
+    pub fn origin(&self) -> Vec3<C> {
+        self.tree.internal[self.ground].position
+    }
+
+    /// Number of actuators.
+    pub fn actuators(&self) -> usize {
+        self.drivers.len()
+    }
+
+    /// Whether an actuator drives an angle; otherwise it drives a travel.
+    pub fn is_angle(&self, actuator: usize) -> bool {
+        !self.drivers[actuator].is_force
+    }
+
+    /// Memory for the velocities and accelerations of another motion of a pose.
+    pub fn pose_motion<T: Scalar>(&self) -> PoseMotion<T> {
+        let zeros = vec![T::from_f64(0.0); self.tree.freedoms.len()];
+        PoseMotion {
+            rates: zeros.clone(),
+            accelerations: zeros,
+            has_no_acceleration: false,
+            states: vec![BodyMotion::default(); self.tree.internal.len()],
+        }
+    }
+
+    /// How many rows all closures have, and how many entries of the Jacobian.
+    pub(super) fn row_and_entry_counts(&self) -> [usize; 2] {
+        let end = |c: &Closure<C>| [c.rows.end, c.entries + c.rows.len() * c.path.len()];
+        self.closures.last().map_or([0; 2], end)
     }
 
     /// Memory for one thread.
@@ -285,12 +322,6 @@ impl Plan {
         pose
     }
 
-    /// The frame in which a body is evaluated, relative to the body's own frame: the frame of the joint that carries
-    /// the body.
-    pub fn evaluation_frame(&self, body: usize) -> Placement {
-        self.tree.internal[body]
-    }
-
     /// The evaluation frame of a body at a pose. Its origin is relative to that of the ground's evaluation frame, so that
     /// nothing depends on the position of the mechanism.
     #[inline(always)]
@@ -298,35 +329,9 @@ impl Plan {
         &pose.frames[body]
     }
 
-    /// For each hinge and screw: its angle, rad, and its rate in a motion of the pose, rad/s.
-    pub fn turns(&self, pose: &Pose<f64>, motion: &PoseMotion<f64>) -> Vec<[f64; 2]> {
-        let all = self.tree.freedoms.iter().zip(&pose.coordinates);
-        let turning = all
-            .zip(&motion.rates)
-            .filter(|((kind, _), _)| matches!(kind, FreedomKind::Turn | FreedomKind::Screw(_)));
-        turning.map(|((_, &angle), &rate)| [angle, rate]).collect()
-    }
-
-    /// The turns in the motion of the pose.
-    pub fn unit_turns(&self, pose: &Pose<f64>) -> Vec<[f64; 2]> {
-        self.turns(pose, &pose.motion)
-    }
-
-    /// The point of the ground from which the [frames](Plan::frame) are counted, m.
-    pub fn origin(&self) -> Vec3 {
-        self.tree.internal[self.ground].position
-    }
-
-    /// The placement of a body: its own frame in that of the ground.
-    pub fn placement(&self, pose: &Pose<f64>, body: usize) -> Placement {
-        let mut placed = pose.frames[body].then(&self.tree.internal[body].inverse());
-        placed.position += self.origin();
-        placed
-    }
-
-    /// A point of a body, m in its frame, in the frame of the ground.
-    pub fn point(&self, pose: &Pose<f64>, body: usize, point: Vec3) -> Vec3 {
-        let inner = self.tree.internal[body].inner_point(point);
-        self.origin() + pose.frames[body].point(inner)
+    /// The frame in which a body is evaluated, relative to the body's own frame: the frame of the joint that carries
+    /// the body.
+    pub fn evaluation_frame(&self, body: usize) -> Frame<C> {
+        self.tree.internal[body]
     }
 }

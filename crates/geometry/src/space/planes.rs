@@ -14,11 +14,12 @@
 
 use super::closure::{Closure, RowKind, rows_of};
 use super::joint_kinds::JointKind;
-use super::mechanism::{Joint, Mechanism, Side};
+use super::mechanism::{Mechanism, Side};
 use super::plan::{Plan, Pose};
 use super::positions::OPEN;
 use super::tree::FreedomKind;
 use super::vector::Vec3;
+use dwell_numerics::Constant;
 
 /// Directions are parallel, or at right angles, to this tolerance, the rounding of the numbers of a scene. An axis with a larger tilt is
 /// solved as tilted, and its results have all digits.
@@ -34,6 +35,38 @@ pub(super) fn is_across(a: Vec3, b: Vec3) -> bool {
     a.dot(b).abs() < ALIGNED
 }
 
+/// The rows of a joint of this kind, with its number and its sides, along and across the plane that has this normal on both bodies.
+pub(super) fn rows_along<C: Constant>(
+    kind: JointKind,
+    number: C,
+    sides: [Side<C>; 2],
+    own: [Vec3; 2],
+) -> Option<Vec<RowKind<C>>> {
+    let in_plane = |k: usize| {
+        let (side, own) = (sides[k], own[k].cast::<C>());
+        // The normals of a slide in the plane are that of the plane.
+        let across = own - side.axis.scaled(side.axis.dot(own));
+        let is_slide = kind == JointKind::Prismatic && is_across(side.axis.values(), own.values());
+        let has_normal = is_slide && across.values().unit().is_some();
+        Side {
+            normal: if has_normal {
+                across.normalised()
+            } else {
+                side.normal
+            },
+            ..side
+        }
+    };
+    let u = own[0].any_normal();
+    let axes = [u, own[0].cross(u), own[0]];
+    let along = |row: RowKind<C>| match row {
+        RowKind::Point(k) => RowKind::Along(axes[k].cast()),
+        other => other,
+    };
+    let rows = rows_of(kind, number, &[in_plane(0), in_plane(1)])?;
+    Some(rows.into_iter().map(along).collect())
+}
+
 impl Plan {
     /// Gives each closure that keeps to a plane its rows along the plane and across it, at the assembled pose.
     pub(super) fn find_planes(&mut self, mechanism: &Mechanism, pose: &Pose) {
@@ -41,8 +74,8 @@ impl Plan {
             let Some(normal) = self.normal_of(&self.closures[c], pose) else {
                 continue;
             };
-            if let Some(kinds) = self.rows_in_plane(mechanism, c, normal, pose) {
-                self.closures[c].kinds = kinds;
+            if let Some((kinds, own)) = self.rows_in_plane(mechanism, c, normal, pose) {
+                (self.closures[c].kinds, self.closures[c].plane) = (kinds, Some(own));
             }
             self.closures[c].unmoved = self.unmoved(&self.closures[c], normal, pose);
         }
@@ -66,52 +99,29 @@ impl Plan {
             .then_some(normal)
     }
 
-    /// The rows of a closure along and across the plane with this normal; `None` if they would not be closed at the pose.
+    /// The rows of a closure along and across the plane with this normal, and that normal on both bodies; `None` if they would not be
+    /// closed at the pose.
     fn rows_in_plane(
         &self,
         mechanism: &Mechanism,
         c: usize,
         normal: Vec3,
         pose: &Pose,
-    ) -> Option<Vec<RowKind>> {
+    ) -> Option<(Vec<RowKind>, [Vec3; 2])> {
         let closure = &self.closures[c];
         let joint = &mechanism.joints[closure.joint?.0];
-        let of_body = |k: usize| {
-            let body = closure.bodies[k];
-            let own = pose.frames[body].rotation.apply_inverse(normal);
-            let side = joint.sides[k].in_frame(&self.tree.internal[body]);
-            // The normals of a slide in the plane are that of the plane.
-            let across = own - side.axis.scaled(side.axis.dot(own));
-            let is_slide = joint.kind == JointKind::Prismatic && is_across(side.axis, own);
-            let normal = across.unit().filter(|_| is_slide);
-            (
-                own,
-                Side {
-                    normal: normal.unwrap_or(side.normal),
-                    ..side
-                },
-            )
-        };
-        let ((own, first), (_, second)) = (of_body(0), of_body(1));
-        let u = own.any_normal();
-        let axes = [u, own.cross(u), own];
-        let along = |kind: RowKind| match kind {
-            RowKind::Point(k) => RowKind::Along(axes[k]),
-            other => other,
-        };
-        let joint = Joint {
-            sides: [first, second],
-            ..joint.clone()
-        };
-        let rows = rows_of(&joint, &joint.sides)?;
-        let kinds: Vec<RowKind> = rows.into_iter().map(along).collect();
+        let own = closure
+            .bodies
+            .map(|body| pose.frames[body].rotation.apply_inverse(normal));
+        let side = |k: usize| joint.sides[k].in_frame(&self.tree.internal[closure.bodies[k]]);
+        let kinds = rows_along(joint.kind, joint.numbers().number, [side(0), side(1)], own)?;
         let [_, _, d] = closure.ends(&pose.frames);
         let is_closed = |kind: &RowKind| {
             let unit = if kind.is_length() { self.size } else { 1.0 };
             let row = closure.row(*kind, &pose.frames, &pose.coordinates, d);
             row.residual.abs() <= OPEN * unit
         };
-        (kinds.len() == closure.kinds.len() && kinds.iter().all(is_closed)).then_some(kinds)
+        (kinds.len() == closure.kinds.len() && kinds.iter().all(is_closed)).then_some((kinds, own))
     }
 
     /// By row of a closure and freedom of its path: whether the freedom never changes the row.

@@ -10,7 +10,7 @@ use super::tree::{FreedomKind, Step};
 use super::vector::vec3;
 use crate::error::PositionError;
 use crate::positions::is_plain;
-use dwell_numerics::Scalar;
+use dwell_numerics::{Constant, Lift, Scalar};
 
 /// Steps with a predicted inverse at most.
 const MAX_PREDICTED_STEPS: usize = 3;
@@ -159,32 +159,6 @@ impl Plan {
         false
     }
 
-    /// Factors the Jacobian of a closed group; returns false if it is singular.
-    #[inline(always)]
-    pub(super) fn factor_closed<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) -> bool {
-        if let Some(rod) = &group.rod {
-            return self.factor_rod(group, rod, pose);
-        }
-        self.fill_rows(group, pose);
-        self.factor(group, pose).pivot_ratio >= singular::<T>()
-    }
-
-    /// The frames of some bodies, with the screws of their freedoms.
-    pub(super) fn place<T: Scalar>(&self, links: &[usize], pose: &mut Pose<T>) {
-        let freedoms = &self.tree.freedoms;
-        for link in links.iter().map(|l| &self.tree.links[*l]) {
-            let Pose {
-                coordinates,
-                balls,
-                frames,
-                screws,
-                ..
-            } = pose;
-            let base = link.base(&frames[link.parent], link.parent == self.ground);
-            frames[link.body] = link.place(base, coordinates, balls, freedoms, screws);
-        }
-    }
-
     fn close_group<T: Scalar>(
         &self,
         g: usize,
@@ -245,10 +219,38 @@ impl Plan {
             residual,
         })
     }
+}
+
+impl<C: Constant> Plan<C> {
+    /// Factors the Jacobian of a closed group; returns false if it is singular.
+    #[inline(always)]
+    pub(super) fn factor_closed<T: Lift<C>>(&self, group: &Group, pose: &mut Pose<T>) -> bool {
+        if let Some(rod) = &group.rod {
+            return self.factor_rod(group, rod, pose);
+        }
+        self.fill_rows(group, pose);
+        self.factor(group, pose).pivot_ratio >= singular::<T>()
+    }
+
+    /// The frames of some bodies, with the screws of their freedoms.
+    pub(super) fn place<T: Lift<C>>(&self, links: &[usize], pose: &mut Pose<T>) {
+        let freedoms = &self.tree.freedoms;
+        for link in links.iter().map(|l| &self.tree.links[*l]) {
+            let Pose {
+                coordinates,
+                balls,
+                frames,
+                screws,
+                ..
+            } = pose;
+            let base = link.base(&frames[link.parent], link.parent == self.ground);
+            frames[link.body] = link.place(base, coordinates, balls, freedoms, screws);
+        }
+    }
 
     /// Residuals of a group's rows alone.
     #[inline(always)]
-    fn fill_residuals<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) {
+    fn fill_residuals<T: Lift<C>>(&self, group: &Group, pose: &mut Pose<T>) {
         for (c, rows) in &group.closures {
             let closure = &self.closures[*c];
             let [_, _, d] = closure.ends(&pose.frames);
@@ -261,7 +263,7 @@ impl Plan {
 
     /// Residuals and Jacobian of a group's rows.
     #[inline(always)]
-    pub(super) fn fill_rows<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) {
+    pub(super) fn fill_rows<T: Lift<C>>(&self, group: &Group, pose: &mut Pose<T>) {
         for (c, rows) in &group.closures {
             let closure = &self.closures[*c];
             let rows = &group.rows[rows.clone()];
@@ -300,7 +302,7 @@ impl Plan {
     }
 
     /// One step of Newton's method; its largest component, over the unit of its freedom.
-    fn newton_step<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) -> f64 {
+    pub(super) fn newton_step<T: Lift<C>>(&self, group: &Group, pose: &mut Pose<T>) -> f64 {
         for (i, row) in group.residuals.iter().enumerate() {
             pose.scratch[i] = -pose.residuals[*row];
         }
@@ -328,7 +330,7 @@ impl Plan {
     }
 
     /// Turns the ball of a link by a small turn in the axes of the ground.
-    pub(super) fn turn_ball<T: Scalar>(
+    pub(super) fn turn_ball<T: Lift<C>>(
         &self,
         link: usize,
         turn: super::Vec3<T>,

@@ -10,13 +10,13 @@
 //! with r from the ball to the other point, e the unit vector of the spin row, σ = ±1 the sense of the path. Along r the rod does not
 //! give way: that is the one equation of x. (3) solves the transposed equations for the multipliers.
 
-use super::closure::RowKind;
+use super::closure::{Closure, RowKind};
 use super::groups::Group;
 use super::plan::{Plan, Pose};
 use super::positions::singular;
 use super::tree::{Link, Step};
 use super::vector::{Vec3, vec3};
-use dwell_numerics::Scalar;
+use dwell_numerics::{Constant, Lift, Scalar};
 
 /// The positions of the parts of (1).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,6 +51,13 @@ struct Factors<T> {
 
 /// Tolerance with which the axis of a row is that of the rod.
 const PARALLEL: f64 = 1e-14;
+
+impl Rod {
+    /// The closure that holds the spin, and the vector from the ball to the other point in the frame of the rod.
+    pub(super) fn spin_and_arm<C: Copy>(&self, closures: &[Closure<C>]) -> (usize, Vec3<C>) {
+        (self.spin, closures[self.points].points[self.end])
+    }
+}
 
 impl<T: Scalar> Factors<T> {
     #[inline(always)]
@@ -152,10 +159,12 @@ impl Plan {
             && axis.cross(closure.points[end].unit()?).norm() < PARALLEL;
         is_on_rod.then_some(([points, spin], end))
     }
+}
 
+impl<C: Constant> Plan<C> {
     /// Computes the entries of a rod's closed rows and the data of (2) and (3); returns false if it is singular.
     #[inline(always)]
-    pub(super) fn factor_rod<T: Scalar>(
+    pub(super) fn factor_rod<T: Lift<C>>(
         &self,
         group: &Group,
         rod: &Rod,
@@ -186,7 +195,7 @@ impl Plan {
         let row = &mut pose.row_wrenches[spin.rows.start];
         (row.force, row.moment) = (Vec3::zero(), e);
         for (p, &(freedom, sign)) in spin.path.iter().enumerate() {
-            let (angular, _) = self.tree.freedoms[freedom].parts();
+            let angular = self.tree.freedoms[freedom].angular();
             let along = e.dot(pose.screws[freedom].axis);
             pose.entries[spin.entries + p] = along * T::from_f64(angular * sign);
         }

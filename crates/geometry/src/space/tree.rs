@@ -1,35 +1,36 @@
 //! The spanning tree: each body is placed from its parent by one joint.
 
+use super::frames::Frame;
 use super::joint_kinds::{Condition, JointKind};
-use super::mechanism::{ActuatorKind, Assembly, Mechanism, Placement, Side};
+use super::mechanism::{ActuatorKind, Assembly, Joint, JointNumbers, Mechanism, Side};
 use super::vector::{Rotation, Vec3};
 use crate::error::StructureError;
 use crate::mechanism::{BodyId, JointId};
+use dwell_numerics::{Constant, Scalar};
 use std::ops::Range;
 
 /// How a freedom of a tree joint moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum FreedomKind {
+pub(super) enum FreedomKind<C = f64> {
     /// Rotation about the axis: rad.
     Turn,
     /// Translation along the axis: m.
     Slide,
     /// Rotation, with so much translation along the axis, m/rad.
-    Screw(f64),
+    Screw(C),
     /// Rotation about an axis of the ground: one of three components of a small turn.
     BallTurn,
     /// The distance of two points, which an actuator gives, m: no link moves by it.
     Length,
 }
 
-impl FreedomKind {
-    /// The angular part and the linear part of its screw.
+impl<C> FreedomKind<C> {
+    /// The angular velocity along its axis at unit rate.
     #[inline(always)]
-    pub(super) fn parts(self) -> (f64, f64) {
+    pub(super) fn angular(&self) -> f64 {
         match self {
-            Self::Turn | Self::BallTurn => (1.0, 0.0),
-            Self::Slide | Self::Length => (0.0, 1.0),
-            Self::Screw(pitch) => (1.0, pitch),
+            Self::Turn | Self::BallTurn | Self::Screw(_) => 1.0,
+            Self::Slide | Self::Length => 0.0,
         }
     }
 }
@@ -49,7 +50,7 @@ pub(super) enum Step {
 
 /// The placement of a body relative to its parent. Here the frame of the body is that of the joint on it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Link {
+pub(super) struct Link<C = f64> {
     pub(super) body: usize,
     pub(super) parent: usize,
     /// `None` if only distances hold the body.
@@ -57,21 +58,23 @@ pub(super) struct Link {
     /// −1 where the body is the joint's first: its coordinates then count backwards.
     pub(super) sign: f64,
     /// The joint's frame on the parent.
-    pub(super) on_parent: Placement,
+    pub(super) on_parent: Frame<C>,
     pub(super) steps: Vec<Step>,
     pub(super) freedoms: Range<usize>,
 }
 
 /// The tree.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Tree {
+pub(super) struct Tree<C = f64> {
     /// The links, from the ground outwards.
-    pub(super) links: Vec<Link>,
+    pub(super) links: Vec<Link<C>>,
     /// By body: the link that places it; none for the ground.
     pub(super) link_of: Vec<Option<usize>>,
     /// By body: the frame in which it is evaluated, in its own frame.
-    pub(super) internal: Vec<Placement>,
-    pub(super) freedoms: Vec<FreedomKind>,
+    pub(super) internal: Vec<Frame<C>>,
+    /// The bodies that no joint places, the ground among them, each with the joint and its side at whose point its frame is.
+    pub(super) placed_at: Vec<(usize, JointId, usize)>,
+    pub(super) freedoms: Vec<FreedomKind<C>>,
     pub(super) balls: usize,
     /// The joints that close loops.
     pub(super) closures: Vec<JointId>,
@@ -81,41 +84,25 @@ pub(super) struct Tree {
 
 /// The freedom that an actuator drives.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Driver {
+pub(super) struct Driver<C = f64> {
     pub(super) freedom: usize,
     /// The coordinate of the freedom over that of the actuator: −1 where the tree counts it backwards.
-    pub(super) factor: f64,
+    pub(super) factor: C,
     /// Whether its action is a force, and not a couple.
     pub(super) is_force: bool,
 }
 
 /// A side as a frame: origin in its point, z along the axis and x along the normal.
-fn frame_of(side: &Side) -> Placement {
-    Placement {
+fn frame_of<C: Scalar>(side: &Side<C>) -> Frame<C> {
+    Frame {
         position: side.point,
         rotation: Rotation::of_axes(side.axis, side.normal),
     }
 }
 
-impl Placement {
-    /// The frame outside in this one.
-    pub(super) fn inverse(&self) -> Self {
-        let rotation = self.rotation.inverse();
-        Self {
-            position: -rotation.apply(self.position),
-            rotation,
-        }
-    }
-
-    /// A point in this frame, of its coordinates outside: the difference comes first, which is exact where both are far away.
-    pub fn inner_point(&self, point: Vec3) -> Vec3 {
-        self.rotation.apply_inverse(point - self.position)
-    }
-}
-
-impl Side {
+impl<C: Scalar> Side<C> {
     /// This side in another frame of its body.
-    pub(super) fn in_frame(&self, frame: &Placement) -> Self {
+    pub(super) fn in_frame(&self, frame: &Frame<C>) -> Self {
         Self {
             point: frame.inner_point(self.point),
             axis: frame.rotation.apply_inverse(self.axis),
@@ -132,12 +119,12 @@ impl Tree {
     pub(super) fn find(mechanism: &Mechanism, in_tree: &[bool]) -> Result<Self, StructureError> {
         let mut tree = Self {
             link_of: vec![None; mechanism.bodies.len()],
-            internal: vec![Placement::default(); mechanism.bodies.len()],
+            internal: vec![Frame::default(); mechanism.bodies.len()],
             ..Self::default()
         };
         // A point of the ground near the mechanism is its origin: results do not depend on where it stands.
         let ground = mechanism.ground;
-        tree.internal[ground].position = first_point(mechanism, ground);
+        tree.place_at_first_joint(mechanism, ground);
         let mut reached = vec![ground];
         let mut next = 0;
         loop {
@@ -153,7 +140,7 @@ impl Tree {
                         let body = joint.bodies[1 - side].0;
                         let placed = body == ground || tree.link_of[body].is_some();
                         if joint.bodies[side].0 == parent && !placed {
-                            tree.add_link(mechanism, body, parent, Some((JointId(j), side, sign)));
+                            tree.add_link(mechanism, body, parent, Some((JointId(j), sign)));
                             reached.push(body);
                         }
                     }
@@ -181,6 +168,8 @@ impl Tree {
                 tree.freedoms.push(FreedomKind::Length);
             }
         }
+        let numbers: Vec<JointNumbers> = mechanism.joints.iter().map(Joint::numbers).collect();
+        tree.set_numbers(&numbers);
         Ok(tree)
     }
 
@@ -202,39 +191,39 @@ impl Tree {
         mechanism: &Mechanism,
         body: usize,
         parent: usize,
-        by: Option<(JointId, usize, f64)>,
+        by: Option<(JointId, f64)>,
     ) {
         let first = self.freedoms.len();
-        let (steps, on_parent, sign) = match by {
+        let steps = match by {
             None => {
-                self.internal[body].position = first_point(mechanism, body);
+                self.place_at_first_joint(mechanism, body);
                 self.freedoms.extend([FreedomKind::Slide; 3]);
                 let mut steps: Vec<Step> = (0..3).map(|k| Step::Slide(k, first + k)).collect();
                 steps.push(self.ball());
-                (steps, Placement::default(), 1.0)
+                steps
             }
-            Some((joint, side, sign)) => {
-                let joint = &mechanism.joints[joint.0];
-                self.internal[body] = frame_of(&joint.sides[1 - side]);
-                let mut parent_side = joint.sides[side].in_frame(&self.internal[parent]);
-                if joint.kind == JointKind::Universal {
-                    // The first angle turns from any direction: the axes are at right angles.
-                    self.internal[body] = universal_frame(&joint.sides[1 - side]);
-                    parent_side.normal = parent_side.axis.any_normal();
-                }
-                (self.steps_of(joint.kind), frame_of(&parent_side), sign)
-            }
+            Some((joint, _)) => self.steps_of(mechanism.joints[joint.0].kind),
         };
         self.link_of[body] = Some(self.links.len());
         self.links.push(Link {
             body,
             parent,
             joint: by.map(|(joint, ..)| joint),
-            sign,
-            on_parent,
+            sign: by.map_or(1.0, |(_, sign)| sign),
+            on_parent: Frame::default(),
             steps,
             freedoms: first..self.freedoms.len(),
         });
+    }
+
+    /// Puts the frame of a body at the point of the first joint on it; of a body without a joint it stays at its origin.
+    fn place_at_first_joint(&mut self, mechanism: &Mechanism, body: usize) {
+        let mut joints = mechanism.joints.iter().enumerate();
+        let on_body = joints.find_map(|(j, joint)| {
+            let side = (0..2).find(|k| joint.side_body(*k).0 == body)?;
+            Some((body, JointId(j), side))
+        });
+        self.placed_at.extend(on_body);
     }
 
     /// A ball with its three freedoms.
@@ -282,32 +271,6 @@ impl Tree {
         self.freedoms.len() - 1
     }
 
-    /// The freedom that an actuator drives; none of a joint outside the tree.
-    pub(super) fn driven(&self, kind: ActuatorKind) -> Option<Driver> {
-        let joint = kind.joint();
-        if let ActuatorKind::Length(_) = kind {
-            let (_, freedom) = self.driven_lengths.iter().find(|(j, _)| *j == joint)?;
-            return Some(Driver {
-                freedom: *freedom,
-                factor: 1.0,
-                is_force: true,
-            });
-        }
-        let link = self.links.iter().find(|link| link.joint == Some(joint))?;
-        let is_travel = matches!(kind, ActuatorKind::Travel(_));
-        let of_two = link.freedoms.len() == 2;
-        let freedom = link.freedoms.start + usize::from(is_travel && of_two);
-        let factor = match self.freedoms[freedom] {
-            FreedomKind::Screw(pitch) if is_travel => link.sign / pitch,
-            _ => link.sign,
-        };
-        Some(Driver {
-            freedom,
-            factor,
-            is_force: is_travel,
-        })
-    }
-
     /// Approximate coordinates and rotations of the balls from approximate placements of the bodies.
     pub(super) fn approximate_coordinates(&self, assembly: &Assembly) -> (Vec<f64>, Vec<Rotation>) {
         let mut coordinates = vec![0.0; self.freedoms.len()];
@@ -329,7 +292,10 @@ impl Tree {
                             x.y.atan2(x.x)
                         };
                         coordinates[c] = angle;
-                        let travel = self.freedoms[c].parts().1 * angle;
+                        let travel = match self.freedoms[c] {
+                            FreedomKind::Screw(pitch) => pitch * angle,
+                            _ => 0.0,
+                        };
                         from.position += from.rotation.columns[2].scaled(travel);
                         from.rotation = from.rotation.turned_about_z(angle.sin_cos());
                     }
@@ -347,13 +313,62 @@ impl Tree {
     }
 }
 
-/// The point of the first joint on a body; of a body without a joint its origin.
-fn first_point(mechanism: &Mechanism, body: usize) -> Vec3 {
-    let on_body = mechanism.joints.iter().find_map(|joint| {
-        let side = (0..2).find(|k| joint.side_body(*k).0 == body)?;
-        Some(joint.sides[side].point)
-    });
-    on_body.unwrap_or(Vec3::ZERO)
+impl<C: Constant> Tree<C> {
+    /// The freedom that an actuator drives; none of a joint outside the tree.
+    pub(super) fn driven(&self, kind: ActuatorKind) -> Option<Driver<C>> {
+        let joint = kind.joint();
+        if let ActuatorKind::Length(_) = kind {
+            let (_, freedom) = self.driven_lengths.iter().find(|(j, _)| *j == joint)?;
+            return Some(Driver {
+                freedom: *freedom,
+                factor: C::from_f64(1.0),
+                is_force: true,
+            });
+        }
+        let link = self.links.iter().find(|link| link.joint == Some(joint))?;
+        let is_travel = matches!(kind, ActuatorKind::Travel(_));
+        let of_two = link.freedoms.len() == 2;
+        let freedom = link.freedoms.start + usize::from(is_travel && of_two);
+        let factor = match self.freedoms[freedom] {
+            FreedomKind::Screw(pitch) if is_travel => C::from_f64(link.sign) / pitch,
+            _ => C::from_f64(link.sign),
+        };
+        Some(Driver {
+            freedom,
+            factor,
+            is_force: is_travel,
+        })
+    }
+
+    /// Sets the frames and the pitches from the numbers of the joints.
+    pub(super) fn set_numbers(&mut self, joints: &[JointNumbers<C>]) {
+        for &(body, joint, side) in &self.placed_at {
+            self.internal[body].position = joints[joint.0].sides[side].point;
+        }
+        for link in &mut self.links {
+            let Some(joint) = link.joint else { continue };
+            let numbers = &joints[joint.0];
+            let parent_side = usize::from(link.sign < 0.0);
+            let [mut on_parent, mut on_body] =
+                [parent_side, 1 - parent_side].map(|k| numbers.sides[k]);
+            // The first angle of a universal joint turns from any direction: the axes are at right angles.
+            let is_universal = link.steps.contains(&Step::NextAxis);
+            if is_universal {
+                on_body.normal = on_body.axis.any_normal();
+            }
+            self.internal[link.body] = frame_of(&on_body);
+            on_parent = on_parent.in_frame(&self.internal[link.parent]);
+            if is_universal {
+                on_parent.normal = on_parent.axis.any_normal();
+            }
+            link.on_parent = frame_of(&on_parent);
+            for freedom in &mut self.freedoms[link.freedoms.clone()] {
+                if let FreedomKind::Screw(pitch) = freedom {
+                    *pitch = numbers.number;
+                }
+            }
+        }
+    }
 }
 
 /// The axes renamed: y becomes z, z becomes x.
@@ -361,12 +376,4 @@ fn first_point(mechanism: &Mechanism, body: usize) -> Vec3 {
 pub(super) fn next_axis<T: Copy>(frame: &Rotation<T>) -> Rotation<T> {
     let [x, y, z] = frame.columns;
     Rotation { columns: [z, x, y] }
-}
-
-/// The frame of a universal joint on the outer body: as any joint's.
-fn universal_frame(side: &Side) -> Placement {
-    frame_of(&Side {
-        normal: side.axis.any_normal(),
-        ..*side
-    })
 }

@@ -3,7 +3,7 @@
 //! Operators report their caller's source line (`#[track_caller]`): a number type that records its operations (the
 //! mutation tests) then sees the term that uses them.
 
-use dwell_numerics::{Scalar, map_array};
+use dwell_numerics::{Constant, Lift, Scalar, map_array};
 use std::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 
 /// A vector of space.
@@ -48,25 +48,29 @@ impl Vec3<f64> {
         let norm = self.norm();
         (norm >= f64::MIN_POSITIVE && norm.is_finite()).then(|| self.scaled(1.0 / norm))
     }
+}
 
-    /// A unit vector at right angles to this unit vector.
-    pub fn any_normal(self) -> Self {
-        let size = |v: &Self| self.dot(*v).abs();
-        let mut axes = Self::AXES;
-        axes.sort_by(|a, b| size(a).total_cmp(&size(b)));
-        let normal = self.cross(axes[0]);
-        normal.scaled(1.0 / normal.norm())
-    }
-
+impl<C: Constant> Vec3<C> {
     /// This value in another number type, as constants.
     #[inline(always)]
     #[track_caller]
-    pub fn cast<T: Scalar>(self) -> Vec3<T> {
-        vec3(
-            T::from_f64(self.x),
-            T::from_f64(self.y),
-            T::from_f64(self.z),
-        )
+    pub fn cast<T: Lift<C>>(self) -> Vec3<T> {
+        vec3(T::lift(self.x), T::lift(self.y), T::lift(self.z))
+    }
+}
+
+impl<C: Constant> Vec3<C> {
+    /// The vector of length 1 of this direction, which is not zero.
+    pub(super) fn normalised(self) -> Self {
+        self.scaled(C::from_f64(1.0) / C::length([self.x, self.y, self.z]))
+    }
+
+    /// A unit vector at right angles to this unit vector.
+    pub fn any_normal(self) -> Self {
+        let size = |v: &Vec3| self.dot(v.cast()).value().abs();
+        let mut axes = Vec3::AXES;
+        axes.sort_by(|a, b| size(a).total_cmp(&size(b)));
+        self.cross(axes[0].cast()).normalised()
     }
 }
 
@@ -76,6 +80,11 @@ impl<T: Scalar> Vec3<T> {
     #[track_caller]
     pub fn zero() -> Self {
         Vec3::ZERO.cast()
+    }
+
+    /// The values of its components, without derivatives.
+    pub fn values(self) -> Vec3 {
+        vec3(self.x.value(), self.y.value(), self.z.value())
     }
 
     /// Scalar product.
@@ -172,13 +181,6 @@ impl Rotation<f64> {
         columns: Vec3::AXES,
     };
 
-    /// The frame with this unit vector as its z axis and another at right angles to it as its x axis.
-    pub fn of_axes(z: Vec3, x: Vec3) -> Self {
-        Self {
-            columns: [x, z.cross(x), z],
-        }
-    }
-
     /// A rotation from the rows of its matrix, which are made orthonormal; `None` if they are far from orthonormal.
     pub fn of_rows(rows: [[f64; 3]; 3]) -> Option<Self> {
         let column = |k: usize| vec3(rows[0][k], rows[1][k], rows[2][k]);
@@ -230,10 +232,12 @@ impl Rotation<f64> {
         let axis = largest.and_then(Vec3::unit).unwrap_or(Vec3::ZERO);
         axis.scaled(std::f64::consts::PI)
     }
+}
 
+impl<C: Constant> Rotation<C> {
     /// This value in another number type, as constants.
     #[inline(always)]
-    pub fn cast<T: Scalar>(&self) -> Rotation<T> {
+    pub fn cast<T: Lift<C>>(&self) -> Rotation<T> {
         Rotation {
             columns: map_array(self.columns, Vec3::cast),
         }
@@ -247,6 +251,13 @@ impl<T: Scalar> Default for Rotation<T> {
 }
 
 impl<T: Scalar> Rotation<T> {
+    /// The frame with this unit vector as its z axis and another at right angles to it as its x axis.
+    pub fn of_axes(z: Vec3<T>, x: Vec3<T>) -> Self {
+        Self {
+            columns: [x, z.cross(x), z],
+        }
+    }
+
     /// A vector of the rotated frame in the axes of the other.
     #[inline(always)]
     #[track_caller]

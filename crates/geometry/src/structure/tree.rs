@@ -9,7 +9,7 @@ use crate::error::StructureError;
 use crate::plane::Vec2;
 use crate::structure::frames::Frames;
 use crate::structure::lower::{ActuatedCoordinate, Lowered, PairKind};
-use dwell_numerics::{Constant, Lift, Scalar};
+use dwell_numerics::{Constant, Scalar};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -220,7 +220,7 @@ impl Tree {
     }
 }
 
-impl<C: Constant + Lift<f64>> Tree<C> {
+impl<C: Constant> Tree<C> {
     /// The vector from a body's root to one of its points.
     pub fn vector_to(&self, frames: &Frames, body: usize, point: Vec2<C>) -> FrameVector<C> {
         vector_between(frames, body, self.joint_origins[body], point)
@@ -254,7 +254,7 @@ fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
 /// The vector from one point of a body to another, in its frame. The vector is zero if the points coincide to the
 /// rounding of their coordinates, so that a mechanism far from the origin has the structure of the same mechanism near
 /// it.
-fn vector_between<C: Constant + Lift<f64>>(
+fn vector_between<C: Constant>(
     frames: &Frames,
     body: usize,
     from: Vec2<C>,

@@ -6,7 +6,7 @@ use crate::plane::{Vec2, vec2};
 use crate::structure::frames::Frames;
 use crate::structure::lower::Lowered;
 use crate::structure::tree::{LoopJoint, Tree};
-use dwell_numerics::{Constant, Scalar};
+use dwell_numerics::Constant;
 
 /// Vectors that are one in the structure may differ by this part of their lengths in the dimensions of a variant: by the
 /// rounding of sums.
@@ -110,7 +110,7 @@ impl Plan {
     }
 }
 
-impl<C: Constant + Scalar> Plan<C> {
+impl<C: Constant> Plan<C> {
     /// How many numbers [`Plan::dimensions`] gives.
     pub fn dimension_count(&self) -> usize {
         let vectors = self.frame_vectors.len() + self.loop_closures.len() + self.tree.joints.len();

@@ -3,10 +3,10 @@
 use crate::plan::{AssurGroup, GroupKind, GuidedPoint, LoopClosure, Plan, RrrDyad, Step};
 use crate::structure::lower::{KinematicPair, Lowered};
 use crate::structure::tree::{FrameVector, Tree, TreeJoint};
-use dwell_numerics::{Constant, Lift};
+use dwell_numerics::Constant;
 
 impl FrameVector {
-    fn lifted<C: Constant + Lift<f64>>(self) -> FrameVector<C> {
+    fn lifted<C: Constant>(self) -> FrameVector<C> {
         FrameVector {
             frame: self.frame,
             local: self.local.cast(),
@@ -15,7 +15,7 @@ impl FrameVector {
 }
 
 impl Tree {
-    fn lifted<C: Constant + Lift<f64>>(&self) -> Tree<C> {
+    fn lifted<C: Constant>(&self) -> Tree<C> {
         let joint = |joint: &TreeJoint| TreeJoint {
             body: joint.body,
             parent: joint.parent,
@@ -34,7 +34,7 @@ impl Tree {
 }
 
 impl Lowered {
-    fn lifted<C: Constant + Lift<f64>>(&self) -> Lowered<C> {
+    fn lifted<C: Constant>(&self) -> Lowered<C> {
         let pair = |pair: &KinematicPair| KinematicPair {
             owner: pair.owner,
             bodies: pair.bodies,
@@ -54,7 +54,7 @@ impl Lowered {
 }
 
 impl LoopClosure {
-    fn lifted<C: Constant + Lift<f64>>(&self) -> LoopClosure<C> {
+    fn lifted<C: Constant>(&self) -> LoopClosure<C> {
         LoopClosure {
             pair: self.pair,
             fixed: self.fixed.cast(),
@@ -66,7 +66,7 @@ impl LoopClosure {
 }
 
 impl GroupKind {
-    fn lifted<C: Constant + Lift<f64>>(&self) -> GroupKind<C> {
+    fn lifted<C: Constant>(&self) -> GroupKind<C> {
         match self {
             Self::RrrDyad(dyad) => GroupKind::RrrDyad(RrrDyad {
                 closure: dyad.closure,
@@ -100,7 +100,7 @@ impl GroupKind {
 }
 
 impl AssurGroup {
-    fn lifted<C: Constant + Lift<f64>>(&self) -> AssurGroup<C> {
+    fn lifted<C: Constant>(&self) -> AssurGroup<C> {
         AssurGroup {
             group: self.group.clone(),
             kind: self.kind.lifted(),
@@ -118,7 +118,7 @@ impl AssurGroup {
 }
 
 impl Step {
-    fn lifted<C: Constant + Lift<f64>>(&self) -> Step<C> {
+    fn lifted<C: Constant>(&self) -> Step<C> {
         match self {
             Self::RotateFrame(actuated) => Step::RotateFrame(*actuated),
             Self::SetSlide(slide, actuator) => Step::SetSlide(*slide, *actuator),
@@ -131,7 +131,7 @@ impl Step {
 impl Plan {
     /// The same plan with its dimensions (m) in another type: constants of it, until
     /// [`set_dimensions`](Plan::set_dimensions) makes them what an evaluation depends on.
-    pub fn lifted<C: Constant + Lift<f64>>(&self) -> Plan<C> {
+    pub fn lifted<C: Constant>(&self) -> Plan<C> {
         Plan {
             lowered: self.lowered.lifted(),
             frames: self.frames.clone(),

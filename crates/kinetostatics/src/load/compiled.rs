@@ -2,7 +2,8 @@
 
 use super::signal::{SignalWorkspace, compile_signals};
 use super::{
-    AppliedWrench, CompiledSignal, Direction, Load, LoadKind, Magnitude, find_couple_points,
+    AppliedWrench, CompiledSignal, Direction, ForceSource, Load, LoadKind, LoadPlaces, Magnitude,
+    find_couple_points,
 };
 use crate::error::{KinetostaticsError, LoadError, Result};
 use crate::mass::Mass;
@@ -42,7 +43,7 @@ pub struct LoadState<T = f64> {
 impl<T: Scalar> LoadState<T> {
     /// Sums the wrenches on each body.
     #[inline]
-    fn sum_by_body(&mut self) {
+    pub(crate) fn sum_by_body(&mut self) {
         self.force.fill(Vec2::zero());
         self.moment.fill(T::from_f64(0.0));
         for wrench in &self.wrenches {
@@ -126,6 +127,15 @@ impl CompiledLoads {
         Ok(())
     }
 
+    /// What a load acts on beside its own bodies.
+    #[inline]
+    fn places(&self, load: usize) -> LoadPlaces<'_> {
+        LoadPlaces {
+            weighted_bodies: &self.weighted_bodies,
+            couple_points: self.couple_points[load],
+        }
+    }
+
     /// The wrenches of all loads at the magnitudes in `out`.
     pub(crate) fn update_wrenches<T: Scalar>(
         &self,
@@ -135,8 +145,12 @@ impl CompiledLoads {
         out.wrenches.clear();
         out.gravity = Vec2::zero();
         for (i, load) in self.loads.iter().enumerate() {
-            self.add_wrenches(i, &load.kind, out.magnitude[i], states, out)
-                .ok_or(KinetostaticsError::NoDirection { load: i })?;
+            let magnitude = out.magnitude[i];
+            let (source, places) = (ForceSource::Load(i), self.places(i));
+            (load
+                .kind
+                .add_wrenches(magnitude, source, &places, states, out))
+            .ok_or(KinetostaticsError::NoDirection { load: i })?;
         }
         out.sum_by_body();
         Ok(())
@@ -153,7 +167,8 @@ impl CompiledLoads {
         out.wrenches.clear();
         out.gravity = Vec2::zero();
         let (kind, sign) = self.loads[load].kind.unit_load();
-        self.add_wrenches(load, &kind, T::from_f64(sign), states, out)
+        let (source, places) = (ForceSource::Load(load), self.places(load));
+        (kind.add_wrenches(T::from_f64(sign), source, &places, states, out))
             .ok_or(KinetostaticsError::NoDirection { load })?;
         out.sum_by_body();
         Ok(())

@@ -5,6 +5,7 @@ use super::strength::{LoadSymbol, Strength};
 use super::{Guide, Mesh};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, Coordinate, Mechanism, Vec2};
+use dwell_numerics::Constant;
 use std::fmt::Debug;
 
 /// A direction in the axes of the ground or of a body.
@@ -25,10 +26,10 @@ impl<V> Direction<V> {
     }
 }
 
-/// The place of a load, and the meaning of its magnitude F, with vectors `V`, coordinates `C`, and the kinds `S` that exist only in the
-/// plane or only in space.
+/// The place of a load, and the meaning of its magnitude F, with vectors `V`, coordinates `C`, the kinds `S` that exist only in the
+/// plane or only in space, and numbers `N`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum AnyLoadKind<V, C, S> {
+pub enum AnyLoadKind<V, C, S, N = f64> {
     /// Weight of every body: F is the acceleration of gravity, m/s², along this unit vector of the ground.
     Gravity {
         /// Unit vector in the ground's frame.
@@ -44,7 +45,7 @@ pub enum AnyLoadKind<V, C, S> {
         direction: Direction<V>,
     },
     /// A force or couple along a coordinate, positive in the direction in which the coordinate grows.
-    Along(C, Strength),
+    Along(C, Strength<N>),
     /// The drag of a point of a body in a fluid at rest: F is its coefficient, N·s²/m²; the force −F |v| v.
     Drag {
         /// The body.
@@ -57,7 +58,7 @@ pub enum AnyLoadKind<V, C, S> {
 }
 
 /// The kind of a load in the plane.
-pub type LoadKind = AnyLoadKind<Vec2, CoordinateFunction, Mesh>;
+pub type LoadKind<C = f64> = AnyLoadKind<Vec2<C>, CoordinateFunction<C>, Mesh<C>, C>;
 
 /// A coordinate along which a load can act.
 pub trait LoadCoordinate: Copy {
@@ -348,7 +349,7 @@ where
     }
 }
 
-impl<V, C, S> AnyLoadKind<V, C, S> {
+impl<V, C, S, N: Constant> AnyLoadKind<V, C, S, N> {
     /// A unit of it, as of [`Strength::unit`], and its magnitude.
     pub(crate) fn unit_load(self) -> (Self, f64) {
         match self {

@@ -9,35 +9,35 @@
 use super::{Load, LoadKind, Magnitude};
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{BodyId, Component, Condition, Joint, JointId, Reaction, Vec2};
-use dwell_numerics::Scalar;
+use dwell_numerics::{Constant, Lift};
 
 /// The teeth of two gears, or of a rack and its pinion, in mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Mesh {
+pub struct Mesh<C = f64> {
     /// The two gears, or the rack and the pinion.
     pub bodies: [BodyId; 2],
     /// The centres of the gears, or a point of the rack's pitch line and the pinion's centre, m.
-    pub points: [Vec2; 2],
+    pub points: [Vec2<C>; 2],
     /// The pitch lines, which determine the pitch point.
-    pub pitch: PitchLines,
+    pub pitch: PitchLines<C>,
 }
 
 /// The lines of two bodies in mesh that roll on each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum PitchLines {
+pub enum PitchLines<C = f64> {
     /// The pitch circles of two gears.
     Circles {
         /// Pitch radii, m.
-        radii: [f64; 2],
+        radii: [C; 2],
         /// Whether the larger one is a ring around the other.
         internal: bool,
     },
     /// The pitch line of a rack and the pitch circle of its pinion.
     Line {
         /// Unit vector of the pitch line in the rack's frame.
-        axis: Vec2,
+        axis: Vec2<C>,
         /// Pitch radius, m: positive with the pinion on the side of the axis turned by +90°.
-        radius: f64,
+        radius: C,
     },
 }
 
@@ -101,17 +101,22 @@ impl Mesh {
         };
         pitch && self.points.iter().all(|point| point.is_finite())
     }
+}
 
+impl<C: Constant> Mesh<C> {
     /// From the second body's centre to the pitch point, m, and the unit vector along which the teeth of the first
     /// body push the second away; `None` if the centres of two gears coincide.
-    pub(crate) fn pitch_point<T: Scalar>(&self, states: &BodyStates<T>) -> Option<[Vec2<T>; 2]> {
+    pub(crate) fn pitch_point<T: Lift<C>>(
+        &self,
+        states: &BodyStates<T, C>,
+    ) -> Option<[Vec2<T>; 2]> {
         let Self { bodies, points, .. } = *self;
         match self.pitch {
             PitchLines::Circles { radii, internal } => {
                 let u = states.separation(bodies, points).direction?;
-                let radius = T::from_f64(radii[1]);
+                let radius = T::lift(radii[1]);
                 // A ring reaches over the other's centre, and pushes its pinion towards its own.
-                Some(match (internal, radii[0] > radii[1]) {
+                Some(match (internal, radii[0].value() > radii[1].value()) {
                     (false, _) => [u * -radius, u],
                     (true, true) => [u * radius, -u],
                     (true, false) => [u * -radius, -u],
@@ -119,8 +124,8 @@ impl Mesh {
             }
             PitchLines::Line { axis, radius } => {
                 let normal = axis.perp().cast().rotate(states.body(bodies[0]).rotation);
-                let away = normal * T::from_f64(radius.signum());
-                Some([normal * T::from_f64(-radius), away])
+                let away = normal * T::from_f64(radius.value().signum());
+                Some([normal * T::lift(-radius), away])
             }
         }
     }

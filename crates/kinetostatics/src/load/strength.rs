@@ -13,18 +13,18 @@
 
 use dwell_geometry::Vec2;
 use dwell_geometry::space::Vec3;
-use dwell_numerics::Scalar;
+use dwell_numerics::{Constant, Lift, Scalar};
 use std::ops::{Add, Neg};
 
 /// The meaning of the magnitude F of a load.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Strength {
+pub enum Strength<C = f64> {
     /// F is the force, N, or the couple, N·m.
     Direct,
     /// F is a stiffness, N/m or N·m/rad.
     Elastic {
         /// The length, travel (m) or angle (rad) without force; an angle with its whole revolutions.
-        free: f64,
+        free: C,
     },
     /// F is a damping, N·s/m or N·m·s/rad.
     Viscous,
@@ -103,24 +103,6 @@ impl Strength {
         [work, force, moment]
     }
 
-    /// Whether it acts against a velocity.
-    pub fn resists(self) -> bool {
-        match self {
-            Self::Direct | Self::Elastic { .. } => false,
-            Self::Viscous | Self::Quadratic => true,
-        }
-    }
-
-    /// The law and the magnitude of a unit of the load, whose response tables contain. For a damper it is a unit of its resistance, which
-    /// does not depend on the velocity. For a drag it is coefficient 1 at the velocities of the state, because c |v| v has no direction
-    /// at rest.
-    pub fn unit(self) -> (Self, f64) {
-        match self {
-            Self::Direct | Self::Elastic { .. } | Self::Quadratic => (self, 1.0),
-            Self::Viscous => (Self::Direct, -1.0),
-        }
-    }
-
     /// The factor of w, the generalised force of a [unit](Self::unit), at the speed q̇ of a mechanism of one coordinate.
     #[inline]
     pub fn on_response<T: Scalar>(self, f: T, w: T, q_dot: T) -> T {
@@ -129,14 +111,6 @@ impl Strength {
             // w is −ds/dq.
             Self::Viscous => -(f * w * q_dot),
             Self::Quadratic => f * absolute(q_dot * q_dot) * q_dot,
-        }
-    }
-
-    /// Its length (m) or angle (rad) without force, if it has one.
-    pub fn free(self) -> Option<f64> {
-        match self {
-            Self::Elastic { free } => Some(free),
-            Self::Direct | Self::Viscous | Self::Quadratic => None,
         }
     }
 
@@ -164,13 +138,41 @@ impl Strength {
             Self::Viscous | Self::Quadratic => Some(LoadSymbol::Damper),
         }
     }
+}
+
+impl<C: Constant> Strength<C> {
+    /// Whether it acts against a velocity.
+    pub fn resists(self) -> bool {
+        match self {
+            Self::Direct | Self::Elastic { .. } => false,
+            Self::Viscous | Self::Quadratic => true,
+        }
+    }
+
+    /// The law and the magnitude of a unit of the load, whose response tables contain. For a damper it is a unit of its resistance, which
+    /// does not depend on the velocity. For a drag it is coefficient 1 at the velocities of the state, because c |v| v has no direction
+    /// at rest.
+    pub fn unit(self) -> (Self, f64) {
+        match self {
+            Self::Direct | Self::Elastic { .. } | Self::Quadratic => (self, 1.0),
+            Self::Viscous => (Self::Direct, -1.0),
+        }
+    }
+
+    /// Its length (m) or angle (rad) without force, if it has one.
+    pub fn free(self) -> Option<C> {
+        match self {
+            Self::Elastic { free } => Some(free),
+            Self::Direct | Self::Viscous | Self::Quadratic => None,
+        }
+    }
 
     /// The force or couple along a coordinate, from its magnitude, and from the value (rad or m) and the rate of the coordinate.
     #[inline]
-    pub fn force<T: Scalar>(self, f: T, value: impl FnOnce() -> T, rate: impl FnOnce() -> T) -> T {
+    pub fn force<T: Lift<C>>(self, f: T, value: impl FnOnce() -> T, rate: impl FnOnce() -> T) -> T {
         match self {
             Self::Direct => f,
-            Self::Elastic { free } => -(f * (value() - T::from_f64(free))),
+            Self::Elastic { free } => -(f * (value() - T::lift(free))),
             Self::Viscous => -(f * rate()),
             Self::Quadratic => {
                 let rate = rate();
@@ -181,7 +183,7 @@ impl Strength {
 
     /// The force on the second of two points, along the line from the first; `None` if they coincide and it needs a direction.
     #[inline]
-    pub(crate) fn force_along_line<T: Scalar, V: LoadVector<T>>(
+    pub(crate) fn force_along_line<T: Lift<C>, V: LoadVector<T>>(
         self,
         f: T,
         line: &Line<V>,
@@ -191,18 +193,20 @@ impl Strength {
             direction,
             velocity,
         } = *line;
+        // Where the force is to depend on the free length, a length of zero is a number as any other.
+        let is_zero = C::IS_PREPARED && self.free().is_some_and(|free| free.value() == 0.0);
         let Some(e) = direction else {
             let is_still = self.resists() && velocity.is_zero();
             return match self {
-                Self::Elastic { free: 0.0 } => Some(-gap.times(f)),
+                Self::Elastic { .. } if is_zero => Some(-gap.times(f)),
                 _ => (is_still || f.value() == 0.0).then(V::zero),
             };
         };
         Some(match self {
             Self::Direct => e.times(f),
             // −k d + k free e: the first part is smooth where the points meet.
-            Self::Elastic { free: 0.0 } => -gap.times(f),
-            Self::Elastic { free } => -gap.times(f) + e.times(f * T::from_f64(free)),
+            Self::Elastic { .. } if is_zero => -gap.times(f),
+            Self::Elastic { free } => -gap.times(f) + e.times(f * T::lift(free)),
             Self::Viscous => -e.times(e.dot(velocity) * f),
             Self::Quadratic => {
                 let rate = e.dot(velocity);

@@ -1,10 +1,10 @@
 //! Forces and couples on bodies, and the forces and couples of a load at its two ends.
 
-use super::{CompiledLoads, Direction, Guide, Line, LoadKind, LoadState, Mesh, Strength, drag};
+use super::{Direction, Guide, Line, LoadKind, LoadState, Mesh, Strength, drag};
 use crate::mass::Mass;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{ActuatorId, BodyId, Joint, JointId, JointKind, Mechanism, Plan, Vec2};
-use dwell_numerics::{Scalar, map_array};
+use dwell_numerics::{Constant, Lift, Scalar, map_array};
 
 /// The cause of a wrench on a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,33 +67,41 @@ pub(crate) fn on_two_bodies<T: Scalar>(
     })
 }
 
-impl CompiledLoads {
-    /// Adds the wrenches of the `i`th load, taken as of this kind and magnitude `f`; `None` if it has no direction.
+/// Where a load finds what its kind alone does not tell: the bodies that have weight, with mass and centre, and the points of its two bodies
+/// at which a couple acts.
+pub(crate) struct LoadPlaces<'a, C = f64> {
+    pub(crate) weighted_bodies: &'a [(BodyId, Mass<C>)],
+    pub(crate) couple_points: [Vec2<C>; 2],
+}
+
+impl<C: Constant> LoadKind<C> {
+    /// Adds the wrenches of a load of this kind and magnitude `f`; `None` if it has no direction.
     #[inline]
-    pub(super) fn add_wrenches<T: Scalar>(
+    pub(crate) fn add_wrenches<T: Lift<C>>(
         &self,
-        i: usize,
-        kind: &LoadKind,
         f: T,
-        states: &BodyStates<T>,
+        source: ForceSource,
+        places: &LoadPlaces<'_, C>,
+        states: &BodyStates<T, C>,
         out: &mut LoadState<T>,
     ) -> Option<()> {
-        let (source, couple) = (ForceSource::Load(i), T::from_f64(0.0));
-        let at_point = |body: BodyId, point: Vec2, force: Vec2<T>| AppliedWrench {
+        let couple = T::from_f64(0.0);
+        let at_point = |body: BodyId, point: Vec2<C>, force: Vec2<T>| AppliedWrench {
             source,
             body,
             force,
             moment_arm: states.body(body).moment_arm(point),
             couple,
         };
-        match *kind {
+        match *self {
             LoadKind::Gravity { direction } => {
                 let pull = direction.cast() * f;
                 out.gravity += pull;
-                let weight = |&(body, Mass { mass, center, .. }): &(BodyId, Mass)| {
-                    at_point(body, center, pull * T::from_f64(mass))
+                let weight = |&(body, Mass { mass, center, .. }): &(BodyId, Mass<C>)| {
+                    at_point(body, center, pull * T::lift(mass))
                 };
-                out.wrenches.extend(self.weighted_bodies.iter().map(weight));
+                out.wrenches
+                    .extend(places.weighted_bodies.iter().map(weight));
             }
             LoadKind::Force {
                 body,
@@ -111,7 +119,7 @@ impl CompiledLoads {
                 out.wrenches.push(at_point(body, point, force));
             }
             LoadKind::Along(coordinate, strength) => {
-                let pair = self.along(i, coordinate, strength, f, states)?;
+                let pair = along(f, source, (coordinate, strength), places, states)?;
                 out.wrenches.extend(pair);
             }
             // On both bodies at the pitch point.
@@ -126,56 +134,54 @@ impl CompiledLoads {
         }
         Some(())
     }
+}
 
-    /// The wrenches of the `i`th load along a coordinate; `None` if it has no direction.
-    #[inline]
-    fn along<T: Scalar>(
-        &self,
-        i: usize,
-        coordinate: CoordinateFunction,
-        strength: Strength,
-        f: T,
-        states: &BodyStates<T>,
-    ) -> Option<[AppliedWrench<T>; 2]> {
-        let source = ForceSource::Load(i);
-        Some(match coordinate {
-            CoordinateFunction::Angle(bodies) => {
-                let angle = || states.angle(bodies);
-                let couple = strength.force(f, || angle()[0], || angle()[1]);
-                let actions = [(Vec2::zero(), -couple), (Vec2::zero(), couple)];
-                let arms = moment_arms(states, bodies, self.couple_points[i]);
-                on_two_bodies(source, bodies, arms, actions)
-            }
-            // Along the guide, on both bodies at the second body's point.
-            CoordinateFunction::Travel(guide) => {
-                let Guide { bodies, points, .. } = guide;
-                let travel = || states.coordinate(coordinate);
-                let f = strength.force(f, || travel()[0], || travel()[1]);
-                let force = guide.axis.cast().rotate(states.body(bodies[0]).rotation) * f;
-                let [first, second] = moment_arms(states, bodies, points);
-                let gap = states.separation(bodies, points).gap;
-                forces(source, bodies, [first + gap, second], force)
-            }
-            CoordinateFunction::Length { bodies, points } => {
-                let between = states.separation(bodies, points);
-                let line = Line {
-                    gap: between.gap,
-                    direction: between.direction,
-                    velocity: between.velocity,
-                };
-                let force = strength.force_along_line(f, &line)?;
-                forces(source, bodies, moment_arms(states, bodies, points), force)
-            }
-        })
-    }
+/// The wrenches of a load of this law along a coordinate; `None` if it has no direction.
+#[inline]
+fn along<C: Constant, T: Lift<C>>(
+    f: T,
+    source: ForceSource,
+    (coordinate, strength): (CoordinateFunction<C>, Strength<C>),
+    places: &LoadPlaces<'_, C>,
+    states: &BodyStates<T, C>,
+) -> Option<[AppliedWrench<T>; 2]> {
+    Some(match coordinate {
+        CoordinateFunction::Angle(bodies) => {
+            let angle = || states.angle(bodies);
+            let couple = strength.force(f, || angle()[0], || angle()[1]);
+            let actions = [(Vec2::zero(), -couple), (Vec2::zero(), couple)];
+            let arms = moment_arms(states, bodies, places.couple_points);
+            on_two_bodies(source, bodies, arms, actions)
+        }
+        // Along the guide, on both bodies at the second body's point.
+        CoordinateFunction::Travel(guide) => {
+            let Guide { bodies, points, .. } = guide;
+            let travel = || states.coordinate(coordinate);
+            let f = strength.force(f, || travel()[0], || travel()[1]);
+            let force = guide.axis.cast().rotate(states.body(bodies[0]).rotation) * f;
+            let [first, second] = moment_arms(states, bodies, points);
+            let gap = states.separation(bodies, points).gap;
+            forces(source, bodies, [first + gap, second], force)
+        }
+        CoordinateFunction::Length { bodies, points } => {
+            let between = states.separation(bodies, points);
+            let line = Line {
+                gap: between.gap,
+                direction: between.direction,
+                velocity: between.velocity,
+            };
+            let force = strength.force_along_line(f, &line)?;
+            forces(source, bodies, moment_arms(states, bodies, points), force)
+        }
+    })
 }
 
 /// From the origins of two bodies to a point on each.
 #[inline]
-fn moment_arms<T: Scalar>(
-    states: &BodyStates<T>,
+fn moment_arms<C: Constant, T: Lift<C>>(
+    states: &BodyStates<T, C>,
     bodies: [BodyId; 2],
-    points: [Vec2; 2],
+    points: [Vec2<C>; 2],
 ) -> [Vec2<T>; 2] {
     map_array([0, 1], |k: usize| {
         states.body(bodies[k]).moment_arm(points[k])

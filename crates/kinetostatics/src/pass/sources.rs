@@ -7,7 +7,7 @@ use dwell_geometry::frames::AngularConstraintSource;
 use dwell_geometry::lower::PairKind;
 use dwell_geometry::plan::PairRole;
 use dwell_geometry::{Component, JointKind, Mechanism, Plan, Pose, Reaction, Vec2, vec2};
-use dwell_numerics::{Constant, Lift, Scalar, map_array};
+use dwell_numerics::{Constant, Scalar, map_array};
 
 /// One end of a loop joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -199,7 +199,7 @@ impl ReactionSources {
     }
 }
 
-impl<C: Constant + Scalar> ReactionSources<C> {
+impl<C: Constant> ReactionSources<C> {
     /// Takes the dimensions that a plan of the same structure has by now; false where an end has a moment arm that
     /// the structure has no place for.
     pub(crate) fn replace_points(&mut self, plan: &Plan<C>) -> bool {
@@ -216,7 +216,7 @@ impl<C: Constant + Scalar> ReactionSources<C> {
 
 impl ReactionSources {
     /// The same with the dimensions (m) in another type.
-    pub(super) fn lifted<C: Constant + Lift<f64>>(&self) -> ReactionSources<C> {
+    pub(super) fn lifted<C: Constant>(&self) -> ReactionSources<C> {
         let end = |end: LoopJointEnd| LoopJointEnd {
             body: end.body,
             moving_body: end.moving_body,

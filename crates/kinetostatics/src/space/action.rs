@@ -2,9 +2,11 @@
 
 use super::load::{DirectedCouple, Direction, LoadKind};
 use crate::load::{AnyLoadKind, Line, LoadCoordinate as _, Strength, drag};
-use dwell_geometry::BodyId;
-use dwell_geometry::space::{Coordinate, CoordinateFunction, Mechanism, Plan, Pose, Vec3};
-use dwell_numerics::Scalar;
+use dwell_geometry::space::{
+    Coordinate, CoordinateFunction, CountedRevolutions, JointNumbers, Mechanism, Plan, Pose, Vec3,
+};
+use dwell_geometry::{BodyId, JointId};
+use dwell_numerics::{Constant, Lift, Scalar};
 
 /// Why a kind of load has unusable numbers.
 const NOT_FINITE: &str =
@@ -23,7 +25,8 @@ fn has_usable_numbers(kind: &LoadKind) -> bool {
 }
 
 /// A kind of load in the evaluation frames of its bodies.
-pub(super) type CompiledKind = AnyLoadKind<Vec3, CoordinateFunction, DirectedCouple>;
+pub(super) type CompiledKind<C = f64> =
+    AnyLoadKind<Vec3<C>, CoordinateFunction<C>, DirectedCouple<C>, C>;
 
 /// On a body, at an arm from the origin of its evaluation frame, a force and a couple, in the axes of the ground.
 pub(super) type BodyAction<T> = (usize, [Vec3<T>; 3]);
@@ -39,51 +42,17 @@ impl CompiledKind {
         if !kind.bodies(mechanism).iter().all(exists) {
             return Err("it acts on a body that does not exist");
         }
-        let frame = |body: BodyId| plan.evaluation_frame(body.0);
-        let turned = |body: BodyId, direction: Direction| match direction {
-            Direction::Ground(u) => Direction::Ground(u),
-            Direction::Body(u) => Direction::Body(frame(body).rotation.apply_inverse(u)),
-        };
-        let arm = |body: BodyId, point: Vec3| {
-            let frame = frame(body);
-            frame.rotation.apply_inverse(point - frame.position)
-        };
         if !has_usable_numbers(kind) {
             return Err(NOT_FINITE);
         }
-        Ok(match *kind {
-            LoadKind::Gravity { direction } => Self::Gravity { direction },
-            LoadKind::Force {
-                body,
-                point,
-                direction,
-            } => Self::Force {
-                body,
-                point: arm(body, point),
-                direction: turned(body, direction),
-            },
-            LoadKind::Drag { body, point } => Self::Drag {
-                body,
-                point: arm(body, point),
-            },
-            LoadKind::Along(coordinate, strength) => {
-                let function = match (coordinate, strength.free()) {
-                    // Without the angle itself.
-                    (Coordinate::Angle(_), None) => plan.direction_function(mechanism, coordinate),
-                    _ => plan.coordinate_function(mechanism, coordinate),
-                }?;
-                if let CoordinateFunction::Distance { points, .. } = function
-                    && !points.iter().all(|p| p.is_finite())
-                {
-                    return Err(NOT_FINITE);
-                }
-                Self::Along(function, strength)
-            }
-            LoadKind::Special(DirectedCouple { bodies, direction }) => {
-                let direction = turned(bodies[0], direction);
-                Self::Special(DirectedCouple { bodies, direction })
-            }
-        })
+        let numbers = |joint: JointId| mechanism.joints[joint.0].numbers();
+        let compiled = Self::in_frames(kind, mechanism, numbers, plan)?;
+        if let Self::Along(CoordinateFunction::Distance { points, .. }, _) = compiled
+            && !points.iter().all(|p| p.is_finite())
+        {
+            return Err(NOT_FINITE);
+        }
+        Ok(compiled)
     }
 
     /// Loads at rest whose forces span all forces that the load can exert in motion.
@@ -134,28 +103,78 @@ impl CompiledKind {
             Self::Force { .. } | Self::Drag { .. } | Self::Special(_) => None,
         }
     }
+}
+
+impl<C: Constant> CompiledKind<C> {
+    /// A kind of load in the frames of a plan whose joints have these numbers.
+    pub(super) fn in_frames(
+        kind: &LoadKind<C>,
+        mechanism: &Mechanism,
+        numbers: impl Fn(JointId) -> JointNumbers<C>,
+        plan: &Plan<C>,
+    ) -> Result<Self, &'static str> {
+        let frame = |body: BodyId| plan.evaluation_frame(body.0);
+        let turned = |body: BodyId, direction: Direction<C>| match direction {
+            Direction::Ground(u) => Direction::Ground(u),
+            Direction::Body(u) => Direction::Body(frame(body).rotation.apply_inverse(u)),
+        };
+        let arm = |body: BodyId, point: Vec3<C>| frame(body).inner_point(point);
+        Ok(match *kind {
+            LoadKind::Gravity { direction } => Self::Gravity { direction },
+            LoadKind::Force {
+                body,
+                point,
+                direction,
+            } => Self::Force {
+                body,
+                point: arm(body, point),
+                direction: turned(body, direction),
+            },
+            LoadKind::Drag { body, point } => Self::Drag {
+                body,
+                point: arm(body, point),
+            },
+            LoadKind::Along(coordinate, strength) => {
+                let revolutions = match (coordinate, strength.free()) {
+                    // Without the angle itself.
+                    (Coordinate::Angle(_), None) => CountedRevolutions::IfPossible,
+                    _ => CountedRevolutions::Always,
+                };
+                let function = plan.function_of(mechanism, numbers, coordinate, revolutions)?;
+                Self::Along(function, strength)
+            }
+            LoadKind::Special(DirectedCouple { bodies, direction }) => {
+                let direction = turned(bodies[0], direction);
+                Self::Special(DirectedCouple { bodies, direction })
+            }
+        })
+    }
 
     /// Gives the forces and couples on the bodies at magnitude `f` to `add`; `None` if it has no direction.
     #[inline]
-    pub(super) fn act<T: Scalar>(
+    pub(super) fn act<T: Lift<C>>(
         &self,
         f: T,
-        plan: &Plan,
+        plan: &Plan<C>,
         pose: &Pose<T>,
-        masses: &[super::Mass],
+        masses: &[super::Mass<C>],
         mut add: impl FnMut(BodyAction<T>),
     ) -> Option<()> {
         let zero = Vec3::zero();
-        let turned = |body: BodyId, direction: Direction| match direction {
+        let turned = |body: BodyId, direction: Direction<C>| match direction {
             Direction::Ground(u) => u.cast(),
             Direction::Body(u) => plan.frame(pose, body.0).rotation.apply(u.cast()),
         };
         match *self {
             Self::Gravity { direction } => {
                 let pull = direction.cast().scaled(f);
-                for (body, mass) in masses.iter().enumerate().filter(|(_, m)| m.mass > 0.0) {
+                for (body, mass) in masses
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, m)| m.mass.value() > 0.0)
+                {
                     let arm = plan.frame(pose, body).rotation.apply(mass.center.cast());
-                    add((body, [arm, pull.scaled(T::from_f64(mass.mass)), zero]));
+                    add((body, [arm, pull.scaled(T::lift(mass.mass)), zero]));
                 }
             }
             Self::Force {
@@ -186,15 +205,15 @@ impl CompiledKind {
 
 /// The forces and couples of a load along a coordinate; `None` if it has no direction.
 #[inline]
-fn act_along<T: Scalar>(
-    coordinate: CoordinateFunction,
-    strength: Strength,
+fn act_along<C: Constant, T: Lift<C>>(
+    coordinate: CoordinateFunction<C>,
+    strength: Strength<C>,
     f: T,
-    plan: &Plan,
+    plan: &Plan<C>,
     pose: &Pose<T>,
     mut add: impl FnMut(BodyAction<T>),
 ) -> Option<()> {
-    let arm = |body: BodyId, point: Vec3| plan.frame(pose, body.0).rotation.apply(point.cast());
+    let arm = |body: BodyId, point: Vec3<C>| plan.frame(pose, body.0).rotation.apply(point.cast());
     let along = || {
         let value = || plan.coordinate(pose, coordinate)[0];
         strength.force(f, value, || plan.coordinate_rate(pose, coordinate))

@@ -11,18 +11,18 @@ use dwell_geometry::{BodyId, JointId};
 pub type Load = AnyLoad<LoadKind, Coordinate>;
 
 /// The kind of a load in space. Gravity needs no direction if it is zero.
-pub type LoadKind = AnyLoadKind<Vec3, Coordinate, DirectedCouple>;
+pub type LoadKind<C = f64> = AnyLoadKind<Vec3<C>, Coordinate<C>, DirectedCouple<C>, C>;
 
 /// A direction in the axes of the ground or of a body.
-pub type Direction = load::Direction<Vec3>;
+pub type Direction<C = f64> = load::Direction<Vec3<C>>;
 
 /// A torque F, N·m, on the second body, the opposite on the first.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DirectedCouple {
+pub struct DirectedCouple<C = f64> {
     /// The bodies.
     pub bodies: [BodyId; 2],
     /// Its direction, in the axes of the ground or of the first body.
-    pub direction: Direction,
+    pub direction: Direction<C>,
 }
 
 impl SpecialKind for DirectedCouple {
@@ -84,7 +84,7 @@ impl LoadCoordinate for Coordinate {
     }
 }
 
-impl LoadKind {
+impl<C: Copy> LoadKind<C> {
     /// The bodies it acts on, by number; none of gravity, which acts on all that have mass.
     pub fn bodies(&self, mechanism: &Mechanism) -> Vec<BodyId> {
         match *self {
@@ -98,7 +98,9 @@ impl LoadKind {
             }
         }
     }
+}
 
+impl LoadKind {
     /// A torque about a direction of the ground or of the first body.
     pub fn torque(bodies: [BodyId; 2], direction: Direction) -> Self {
         Self::Special(DirectedCouple { bodies, direction })

@@ -261,7 +261,8 @@ impl MachineModel for Model {
         workspace: &mut Workspace<T>,
         result: &mut InverseDynamics<T>,
     ) {
-        self.require_inertia(workspace);
+        self.pass_model
+            .require_inertia(&workspace.pose, &mut workspace.forces);
         let Workspace {
             forces,
             load_wrenches,
@@ -291,7 +292,8 @@ impl MachineModel for Model {
         } = &mut *workspace;
         pose.swap_motion(virtual_motion);
         self.plan().velocities(rates, pose);
-        self.require_unit_acceleration(workspace);
+        self.pass_model
+            .require_unit_acceleration(&workspace.pose, &mut workspace.forces);
         self.balance(workspace, result);
         workspace.pose.swap_motion(&mut workspace.virtual_motion);
     }

@@ -1,34 +1,28 @@
 //! Mass and inertia of a body in space.
 
-use dwell_geometry::space::{BodyMotion, Frame, Placement, Rotation, Vec3, Wrench, vec3};
+use dwell_geometry::space::{BodyMotion, Frame, Rotation, Vec3, Wrench, vec3};
 use dwell_numerics::dense::Matrix;
-use dwell_numerics::{Scalar, map_array};
+use dwell_numerics::{Constant, Lift, map_array};
 
 /// Mass, centre of mass and moments of inertia of a body, in its frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Mass {
+pub struct Mass<C = f64> {
     /// Mass, kg.
-    pub mass: f64,
+    pub mass: C,
     /// Centre of mass, m.
-    pub center: Vec3,
+    pub center: Vec3<C>,
     /// Elements of the inertia tensor about the centre of mass, kg m²: I_xx, I_yy, I_zz, I_xy, I_xz, I_yz, where
     /// I_xy = −∫ x y dm.
-    pub inertia: [f64; 6],
+    pub inertia: [C; 6],
 }
 
 /// The rows of a tensor by its elements.
 #[inline(always)]
-fn rows([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> [Vec3; 3] {
+fn rows<C: Copy>([xx, yy, zz, xy, xz, yz]: [C; 6]) -> [Vec3<C>; 3] {
     [vec3(xx, xy, xz), vec3(xy, yy, yz), vec3(xz, yz, zz)]
 }
 
 impl Mass {
-    /// The tensor times a vector of the body's frame.
-    pub fn angular_momentum(&self, w: Vec3) -> Vec3 {
-        let [x, y, z] = rows(self.inertia);
-        vec3(x.dot(w), y.dot(w), z.dot(w))
-    }
-
     /// Whether it is a mass: not negative, with a tensor that is positive semidefinite within rounding. A principal moment may exceed the
     /// sum of the two others, because equations of motion do not need this condition ([`Mass::excess_moment`]).
     pub fn is_valid(&self) -> bool {
@@ -106,10 +100,18 @@ impl Mass {
         let inertia = [x.x, y.y, z.z, x.y, x.z, y.z];
         Self { inertia, ..*self }
     }
+}
+
+impl<C: Constant> Mass<C> {
+    /// The tensor times a vector of the body's frame.
+    pub fn angular_momentum(&self, w: Vec3<C>) -> Vec3<C> {
+        let [x, y, z] = rows(self.inertia);
+        vec3(x.dot(w), y.dot(w), z.dot(w))
+    }
 
     /// This mass in another frame of the body.
-    pub(super) fn in_frame(&self, frame: &Placement) -> Self {
-        let to = |v: Vec3| frame.rotation.apply_inverse(v);
+    pub(super) fn in_frame(&self, frame: &Frame<C>) -> Self {
+        let to = |v: Vec3<C>| frame.rotation.apply_inverse(v);
         let image = |k: usize| to(self.angular_momentum(frame.rotation.columns[k]));
         let [x, y, z] = [image(0), image(1), image(2)];
         Self {
@@ -121,15 +123,13 @@ impl Mass {
 
     /// The force and the moment about the origin of the frame that move it so, by (1) of the [module](super).
     #[inline(always)]
-    pub(super) fn required<T: Scalar>(
+    pub(super) fn required<T: Lift<C>>(
         &self,
         frame: &Frame<T>,
         motion: &BodyMotion<T>,
     ) -> Wrench<T> {
         let (arm, tensor) = (frame.rotation.apply(self.center.cast()), self.tensor(frame));
-        let force = motion
-            .point_acceleration(arm)
-            .scaled(T::from_f64(self.mass));
+        let force = motion.point_acceleration(arm).scaled(T::lift(self.mass));
         let w = motion.angular_velocity;
         let couple = tensor(motion.angular_acceleration) + w.cross(tensor(w));
         let mut wrench = Wrench::default();
@@ -140,13 +140,13 @@ impl Mass {
     /// The required wrenches in both unit passes: at unit acceleration from rest, with accelerations equal to these velocities, and in
     /// this motion.
     #[inline(always)]
-    pub(super) fn required_in_unit_passes<T: Scalar>(
+    pub(super) fn required_in_unit_passes<T: Lift<C>>(
         &self,
         frame: &Frame<T>,
         motion: &BodyMotion<T>,
     ) -> [Wrench<T>; 2] {
         let (arm, tensor) = (frame.rotation.apply(self.center.cast()), self.tensor(frame));
-        let (mass, w) = (T::from_f64(self.mass), motion.angular_velocity);
+        let (mass, w) = (T::lift(self.mass), motion.angular_velocity);
         let momentum = tensor(w);
         let couple = tensor(motion.angular_acceleration) + w.cross(momentum);
         let mut wrenches = [Wrench::default(); 2];
@@ -157,7 +157,7 @@ impl Mass {
 
     /// The tensor of inertia in the axes of the ground, times a vector.
     #[inline(always)]
-    fn tensor<T: Scalar>(&self, frame: &Frame<T>) -> impl Fn(Vec3<T>) -> Vec3<T> {
+    fn tensor<T: Lift<C>>(&self, frame: &Frame<T>) -> impl Fn(Vec3<T>) -> Vec3<T> {
         let [x, y, z] = map_array(rows(self.inertia), Vec3::cast);
         let rotation = frame.rotation;
         move |v: Vec3<T>| {

@@ -5,16 +5,15 @@ use super::friction::JointFriction;
 use super::in_plane::{InPlane, InPlaneWorkspace};
 use super::mass::Mass;
 use super::on_fit::FitWorkspace;
+use super::pass::{self, CompiledReaction, PassModel};
 use super::surface_friction::SurfaceFriction;
 use crate::error::PositionResult;
 use crate::friction::FrictionWorkspace;
 use crate::load::SignalWorkspace;
 use crate::pass::InverseDynamics;
-use dwell_geometry::space::{
-    Assembly, Forces, Mechanism, Plan, Pose, PoseMotion, Rotation, Vec3, Wrench,
-};
+use dwell_geometry::space::{Assembly, Forces, Mechanism, Plan, Pose, PoseMotion, Wrench};
 use dwell_geometry::{AssemblyError, BodyId, JointId};
-use dwell_numerics::{Scalar, map_array};
+use dwell_numerics::Scalar;
 use std::sync::Arc;
 use thiserror::Error;
 
@@ -72,13 +71,7 @@ pub enum ModelError {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
     mechanism: Arc<Mechanism>,
-    plan: Plan,
-    /// In the evaluation frames; the ground has none.
-    masses: Vec<Mass>,
-    /// The bodies that have mass or inertia.
-    inertial: Vec<usize>,
-    /// The requested reactions, then the others on which friction depends.
-    reactions: Vec<CompiledReaction>,
+    pub(super) pass_model: PassModel,
     /// How many reactions are requested.
     requested: usize,
     pub(super) loads: CompiledLoads,
@@ -90,9 +83,6 @@ pub struct Model {
     /// The planar model for its reduced coefficients, if one was searched for and exists.
     pub(super) in_plane: Option<Arc<InPlane>>,
 }
-
-/// A reaction. If it is in the axes of its joint: the body, and these axes in its evaluation frame.
-pub(super) type CompiledReaction = (Reaction, Option<(usize, Rotation)>);
 
 /// The memory of one thread.
 #[derive(Debug, Clone, PartialEq)]
@@ -166,22 +156,16 @@ impl Model {
         if let Some(idle) = coupled {
             return Err(ModelError::UnbalancedRod { body: idle.body });
         }
-        let frame = |b: usize| plan.evaluation_frame(b);
-        let inner = |(b, mass): (usize, &Mass)| mass.in_frame(&frame(b));
-        let mut internal: Vec<Mass> = masses.iter().enumerate().map(inner).collect();
-        internal[mechanism.ground] = Mass::default();
-        let has_inertia = |b: &usize| internal[*b].mass > 0.0 || internal[*b].inertia != [0.0; 6];
-        let inertial = (0..internal.len()).filter(has_inertia).collect();
-        let compiled = |reaction| compile_reaction(mechanism, &plan, reaction);
+        let mut pass_model = PassModel::new(mechanism, plan, masses);
+        let compiled = |reaction| compile_reaction(mechanism, &pass_model.plan, reaction);
         let reactions = reactions.iter().map(compiled);
         let reactions = reactions.collect::<Result<Vec<_>, _>>()?;
+        let requested = reactions.len();
+        pass_model.reactions = reactions;
         Ok(Self {
             mechanism: Arc::new(mechanism.clone()),
-            plan,
-            masses: internal,
-            inertial,
-            requested: reactions.len(),
-            reactions,
+            pass_model,
+            requested,
             loads: CompiledLoads::default(),
             frictions: Vec::new(),
             surface_frictions: Vec::new(),
@@ -197,27 +181,30 @@ impl Model {
 
     /// By body: its mass in the evaluation frame.
     pub(super) fn inner_masses(&self) -> &[Mass] {
-        &self.masses
+        &self.pass_model.masses
     }
 
     /// The bodies that have mass or inertia.
     pub(super) fn inertial(&self) -> &[usize] {
-        &self.inertial
+        &self.pass_model.inertial
     }
 
     /// The compiled mechanism.
     pub fn plan(&self) -> &Plan {
-        &self.plan
+        &self.pass_model.plan
     }
 
     /// The reactions that are computed: the requested ones in their order, then the others on which friction depends.
     pub fn reactions(&self) -> impl ExactSizeIterator<Item = Reaction> + '_ {
-        self.reactions.iter().map(|(reaction, _)| *reaction)
+        self.pass_model
+            .reactions
+            .iter()
+            .map(|(reaction, _)| *reaction)
     }
 
     /// The compiled reactions, with the axes of those that are in the axes of their joints.
     pub(super) fn compiled_reactions(&self) -> &[CompiledReaction] {
-        &self.reactions
+        &self.pass_model.reactions
     }
 
     /// The requested reactions.
@@ -227,9 +214,9 @@ impl Model {
 
     /// Computes these reactions, the requested ones first, on which these frictions depend.
     pub(super) fn set_reactions(&mut self, all: &[Reaction], frictions: Vec<JointFriction>) {
-        let (mechanism, plan) = (&self.mechanism, &self.plan);
+        let (mechanism, plan) = (&self.mechanism, &self.pass_model.plan);
         let compile = |reaction| compile_reaction(mechanism, plan, reaction).ok();
-        self.reactions = all.iter().filter_map(compile).collect();
+        self.pass_model.reactions = all.iter().filter_map(compile).collect();
         self.frictions = frictions;
         self.in_plane = None;
     }
@@ -250,7 +237,7 @@ impl Model {
     /// besides the requested ones.
     #[must_use]
     pub fn for_unit_loads(mut self) -> Self {
-        self.reactions.truncate(self.requested);
+        self.pass_model.reactions.truncate(self.requested);
         self.frictions.clear();
         self.in_plane = None;
         self
@@ -258,14 +245,14 @@ impl Model {
 
     /// The model of the inertia alone, without reactions and loads.
     pub(super) fn inertia_only(&self) -> Self {
-        let model = Self {
-            reactions: Vec::new(),
+        let mut model = Self {
             requested: 0,
             loads: CompiledLoads::default(),
             frictions: Vec::new(),
             surface_frictions: Vec::new(),
             ..self.clone()
         };
+        model.pass_model.reactions.clear();
         model.reduced_in_plane()
     }
 
@@ -279,13 +266,13 @@ impl Model {
     /// Memory for one thread.
     pub fn workspace<T: Scalar>(&self) -> Workspace<T> {
         Workspace {
-            pose: self.plan.pose(),
-            forces: self.plan.forces(),
-            unit_forces: self.plan.forces(),
-            rates: vec![T::from_f64(0.0); self.plan.actuators()],
-            virtual_motion: self.plan.pose_motion(),
+            pose: self.pass_model.plan.pose(),
+            forces: self.pass_model.plan.forces(),
+            unit_forces: self.pass_model.plan.forces(),
+            rates: vec![T::from_f64(0.0); self.pass_model.plan.actuators()],
+            virtual_motion: self.pass_model.plan.pose_motion(),
             magnitudes: vec![T::from_f64(0.0); self.loads.kinds.len()],
-            load_wrenches: vec![Wrench::default(); self.masses.len()],
+            load_wrenches: vec![Wrench::default(); self.pass_model.masses.len()],
             signals: SignalWorkspace::new(self.loads.max_signals()),
             friction_workspace: FrictionWorkspace::new(self.frictions.len()),
             friction_responses: vec![self.result_buffer(); self.frictions.len()],
@@ -302,12 +289,12 @@ impl Model {
     /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
     pub fn determined(&self, q: &[f64], workspace: &mut Workspace) -> PositionResult<Vec<bool>> {
         let Workspace { pose, forces, .. } = workspace;
-        self.plan.positions(q, pose)?;
-        let mut determined = vec![true; self.reactions.len()];
-        for stress in self.plan.self_stresses(pose) {
+        self.pass_model.plan.positions(q, pose)?;
+        let mut determined = vec![true; self.pass_model.reactions.len()];
+        for stress in self.pass_model.plan.self_stresses(pose) {
             let largest = stress.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-            self.plan.stress(&stress, pose, forces);
-            self.read_all(pose, forces, |k, [part]| {
+            self.pass_model.plan.stress(&stress, pose, forces);
+            self.pass_model.read_all(pose, forces, |k, [part]| {
                 determined[k] &= part.abs() < 1e-7 * largest;
             });
         }
@@ -335,7 +322,7 @@ impl Model {
         let [start] = self.start[..] else {
             return Vec::new();
         };
-        let step = match self.plan.range().limits() {
+        let step = match self.pass_model.plan.range().limits() {
             None => 1.0,
             Some((from, to)) => 0.2 * (to - from),
         };
@@ -346,7 +333,10 @@ impl Model {
 
     /// A buffer for the results of this model.
     pub fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T> {
-        InverseDynamics::buffer(self.plan.actuators(), self.reactions.len())
+        InverseDynamics::buffer(
+            self.pass_model.plan.actuators(),
+            self.pass_model.reactions.len(),
+        )
     }
 
     /// The actuator forces and reactions that inertia alone requires at coordinates (rad or m), velocities and
@@ -362,10 +352,13 @@ impl Model {
         workspace: &mut Workspace<T>,
         result: &mut InverseDynamics<T>,
     ) -> PositionResult {
-        self.plan.positions(q, &mut workspace.pose)?;
-        self.plan.velocities(q_dot, &mut workspace.pose);
-        self.plan.accelerations(q_ddot, &mut workspace.pose);
-        self.require_inertia(workspace);
+        self.pass_model.plan.positions(q, &mut workspace.pose)?;
+        self.pass_model.plan.velocities(q_dot, &mut workspace.pose);
+        self.pass_model
+            .plan
+            .accelerations(q_ddot, &mut workspace.pose);
+        self.pass_model
+            .require_inertia(&workspace.pose, &mut workspace.forces);
         self.balance(workspace, result);
         Ok(())
     }
@@ -376,75 +369,8 @@ impl Model {
         workspace: &mut Workspace<T>,
         result: &mut InverseDynamics<T>,
     ) {
-        self.plan.balance(&workspace.pose, &mut workspace.forces);
-        for (i, tau) in result.tau.iter_mut().enumerate() {
-            [*tau] = self.plan.actuator_action(&workspace.forces, i);
-        }
-        self.read_all(&workspace.pose, &workspace.forces, |k, [value]| {
-            result.reactions[k] = value;
-        });
-    }
-
-    /// Sets the required wrenches of all bodies from their inertia.
-    pub(super) fn require_inertia<T: Scalar>(&self, workspace: &mut Workspace<T>) {
         let Workspace { pose, forces, .. } = workspace;
-        forces.required.fill([Wrench::default()]);
-        for &b in &self.inertial {
-            forces.required[b] =
-                [self.masses[b].required(self.plan.frame(pose, b), self.plan.state(pose, b))];
-        }
-    }
-
-    /// The inertia of all bodies in unit acceleration from rest, after the velocities at unit speed.
-    pub(super) fn require_unit_acceleration<T: Scalar>(&self, workspace: &mut Workspace<T>) {
-        let Workspace { pose, forces, .. } = workspace;
-        forces.required.fill([Wrench::default()]);
-        for &b in &self.inertial {
-            let from_rest = self.plan.state(pose, b).from_rest();
-            forces.required[b] = [self.masses[b].required(self.plan.frame(pose, b), &from_rest)];
-        }
-    }
-
-    /// The inertia of all bodies in both unit passes, after the accelerations at unit speed: at unit acceleration from rest, and at
-    /// unit speed.
-    #[inline(always)]
-    pub(super) fn require_unit_inertia<T: Scalar>(&self, workspace: &mut Workspace<T>) {
-        let (pose, forces) = (&workspace.pose, &mut workspace.unit_forces);
-        for &b in &self.inertial {
-            let (frame, motion) = (self.plan.frame(pose, b), self.plan.state(pose, b));
-            forces.required[b] = self.masses[b].required_in_unit_passes(frame, motion);
-        }
-    }
-
-    /// Calls a function with each requested reaction of the last passes: its number and its value in each pass.
-    #[inline(always)]
-    pub(super) fn read_all<T: Scalar, const N: usize>(
-        &self,
-        pose: &Pose<T>,
-        forces: &Forces<T, N>,
-        mut take: impl FnMut(usize, [T; N]),
-    ) {
-        let mut last = None;
-        let mut wrenches = [Wrench::default(); N];
-        for (index, (reaction, axes)) in self.reactions.iter().enumerate() {
-            // The components of a joint mostly follow each other.
-            if last.replace(reaction.joint) != Some(reaction.joint) {
-                wrenches = self.plan.reaction(pose, forces, reaction.joint);
-            }
-            let (Component::Force(_, k) | Component::Moment(_, k)) = reaction.component;
-            let along = match axes {
-                None => Vec3::AXES[k].cast(),
-                Some((body, axes)) => {
-                    let frame = self.plan.frame(pose, *body);
-                    frame.rotation.apply(axes.columns[k].cast())
-                }
-            };
-            let part = |wrench: Wrench<T>| match reaction.component {
-                Component::Force(..) => along.dot(wrench.force),
-                Component::Moment(..) => along.dot(wrench.moment),
-            };
-            take(index, map_array(wrenches, part));
-        }
+        self.pass_model.balance(pose, forces, result);
     }
 }
 
@@ -454,14 +380,13 @@ fn compile_reaction(
     plan: &Plan,
     reaction: &Reaction,
 ) -> Result<CompiledReaction, ModelError> {
-    let (Component::Force(axes, k) | Component::Moment(axes, k)) = reaction.component;
+    let (Component::Force(_, k) | Component::Moment(_, k)) = reaction.component;
     let joint = mechanism.joints.get(reaction.joint.0).filter(|_| k < 3);
     let joint = joint.ok_or(ModelError::Reaction(*reaction))?;
-    let of_joint = (axes == Axes::Joint).then(|| {
-        let (body, side) = (joint.side_body(0).0, &joint.sides[0]);
-        let in_body = Rotation::of_axes(side.axis, side.normal);
-        let frame = plan.evaluation_frame(body);
-        (body, frame.rotation.inverse().after(&in_body))
-    });
-    Ok((*reaction, of_joint))
+    Ok(pass::compile_reaction(
+        *reaction,
+        mechanism,
+        &joint.numbers(),
+        plan,
+    ))
 }

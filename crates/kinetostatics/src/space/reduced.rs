@@ -25,11 +25,11 @@ impl Model {
         plan.positions(&[q], &mut workspace.pose)?;
         plan.velocities(&[one], &mut workspace.pose);
         plan.accelerations(&[zero], &mut workspace.pose);
-        self.require_unit_inertia(workspace);
         let (pose, forces) = (&workspace.pose, &mut workspace.unit_forces);
+        self.pass_model.require_unit_inertia(pose, forces);
         plan.balance(pose, forces);
         [out.m, out.half_dm] = plan.actuator_action(forces, 0);
-        self.read_all(pose, forces, |k, coefficients| {
+        self.pass_model.read_all(pose, forces, |k, coefficients| {
             [out.a[k], out.b[k]] = coefficients;
         });
         Ok(())

@@ -1,0 +1,125 @@
+//! The recording of a state of a planar machine.
+
+use super::{Described, Numbered, RecordableModel, StateInputs, StateRecordingError};
+use crate::error::PositionResult;
+use crate::load::{ForceSource, LoadKind, LoadPlaces, LoadState};
+use crate::mass::Mass;
+use crate::model::{Model, Workspace};
+use crate::pass::{GivenMotion, InverseDynamics, PassModel, RecursivePass};
+use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
+use dwell_geometry::{BodyId, Mechanism, Plan, Vec2};
+use dwell_numerics::{Constant, Lift, RecordedNumber, Scalar};
+
+impl Model {
+    /// The coordinates that are wanted, as functions.
+    fn wanted_functions(of: Described<'_, Self>) -> Option<Vec<CoordinateFunction>> {
+        let coordinates = of.wanted.coordinates.iter();
+        let found = coordinates.map(|&c| CoordinateFunction::find(of.mechanism, c));
+        found.collect()
+    }
+}
+
+/// The moving bodies, with their masses.
+fn weighted<C: Constant>(plan: &Plan<C>, masses: &[Mass<C>]) -> Vec<(BodyId, Mass<C>)> {
+    let moving = plan.moving_bodies().iter().map(|moving| moving.body);
+    let weighted = moving.filter_map(|body| Some((BodyId(body), *masses.get(body)?)));
+    weighted.collect()
+}
+
+/// Adds the forces and moments of loads of these kinds and magnitudes on all bodies.
+fn add_loads<T: Constant + Lift<T>>(
+    kinds: &[LoadKind<T>],
+    magnitudes: &[T],
+    weighted_bodies: &[(BodyId, Mass<T>)],
+    states: &BodyStates<T, T>,
+    loads: &mut LoadState<T>,
+) -> Result<(), StateRecordingError> {
+    // A couple has the same effect at each point.
+    let couple_points = [Vec2::zero(); 2];
+    let places = LoadPlaces {
+        weighted_bodies,
+        couple_points,
+    };
+    for (k, (kind, &magnitude)) in kinds.iter().zip(magnitudes).enumerate() {
+        let source = ForceSource::Load(k);
+        kind.add_wrenches(magnitude, source, &places, states, loads)
+            .ok_or(StateRecordingError::NoDirection(k))?;
+    }
+    loads.sum_by_body();
+    Ok(())
+}
+
+impl RecordableModel for Model {
+    type Mechanism = Mechanism;
+    type Mass = Mass;
+    type Point = Vec2;
+
+    fn numbers(&self, of: Described<'_, Self>) -> Option<Vec<f64>> {
+        let mut numbers = self.plan().dimensions(of.mechanism)?;
+        of.masses.iter().for_each(|mass| mass.list(&mut numbers));
+        of.loads
+            .iter()
+            .for_each(|load| load.kind.list(&mut numbers));
+        for function in Self::wanted_functions(of)? {
+            function.list(&mut numbers);
+        }
+        (of.wanted.points.iter()).for_each(|(_, point)| point.list(&mut numbers));
+        Some(numbers)
+    }
+
+    fn solution(&self, q: &[f64], workspace: &mut Workspace<f64>) -> PositionResult<Vec<f64>> {
+        self.plan().positions(q, &mut workspace.pose)?;
+        Ok(self.plan().iterated_values(&workspace.pose))
+    }
+
+    fn outputs(
+        &self,
+        of: Described<'_, Self>,
+        at: &StateInputs<'_>,
+    ) -> Result<Vec<RecordedNumber>, StateRecordingError> {
+        let (dimensions, rest) = at.numbers.split_at(self.plan().dimension_count());
+        let mut rest = rest.iter().copied();
+        let mut next = |value: f64| rest.next().unwrap_or(Scalar::from_f64(value));
+        let masses: Vec<Mass<RecordedNumber>> = of
+            .masses
+            .iter()
+            .map(|mass| mass.replaced(&mut next))
+            .collect();
+        let mut model: PassModel<RecordedNumber> = self.pass_model.lifted();
+        if !model.set_numbers(dimensions, &masses) {
+            return Err(StateRecordingError::Structure);
+        }
+        let plan = &model.plan;
+        let (mut pose, mut motion) = (plan.pose(), plan.motion());
+        plan.positions_at_solution(at.q, at.solution, &mut pose)?;
+        plan.velocities(&pose, at.q_dot, &mut motion);
+        plan.accelerations(&pose, at.q_ddot, &mut motion);
+        let mut states: BodyStates<RecordedNumber, RecordedNumber> = BodyStates::new(plan);
+        states.fill(plan, &pose, &motion);
+        let mut loads = self.loads.state::<RecordedNumber>(self.plan());
+        let kinds = of.loads.iter().map(|load| load.kind.replaced(&mut next));
+        let kinds: Vec<LoadKind<RecordedNumber>> = kinds.collect();
+        add_loads(
+            &kinds,
+            at.magnitudes,
+            &weighted(plan, &masses),
+            &states,
+            &mut loads,
+        )?;
+        let mut pass = RecursivePass::new(&model);
+        pass.evaluate_loaded(&model, &pose, GivenMotion(&motion), &mut loads);
+        let mut result = InverseDynamics::buffer(plan.actuators(), self.reactions().len());
+        result.read_from(&model, &pose, &pass);
+        let mut outputs = [result.tau, result.reactions].concat();
+        let functions = Self::wanted_functions(of).ok_or(StateRecordingError::Structure)?;
+        for function in functions {
+            outputs.extend(states.coordinate(function.replaced(&mut next)));
+        }
+        for (body, point) in &of.wanted.points {
+            let point = states.point(*body, point.replaced(&mut next));
+            let vectors = [point.position, point.velocity, point.acceleration];
+            outputs.extend(vectors.into_iter().flat_map(|v| [v.x, v.y]));
+        }
+        Ok(outputs)
+    }
+}
