@@ -36,6 +36,8 @@ struct LoadedModel {
     model: Model,
     /// The constant velocity at which the forces over the turn are wanted, rad/s; `None` if they are not.
     velocity: Option<f64>,
+    /// Whether both ends and the means of these forces are wanted.
+    has_means: bool,
 }
 
 /// A variant that is on the assembly branch of its model and turns fully.
@@ -82,8 +84,21 @@ impl VariantModel {
         let supported = model.plan().supports_variants(model.mechanism())
             && model.frictions().len() == 0
             && (velocity.is_none() || model.loads.are_constant());
-        self.loaded = supported.then_some(LoadedModel { model, velocity });
+        self.loaded = supported.then_some(LoadedModel {
+            model,
+            velocity,
+            has_means: false,
+        });
         self.loaded.is_some().then_some(self)
+    }
+
+    /// These variants with [`Turn::force_means`] and [`Turn::force_ends`] of the forces under loads.
+    #[must_use]
+    pub fn with_means(mut self) -> Self {
+        if let Some(loaded) = &mut self.loaded {
+            loaded.has_means = true;
+        }
+        self
     }
 
     /// Whether [`Turn`] has forces under loads.

@@ -4,12 +4,11 @@ use super::explain::explain_position;
 use super::prepared::{compile, range_limits, reaction_unit};
 use super::trajectory::SpaceRows;
 use crate::explain::StudyError;
-use crate::progress::no_progress;
 use crate::sweep::compute::{
     Design, ExtremeValues, IndexedReaction, RangeCurves, RequestedQuantities, ResultKind, Results,
     SweptScene, VariantFamily,
 };
-use crate::trajectory::compute::{Analysis, Quantity, RowSource};
+use crate::trajectory::compute::Statistic;
 use dwell_kinetostatics::ExactModel;
 use dwell_kinetostatics::space::{Model, Reaction};
 use dwell_scene::{SceneError, SpaceScene};
@@ -66,23 +65,6 @@ impl SweptScene for SpaceScene {
         }
     }
 
-    fn compute_peaks(
-        &self,
-        rows: SpaceRows,
-        analysis: Analysis,
-        _: &RequestedQuantities,
-        results: &mut Results<'_>,
-    ) -> Result<(), StudyError> {
-        match peaks(self, &rows, analysis) {
-            Ok([of_reactions, of_actuators]) => {
-                results.set_named(ResultKind::Reaction, Ok(of_reactions));
-                results.set_named(ResultKind::ActuatorForce, Ok(of_actuators));
-            }
-            Err(error) => results.set(ResultKind::Reaction, Err(error)),
-        }
-        Ok(())
-    }
-
     fn varied(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
         let mut scene = self.with_values(values)?;
         // Without a list, the components that are requested depend on the directions of the axes.
@@ -97,51 +79,13 @@ impl SweptScene for SpaceScene {
     }
 }
 
-/// Whether the largest magnitude of a reaction is requested.
+/// Whether a result of a reaction is requested.
 fn is_requested(requested: &RequestedQuantities, reaction: &str) -> bool {
     let mut quantities = requested.quantities.iter();
     quantities.any(|q| {
-        let name = q.name.strip_suffix(".max_abs");
-        let name = name.map(|name| name.strip_prefix("place.").unwrap_or(name));
-        name == Some(reaction)
+        let of = Statistic::of_name(&q.name).map(|(name, _)| name);
+        of.map(|name| name.strip_prefix("place.").unwrap_or(name)) == Some(reaction)
     })
-}
-
-/// The largest magnitudes of reactions and of actuator forces, also between the rows.
-fn peaks(
-    scene: &SpaceScene,
-    rows: &SpaceRows,
-    analysis: Analysis,
-) -> Result<[Vec<(String, f64)>; 2], StudyError> {
-    // The abscissa is among them.
-    let mut source = RowSource::new(scene, rows);
-    source.is_wanted = |quantity| {
-        matches!(
-            quantity,
-            Quantity::Time
-                | Quantity::ActuatorCoordinate(_, 0)
-                | Quantity::ActuatorForce(_)
-                | Quantity::Reaction(_)
-        )
-    };
-    let mut computed = source.analysed(analysis, None, &no_progress)?;
-    if let Some(error) = computed.early_stop.take() {
-        return Err(error);
-    }
-    let results = &computed.results;
-    let columns = results.columns.iter().zip(&results.extrema.of_columns);
-    let [mut of_reactions, mut of_actuators] = [const { Vec::new() }; 2];
-    for (column, ends) in columns {
-        let largest = ends.iter().flatten();
-        let largest = largest.map(|end| end.value.abs()).fold(f64::NAN, f64::max);
-        let named = (format!("{}.max_abs", column.name), largest);
-        match column.quantity {
-            Quantity::Reaction(_) => of_reactions.push(named),
-            Quantity::ActuatorForce(_) => of_actuators.push(named),
-            _ => {}
-        }
-    }
-    Ok([of_reactions, of_actuators])
 }
 
 /// Curves over the range of the only actuator.

@@ -1,13 +1,16 @@
 //! The largest actuator force and reactions of the variants of a family, along the scene's trajectory.
 
 use crate::explain::table_of;
-use crate::sweep::compute::point::{RequestedQuantities, ResultKind};
-use crate::trajectory::compute::{Analysis, WantedForces, peak_analysis, peak_forces};
+use crate::sweep::compute::point::{RequestedQuantities, ResultKind, SweepQuantity};
+use crate::trajectory::compute::{
+    Analysis, Quantity, Signal, Statistic, analysis_along, statistics_along,
+};
 use dwell_geometry::{Coordinate, Reaction};
-use dwell_kinetostatics::variants::{TurningVariant, VariantModel};
-use dwell_kinetostatics::{InverseDynamics, Load, Signal};
+use dwell_kinetostatics::variants::{Turn, TurningVariant, VariantModel};
+use dwell_kinetostatics::{Load, Signal as LoadSignal};
 use dwell_laws::Law;
 use dwell_scene::PlaneScene;
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 /// A trajectory that misses a revolution by less than this part of it covers it.
@@ -21,10 +24,26 @@ pub(crate) struct FamilyForces {
     analysis: Analysis,
     /// By index among the reactions of the mechanism, in ascending order.
     pub(crate) reactions: Vec<usize>,
-    /// By index.
-    actuators: Vec<usize>,
-    /// If the trajectory covers a revolution at constant velocity: this velocity, rad/s; zero for statics.
-    revolution: Option<f64>,
+    /// The wanted statistics of actuator forces and of these reactions, in the order of the quantities.
+    wanted: Vec<(Signal, Statistic)>,
+    revolution: Option<Revolution>,
+}
+
+/// A trajectory that covers a revolution at constant velocity.
+#[derive(Debug, Clone, Copy)]
+struct Revolution {
+    /// rad/s; zero for statics.
+    velocity: f64,
+    /// From its first to its last position, rad.
+    angle: f64,
+}
+
+impl Revolution {
+    /// Whether means over the trajectory are those over a revolution.
+    fn is_whole(self) -> bool {
+        let revolutions = self.angle.abs() / TAU;
+        (revolutions - revolutions.round()).abs() <= WHOLE_REVOLUTION * revolutions
+    }
 }
 
 impl FamilyForces {
@@ -34,13 +53,26 @@ impl FamilyForces {
         if typical.loads.iter().any(has_table_of_points) {
             return None;
         }
-        let analysis = peak_analysis(typical)?;
+        let analysis = analysis_along(typical)?;
+        let of_reaction = |q: &SweepQuantity| matches!(q.kind, ResultKind::Reaction(_));
+        let reactions = requested.along().filter(|(q, _)| of_reaction(q));
+        let reactions: BTreeSet<usize> = reactions.map(|(q, _)| q.index).collect();
+        let reactions: Vec<usize> = reactions.into_iter().collect();
+        let wanted = requested.along().map(|(quantity, statistic)| {
+            let of = match reactions.binary_search(&quantity.index) {
+                Ok(k) if of_reaction(quantity) => Quantity::Reaction(k),
+                _ => Quantity::ActuatorForce(quantity.index),
+            };
+            (Signal::of(of), statistic)
+        });
+        let wanted: Vec<(Signal, Statistic)> = wanted.collect();
+        let revolution = revolution(typical, analysis);
         Some(Self {
             scene: typical.clone(),
             analysis,
-            reactions: requested.indices(&[ResultKind::Reaction]),
-            actuators: requested.indices(&[ResultKind::ActuatorForce]),
-            revolution: revolution_velocity(typical, analysis),
+            revolution: revolution.filter(|of| of.is_whole() || !wanted.iter().any(is_mean)),
+            wanted,
+            reactions,
         })
     }
 
@@ -55,57 +87,94 @@ impl FamilyForces {
             model.with_loads(self.scene.loads.clone(), reactions, velocity)
         };
         // Forces by laws may jump: they need the trajectory's own positions.
-        add(self.revolution).or_else(|| add(None))
+        let model = add(self.revolution.map(|of| of.velocity)).or_else(|| add(None))?;
+        let are_largest = |(_, statistic): &(Signal, Statistic)| {
+            matches!(statistic, Statistic::MaxAbs | Statistic::PeakPower)
+        };
+        let has_means = !self.wanted.iter().all(are_largest);
+        Some(if has_means { model.with_means() } else { model })
     }
 
-    /// The largest magnitudes of a variant; `None` if it must be compiled, so that errors are explained.
-    pub(crate) fn peaks(&self, variant: TurningVariant<'_>) -> Option<InverseDynamics<f64>> {
-        let loaded = variant.loaded?;
-        if let [tau, reactions @ ..] = &variant.turn.loaded_forces[..] {
-            return Some(InverseDynamics {
-                tau: vec![tau.value.abs()],
-                reactions: reactions.iter().map(|r| r.value.abs()).collect(),
-            });
+    /// The wanted statistics of a variant, in their order; `None` if it must be compiled, so that errors are explained.
+    pub(crate) fn values(&self, variant: TurningVariant<'_>) -> Option<Vec<f64>> {
+        let (loaded, turn) = (variant.loaded?, variant.turn);
+        match self.revolution.filter(|_| !turn.loaded_forces.is_empty()) {
+            Some(revolution) => {
+                let of = |(signal, statistic): &(Signal, Statistic)| {
+                    let curve = match signal.quantity()? {
+                        Quantity::Reaction(k) => 1 + k,
+                        _ => 0,
+                    };
+                    over_turn(turn, curve, *statistic, revolution)
+                };
+                self.wanted.iter().map(of).collect()
+            }
+            None => statistics_along(&self.scene, loaded, self.analysis, &self.wanted).ok(),
         }
-        let wanted = WantedForces {
-            reactions: (0..self.reactions.len()).collect(),
-            actuators: self.actuators.clone(),
-        };
-        peak_forces(&self.scene, loaded, self.analysis, &wanted).ok()
     }
+}
+
+/// Whether it is a mean over the trajectory.
+fn is_mean((_, statistic): &(Signal, Statistic)) -> bool {
+    matches!(
+        statistic,
+        Statistic::Mean | Statistic::Rms | Statistic::Work
+    )
+}
+
+/// A statistic of a force over a turn.
+fn over_turn(turn: &Turn, curve: usize, statistic: Statistic, along: Revolution) -> Option<f64> {
+    let largest = turn.loaded_forces.get(curve)?.value.abs();
+    let ends = || {
+        turn.force_ends
+            .get(curve)
+            .map(|ends| ends.map(|of| of.value))
+    };
+    let means = || turn.force_means.get(curve);
+    Some(match statistic {
+        Statistic::MaxAbs => largest,
+        Statistic::PeakPower => largest * along.velocity.abs(),
+        Statistic::Min => ends()?[0],
+        Statistic::Max => ends()?[1],
+        Statistic::Stroke => ends()?[1] - ends()?[0],
+        Statistic::Mean => means()?[0],
+        Statistic::Rms => means()?[1].sqrt(),
+        Statistic::Work => means()?[0] * along.angle,
+    })
 }
 
 /// Whether the magnitude is a table of a coordinate that depends on points: its limits are checked by the scene's own.
 fn has_table_of_points(load: &Load) -> bool {
     let signal = table_of(&load.magnitude).map(|(signal, _)| signal);
     signal.is_some_and(|signal| match signal {
-        Signal::Time => false,
-        Signal::Value(coordinate) | Signal::Velocity(coordinate) => {
+        LoadSignal::Time => false,
+        LoadSignal::Value(coordinate) | LoadSignal::Velocity(coordinate) => {
             !matches!(coordinate, Coordinate::Angle(_))
         }
     })
 }
 
-/// The constant velocity of the scene's trajectory, rad/s, if it covers a revolution of an actuator that turns fully.
-fn revolution_velocity(scene: &PlaneScene, analysis: Analysis) -> Option<f64> {
+/// The scene's trajectory if it covers a revolution of an actuator that turns fully, at constant velocity.
+fn revolution(scene: &PlaneScene, analysis: Analysis) -> Option<Revolution> {
+    let covers_all = |of: &Revolution| of.angle.abs() / TAU > 1.0 - WHOLE_REVOLUTION;
     if let Some(prescribed) = &scene.prescribed {
         let [Law::Polynomial(law)] = &prescribed.laws[..] else {
             return None;
         };
         let [_, velocity, acceleration, jerk] = law.eval(0.0);
-        let revolutions = velocity.abs() * prescribed.duration / TAU;
         let is_uniform = acceleration == 0.0 && jerk == 0.0;
-        let covers_all = is_uniform && revolutions > 1.0 - WHOLE_REVOLUTION;
-        return covers_all.then_some(velocity);
+        let angle = velocity * prescribed.duration;
+        let found = is_uniform.then_some(Revolution { velocity, angle });
+        return found.filter(covers_all);
     }
-    let Some(sweep) = &scene.sweep else {
-        return (analysis == Analysis::Statics).then_some(0.0);
+    let [from, to] = match &scene.sweep {
+        None if analysis != Analysis::Statics => return None,
+        sweep => sweep.as_ref().and_then(|s| s.range).unwrap_or([0.0, TAU]),
     };
-    let [from, to] = sweep.range.unwrap_or([0.0, TAU]);
-    let covers_all = (to - from).abs() / TAU > 1.0 - WHOLE_REVOLUTION;
-    let velocity = match analysis {
-        Analysis::Statics => 0.0,
-        _ => sweep.speed.copysign(to - from),
+    let angle = to - from;
+    let velocity = match (&scene.sweep, analysis) {
+        (None, _) | (_, Analysis::Statics) => 0.0,
+        (Some(sweep), _) => sweep.speed.copysign(angle),
     };
-    covers_all.then_some(velocity)
+    Some(Revolution { velocity, angle }).filter(covers_all)
 }

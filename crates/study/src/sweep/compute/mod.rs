@@ -11,6 +11,7 @@ mod motions;
 mod point;
 mod random;
 mod scene_results;
+mod signals;
 mod swept_scene;
 mod table;
 
