@@ -48,9 +48,11 @@ impl From<StudyError> for SceneError {
 /// Why a sweep fails.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SweepError {
-    /// An axis is invalid.
-    #[error("`--vary {given}`: {reason}")]
+    /// An axis, a tied number or a limit is invalid.
+    #[error("`{option} {given}`: {reason}")]
     Axis {
+        /// The option.
+        option: &'static str,
         /// The text given.
         given: String,
         /// The fault.

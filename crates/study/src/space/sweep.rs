@@ -4,11 +4,12 @@ use super::explain::explain_position;
 use super::prepared::{compile, range_limits, reaction_unit};
 use super::trajectory::SpaceRows;
 use crate::explain::StudyError;
+use crate::progress::no_progress;
 use crate::sweep::compute::{
     Design, ExtremeValues, IndexedReaction, RangeCurves, RequestedQuantities, ResultKind, Results,
     SweptScene, VariantFamily,
 };
-use crate::trajectory::compute::Statistic;
+use crate::trajectory::compute::{Analysis, Quantity, RowSource, Statistic};
 use dwell_kinetostatics::ExactModel;
 use dwell_kinetostatics::space::{Model, Reaction};
 use dwell_scene::{SceneError, SpaceScene};
@@ -65,6 +66,14 @@ impl SweptScene for SpaceScene {
         }
     }
 
+    fn largest_forces(
+        &self,
+        rows: &SpaceRows,
+        analysis: Analysis,
+    ) -> Result<Vec<(String, f64)>, StudyError> {
+        peaks(self, rows, analysis)
+    }
+
     fn varied(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
         let mut scene = self.with_values(values)?;
         // Without a list, the components that are requested depend on the directions of the axes.
@@ -86,6 +95,37 @@ fn is_requested(requested: &RequestedQuantities, reaction: &str) -> bool {
         let of = Statistic::of_name(&q.name).map(|(name, _)| name);
         of.map(|name| name.strip_prefix("place.").unwrap_or(name)) == Some(reaction)
     })
+}
+
+/// The largest magnitudes of reactions and of actuator forces, also between the rows; zero where a column is zero within rounding.
+fn peaks(
+    scene: &SpaceScene,
+    rows: &SpaceRows,
+    analysis: Analysis,
+) -> Result<Vec<(String, f64)>, StudyError> {
+    // The abscissa is among them.
+    let mut source = RowSource::new(scene, rows);
+    source.is_wanted = |quantity| {
+        matches!(
+            quantity,
+            Quantity::Time
+                | Quantity::ActuatorCoordinate(_, 0)
+                | Quantity::ActuatorForce(_)
+                | Quantity::Reaction(_)
+        )
+    };
+    let mut computed = source.analysed(analysis, None, &no_progress)?;
+    if let Some(error) = computed.early_stop.take() {
+        return Err(error);
+    }
+    let results = &computed.results;
+    let columns = results.columns.iter().zip(&results.extrema.of_columns);
+    let largest = columns.map(|(column, ends)| {
+        let ends = ends.iter().flatten().map(|end| end.value.abs());
+        let largest = ends.fold(f64::NAN, f64::max);
+        (format!("{}.max_abs", column.name), largest)
+    });
+    Ok(largest.collect())
 }
 
 /// Curves over the range of the only actuator.

@@ -84,7 +84,9 @@ impl Available {
                 let Some(unit) = unit.filter(|_| !known.contains(&name)) else {
                     continue;
                 };
-                let (kind, index) = match of.signal.quantity() {
+                // The largest forces that are computed by default are known.
+                let is_force = statistic != Statistic::MaxAbs;
+                let (kind, index) = match of.signal.quantity().filter(|_| is_force) {
                     Some(Quantity::Reaction(k)) => (ResultKind::Reaction(statistic), k),
                     Some(Quantity::ActuatorForce(i)) => (ResultKind::ActuatorForce(statistic), i),
                     _ => (ResultKind::Along(statistic), k),

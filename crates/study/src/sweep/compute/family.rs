@@ -173,7 +173,8 @@ impl VariantFamily {
         };
         let all_at = |which: usize| -> Vec<f64> {
             let axes = design.axes.iter().enumerate();
-            axes.map(|(k, axis)| at(k, axis, which)).collect()
+            let values: Vec<f64> = axes.map(|(k, axis)| at(k, axis, which)).collect();
+            design.numbers(&values)
         };
         let reference = all_at(0);
         let typical = scene_at(scene, design, &reference)?;

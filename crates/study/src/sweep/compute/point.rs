@@ -1,12 +1,14 @@
 //! One point of a sweep: the scene with its input values, and the results.
 
 use crate::explain::{StudyError, SweepError};
+use crate::number_format::digits;
 use crate::sweep::compute::SweptScene;
 use crate::sweep::compute::available::Available;
 use crate::sweep::compute::extremes::ExtremeValues;
 use crate::sweep::compute::scene_results::{available_quantities, compute_results};
 use crate::trajectory::compute::{STATISTICS, Statistic, is_prefix_of};
 use dwell_laws::expression::nearest;
+use dwell_scene::{ResultLimit, SceneFile, SceneLocation};
 use std::collections::BTreeSet;
 
 /// The computation that yields a result.
@@ -74,7 +76,7 @@ impl ResultKind {
         }
     }
 
-    fn is_by_default(self) -> bool {
+    pub(super) fn is_by_default(self) -> bool {
         self.word().is_none() && !self.is_by_whole_name()
     }
 }
@@ -105,7 +107,12 @@ pub struct RequestedQuantities {
     pub(crate) quantities: Vec<SweepQuantity>,
     /// A line for each body far from its approximate angle.
     pub(crate) notes: String,
+    /// The limits, each of the quantity at this index.
+    limits: Vec<(usize, ResultLimit)>,
 }
+
+/// The beginning of the message of a point beyond a limit.
+pub(crate) const LEFT_OUT: &str = "left out: ";
 
 /// The results of a point: a value for each quantity, NaN where there is none, and the reason.
 #[derive(Clone)]
@@ -128,7 +135,20 @@ impl RequestedQuantities {
     ///
     /// # Errors
     /// [`StudyError`] where the unchanged scene cannot be assembled; [`SweepError::Result`].
+    #[cfg(test)]
     pub(crate) fn new(scene: &impl SweptScene, requests: &[String]) -> Result<Self, StudyError> {
+        Self::within(scene, requests, &[])
+    }
+
+    /// The requested quantities, or all that the scene has, and those of its limits and of the `given` ones.
+    ///
+    /// # Errors
+    /// [`StudyError`] where the unchanged scene cannot be assembled; [`SweepError`].
+    pub(crate) fn within(
+        scene: &impl SweptScene,
+        requests: &[String],
+        given: &[String],
+    ) -> Result<Self, StudyError> {
         let Available {
             mut quantities,
             notes,
@@ -141,15 +161,27 @@ impl RequestedQuantities {
             let message = "this scene has no results to sweep: add a [prescribed] motion or a [coordinate-sweep]";
             return Err(SweepError::Design(message.to_owned()).into());
         }
-        quantities.retain(|q| match requests {
-            [] => q.kind.is_by_default(),
-            requests => requests.iter().any(|request| q.matches(request)),
+        let limits = limits(scene, given, &quantities)?;
+        quantities.retain(|q| {
+            let is_requested = match requests {
+                [] => q.kind.is_by_default(),
+                requests => requests.iter().any(|request| q.matches(request)),
+            };
+            is_requested || limits.iter().any(|limit| limit.result == q.name)
         });
         if quantities.is_empty() {
             let message = "no result is computed unless it is requested: name some with --result, as in --result motion or --result cycle";
             return Err(SweepError::Design(message.to_owned()).into());
         }
-        Ok(Self { quantities, notes })
+        let of_quantity = |limit: ResultLimit| {
+            let found = quantities.iter().position(|q| q.name == limit.result);
+            found.map(|k| (k, limit))
+        };
+        Ok(Self {
+            limits: limits.into_iter().filter_map(of_quantity).collect(),
+            quantities,
+            notes,
+        })
     }
 
     /// Computes the results with some numbers of the scene replaced. A result that fails has a message instead of a
@@ -171,6 +203,26 @@ impl RequestedQuantities {
         result
     }
 
+    /// The limits as text.
+    #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for the store"))]
+    pub(crate) fn limit_texts(&self) -> impl Iterator<Item = String> {
+        self.limits.iter().map(|(_, limit)| limit.to_string())
+    }
+
+    /// A point without its values if it is beyond a limit.
+    pub(crate) fn limited(&self, mut result: PointResult) -> PointResult {
+        let is_beyond = |&&(k, ref limit): &&(usize, ResultLimit)| {
+            let over = result.values[k] - limit.limit;
+            over != 0.0 && (over > 0.0) == limit.is_upper
+        };
+        if let Some((k, limit)) = self.limits.iter().find(is_beyond) {
+            let value = digits(result.values[*k], 6);
+            result.message = Some(format!("{LEFT_OUT}{value}, but {limit}"));
+            result.values.fill(f64::NAN);
+        }
+        result
+    }
+
     /// The requested statistics along the trajectory.
     pub(super) fn along(&self) -> impl Iterator<Item = (&SweepQuantity, Statistic)> + Clone {
         let quantities = self.quantities.iter();
@@ -188,6 +240,40 @@ impl RequestedQuantities {
         let indices: BTreeSet<usize> = quantities.map(|q| q.index).collect();
         indices.into_iter().collect()
     }
+}
+
+/// The limits of a scene, and those that are `given`.
+fn limits(
+    scene: &SceneFile,
+    given: &[String],
+    quantities: &[SweepQuantity],
+) -> Result<Vec<ResultLimit>, StudyError> {
+    let is_known = |name: &str| quantities.iter().any(|q| q.name == name);
+    let mut all = scene.sweep_section.limits.clone();
+    if let Some(k) = all.iter().position(|limit| !is_known(&limit.result)) {
+        let error = unknown_result(&all[k].result, quantities);
+        let place = (SceneLocation::Limit(k), "no such result".to_owned());
+        return Err(scene
+            .error(error.to_string(), error.help(), &[place])
+            .into());
+    }
+    for text in given {
+        let refuse = |reason, help| SweepError::Axis {
+            option: "--subject-to",
+            given: text.clone(),
+            reason,
+            help,
+        };
+        let form = "write it as `m.max <= 2`, in the unit of the result";
+        let limit = ResultLimit::parse(text);
+        let limit = limit.map_err(|reason| refuse(reason, form.to_owned()))?;
+        if !is_known(&limit.result) {
+            let error = unknown_result(&limit.result, quantities);
+            return Err(refuse(error.to_string(), error.help().unwrap_or_default()).into());
+        }
+        all.push(limit);
+    }
+    Ok(all)
 }
 
 /// The error of a request that names no result: of the many that are computed on request, a word or a form is enough.

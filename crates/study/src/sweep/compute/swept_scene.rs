@@ -6,6 +6,7 @@ use crate::sweep::compute::available::IndexedReaction;
 use crate::sweep::compute::extremes::ExtremeValues;
 use crate::sweep::compute::point::Results;
 use crate::sweep::compute::{Design, NamedUnit, RequestedQuantities, VariantFamily};
+use crate::trajectory::compute::Analysis;
 use dwell_dynamics::Machine;
 use dwell_scene::SceneError;
 
@@ -64,6 +65,18 @@ pub trait SweptScene: SimulatedScene {
     /// [`StudyError`] if a load does not fit.
     fn with_all_loads(&self, rows: Self::Rows) -> Result<Self::Rows, StudyError> {
         Ok(rows)
+    }
+
+    /// The largest forces by the names of their results, of scenes where they are searched in another way than other statistics.
+    ///
+    /// # Errors
+    /// [`StudyError`] where the trajectory ends early.
+    fn largest_forces(
+        &self,
+        _: &Self::Rows,
+        _: Analysis,
+    ) -> Result<Vec<(String, f64)>, StudyError> {
+        Ok(Vec::new())
     }
 
     /// The scene with some numbers replaced, in its own units.
