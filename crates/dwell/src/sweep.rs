@@ -70,7 +70,7 @@ impl Sweep {
     /// ```
     /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
     /// let sweep = dwell::Sweep::new(&scene).vary("rod.mass", "=0.8:1.6:5");
-    /// let table = sweep.tied("rod.inertia", "`rod.mass` * 800").result("m.max").run()?;
+    /// let table = sweep.tied("rod.inertia", "`rod.mass` * 7e-3").result("m.max").run()?;
     /// # Ok::<(), dwell::Error>(())
     /// ```
     #[must_use]

@@ -28,6 +28,8 @@ pub struct VariantModel {
     model: Model,
     guess: ModeGuess,
     loaded: Option<LoadedModel>,
+    /// Whether the means of curves, and both ends of forces under loads, are wanted.
+    has_means: bool,
 }
 
 /// The model under loads.
@@ -36,8 +38,6 @@ struct LoadedModel {
     model: Model,
     /// The constant velocity at which the forces over the turn are wanted, rad/s; `None` if they are not.
     velocity: Option<f64>,
-    /// Whether both ends and the means of these forces are wanted.
-    has_means: bool,
 }
 
 /// A variant that is on the assembly branch of its model and turns fully.
@@ -62,6 +62,7 @@ impl VariantModel {
             guess: guess.flatten()?,
             model,
             loaded: None,
+            has_means: false,
         })
     }
 
@@ -84,20 +85,14 @@ impl VariantModel {
         let supported = model.plan().supports_variants(model.mechanism())
             && model.frictions().len() == 0
             && (velocity.is_none() || model.loads.are_constant());
-        self.loaded = supported.then_some(LoadedModel {
-            model,
-            velocity,
-            has_means: false,
-        });
+        self.loaded = supported.then_some(LoadedModel { model, velocity });
         self.loaded.is_some().then_some(self)
     }
 
-    /// These variants with [`Turn::force_means`] and [`Turn::force_ends`] of the forces under loads.
+    /// These variants with the means of ½m′ and of the forces under loads, and both ends of these.
     #[must_use]
     pub fn with_means(mut self) -> Self {
-        if let Some(loaded) = &mut self.loaded {
-            loaded.has_means = true;
-        }
+        self.has_means = true;
         self
     }
 

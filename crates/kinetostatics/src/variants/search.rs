@@ -40,12 +40,14 @@ pub struct Turn {
     pub m: [Extremum; 2],
     /// Smallest and largest ½m′, kg m².
     pub half_dm: [Extremum; 2],
+    /// Mean of ½m′, and of its square, if [means](super::VariantModel::with_means) are wanted.
+    pub half_dm_means: [f64; 2],
     /// By reaction: its value of largest magnitude in the free rotation, over 2E, 1/m or 1.
     pub free_reactions: Vec<Extremum>,
     /// The actuator force (N m), then each reaction (N or N m), of largest magnitude under the loads of the variants, if
     /// they are requested.
     pub loaded_forces: Vec<Extremum>,
-    /// By these forces, if they are [wanted](super::VariantModel::with_means): the smallest and the largest value.
+    /// By these forces, if means are wanted: the smallest and the largest value.
     pub force_ends: Vec<[Extremum; 2]>,
     /// As these: the mean, and the mean of the square.
     pub force_means: Vec<[f64; 2]>,
@@ -148,7 +150,7 @@ pub(super) struct TurnSearch {
     curves: Vec<Interpolant>,
     /// The largest steepness of the samples so far.
     steepness: f64,
-    /// Whether both ends and the means of forces under loads are wanted.
+    /// Whether the means of curves, and both ends of forces under loads, are wanted.
     pub(super) has_means: bool,
     candidates: Vec<Candidate>,
     peaks: Vec<Peak>,
@@ -286,7 +288,7 @@ impl TurnSearch {
             }
             curve.size = largest_lane(size);
             // A mean of a square has all digits if the last coefficients have half of them.
-            let part = if self.has_means && k >= first_force {
+            let part = if self.has_means && (k == 1 || k >= first_force) {
                 RESOLVED_MEAN
             } else {
                 RESOLVED_CURVE
@@ -402,7 +404,12 @@ impl TurnSearch {
             }
             match curve {
                 0 => self.turn.m = ends,
-                1 => self.turn.half_dm = ends,
+                1 => {
+                    self.turn.half_dm = ends;
+                    if self.has_means {
+                        self.turn.half_dm_means = values.means();
+                    }
+                }
                 of => {
                     let [low, high] = ends;
                     let larger = low.value.abs() > high.value.abs();

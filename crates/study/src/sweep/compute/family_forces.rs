@@ -27,6 +27,8 @@ pub(crate) struct FamilyForces {
     /// The wanted statistics of actuator forces and of these reactions, in the order of the quantities.
     wanted: Vec<(Signal, Statistic)>,
     revolution: Option<Revolution>,
+    /// Whether they are those of the inertia alone: ½m′ω², without loads.
+    are_inertial: bool,
 }
 
 /// A trajectory that covers a revolution at constant velocity.
@@ -67,10 +69,13 @@ impl FamilyForces {
         });
         let wanted: Vec<(Signal, Statistic)> = wanted.collect();
         let revolution = revolution(typical, analysis);
+        let revolution = revolution.filter(|of| of.is_whole() || !wanted.iter().any(is_mean));
+        let are_all = typical.loads.is_empty() && reactions.is_empty() && revolution.is_some();
         Some(Self {
             scene: typical.clone(),
             analysis,
-            revolution: revolution.filter(|of| of.is_whole() || !wanted.iter().any(is_mean)),
+            revolution,
+            are_inertial: are_all && !wanted.iter().all(is_peak),
             wanted,
             reactions,
         })
@@ -82,35 +87,36 @@ impl FamilyForces {
         model: &VariantModel,
         reactions: &[Reaction],
     ) -> Option<VariantModel> {
+        if self.are_inertial {
+            return Some(model.clone().with_means());
+        }
         let add = |velocity: Option<f64>| {
             let model = model.clone();
             model.with_loads(self.scene.loads.clone(), reactions, velocity)
         };
         // Forces by laws may jump: they need the trajectory's own positions.
         let model = add(self.revolution.map(|of| of.velocity)).or_else(|| add(None))?;
-        let are_largest = |(_, statistic): &(Signal, Statistic)| {
-            matches!(statistic, Statistic::MaxAbs | Statistic::PeakPower)
-        };
-        let has_means = !self.wanted.iter().all(are_largest);
+        let has_means = !self.wanted.iter().all(is_peak);
         Some(if has_means { model.with_means() } else { model })
     }
 
     /// The wanted statistics of a variant, in their order; `None` if it must be compiled, so that errors are explained.
     pub(crate) fn values(&self, variant: TurningVariant<'_>) -> Option<Vec<f64>> {
-        let (loaded, turn) = (variant.loaded?, variant.turn);
-        match self.revolution.filter(|_| !turn.loaded_forces.is_empty()) {
-            Some(revolution) => {
-                let of = |(signal, statistic): &(Signal, Statistic)| {
-                    let curve = match signal.quantity()? {
-                        Quantity::Reaction(k) => 1 + k,
-                        _ => 0,
-                    };
-                    over_turn(turn, curve, *statistic, revolution)
-                };
-                self.wanted.iter().map(of).collect()
-            }
-            None => statistics_along(&self.scene, loaded, self.analysis, &self.wanted).ok(),
-        }
+        let turn = variant.turn;
+        let is_over_turn = self.are_inertial || !turn.loaded_forces.is_empty();
+        let Some(revolution) = self.revolution.filter(|_| is_over_turn) else {
+            let loaded = variant.loaded?;
+            return statistics_along(&self.scene, loaded, self.analysis, &self.wanted).ok();
+        };
+        let value = |(signal, statistic): &(Signal, Statistic)| {
+            let force = match signal.quantity()? {
+                _ if self.are_inertial => inertial_force(turn, revolution.velocity),
+                Quantity::Reaction(k) => force_under_loads(turn, 1 + k)?,
+                _ => force_under_loads(turn, 0)?,
+            };
+            Some(force.statistic(*statistic, revolution))
+        };
+        self.wanted.iter().map(value).collect()
     }
 }
 
@@ -122,25 +128,60 @@ fn is_mean((_, statistic): &(Signal, Statistic)) -> bool {
     )
 }
 
-/// A statistic of a force over a turn.
-fn over_turn(turn: &Turn, curve: usize, statistic: Statistic, along: Revolution) -> Option<f64> {
-    let largest = turn.loaded_forces.get(curve)?.value.abs();
-    let ends = || {
-        turn.force_ends
-            .get(curve)
-            .map(|ends| ends.map(|of| of.value))
-    };
-    let means = || turn.force_means.get(curve);
-    Some(match statistic {
-        Statistic::MaxAbs => largest,
-        Statistic::PeakPower => largest * along.velocity.abs(),
-        Statistic::Min => ends()?[0],
-        Statistic::Max => ends()?[1],
-        Statistic::Stroke => ends()?[1] - ends()?[0],
-        Statistic::Mean => means()?[0],
-        Statistic::Rms => means()?[1].sqrt(),
-        Statistic::Work => means()?[0] * along.angle,
+/// Whether it is the largest magnitude, for which means are not needed.
+fn is_peak((_, statistic): &(Signal, Statistic)) -> bool {
+    matches!(statistic, Statistic::MaxAbs | Statistic::PeakPower)
+}
+
+/// A force over a turn.
+struct TurnForce {
+    max_abs: f64,
+    /// The smallest and the largest value, if they are known.
+    ends: [f64; 2],
+    mean: f64,
+    mean_square: f64,
+}
+
+/// The actuator force of the inertia alone at constant velocity, ½m′ω².
+fn inertial_force(turn: &Turn, velocity: f64) -> TurnForce {
+    let square = velocity * velocity;
+    let ends = turn.half_dm.map(|end| end.value * square);
+    let [mean, mean_square] = turn.half_dm_means;
+    TurnForce {
+        max_abs: ends[0].abs().max(ends[1].abs()),
+        ends,
+        mean: mean * square,
+        mean_square: mean_square * square * square,
+    }
+}
+
+/// A force of the model under loads.
+fn force_under_loads(turn: &Turn, k: usize) -> Option<TurnForce> {
+    let ends = turn.force_ends.get(k).map(|ends| ends.map(|end| end.value));
+    let means = turn.force_means.get(k).copied();
+    let [mean, mean_square] = means.unwrap_or([f64::NAN; 2]);
+    Some(TurnForce {
+        max_abs: turn.loaded_forces.get(k)?.value.abs(),
+        ends: ends.unwrap_or([f64::NAN; 2]),
+        mean,
+        mean_square,
     })
+}
+
+impl TurnForce {
+    fn statistic(&self, statistic: Statistic, along: Revolution) -> f64 {
+        let [low, high] = self.ends;
+        match statistic {
+            Statistic::MaxAbs => self.max_abs,
+            Statistic::PeakPower => self.max_abs * along.velocity.abs(),
+            Statistic::Min => low,
+            Statistic::Max => high,
+            Statistic::Stroke => high - low,
+            Statistic::Mean => self.mean,
+            Statistic::Rms => self.mean_square.sqrt(),
+            Statistic::Work => self.mean * along.angle,
+        }
+    }
 }
 
 /// Whether the magnitude is a table of a coordinate that depends on points: its limits are checked by the scene's own.
