@@ -5,7 +5,7 @@ use dwell_dynamics::Method;
 use dwell_scene::PlaneScene;
 use dwell_study::output::Picture;
 use dwell_study::{
-    Analysis, Outcome, ParameterSweep, SolverSettings, StudyError, TrajectoryOutcome,
+    Analysis, Outcome, ParameterSweep, SolverSettings, StudyError, SweepRequest, TrajectoryOutcome,
     analyse_trajectory, cycle, equilibria, no_progress, reduce, simulate, sweep,
 };
 use dwell_tests::fixtures::{case_names, repository_root, scene};
@@ -185,10 +185,12 @@ fn the_pictures_of_sweeps_are_legible() {
         let name = vary.join(" ").replace(['/', '.', '=', '~', ':', ' '], "-");
         let folder = folder.join(name);
         let wanted = ParameterSweep {
-            vary: &vary,
-            samples,
-            seed: 1,
-            requests: &[],
+            request: SweepRequest {
+                vary: &vary,
+                samples,
+                seed: 1,
+                ..SweepRequest::default()
+            },
             shard: None,
             export: None,
             folder: &folder,

@@ -3,7 +3,7 @@
 use crate::values::{Choices, choice, parse_count};
 use clap::Args;
 use dwell_report::TableFormat;
-use dwell_study::{ParameterSweep, Shard};
+use dwell_study::{ParameterSweep, Shard, SweepRequest};
 use std::path::{Path, PathBuf};
 
 const TABLE_FORMATS: Choices<TableFormat> = &[
@@ -24,6 +24,9 @@ pub(crate) struct SweepArgs {
         allow_hyphen_values = true
     )]
     vary: Vec<String>,
+    /// A number that follows from others: PATH=EXPRESSION of parameters, and of paths between backticks; may be given several times
+    #[arg(long, value_name = "TIE", allow_hyphen_values = true)]
+    tied: Vec<String>,
     /// Number of random samples for each combination of listed values
     #[arg(long, value_parser = parse_count, value_name = "COUNT", allow_hyphen_values = true)]
     samples: Option<u64>,
@@ -38,6 +41,9 @@ pub(crate) struct SweepArgs {
     /// Result columns to compute, by name or prefix, such as period or m (default: all)
     #[arg(long = "result", value_name = "RESULT", value_delimiter = ',')]
     results: Vec<String>,
+    /// Leave out the points beyond a limit: RESULT<=LIMIT or RESULT>=LIMIT; may be given several times
+    #[arg(long = "subject-to", value_name = "LIMIT", allow_hyphen_values = true)]
+    limits: Vec<String>,
     /// Compute only this part of the points, such as 2/8, in the folder that all parts share
     #[arg(long, value_name = "PART/PARTS", allow_hyphen_values = true)]
     pub(crate) shard: Option<Shard>,
@@ -50,10 +56,14 @@ impl SweepArgs {
     /// The requested sweep, with its files in a folder.
     pub(crate) fn sweep<'a>(&'a self, folder: &'a Path) -> ParameterSweep<'a> {
         ParameterSweep {
-            vary: &self.vary,
-            samples: self.samples,
-            seed: self.seed,
-            requests: &self.results,
+            request: SweepRequest {
+                vary: &self.vary,
+                tied: &self.tied,
+                samples: self.samples,
+                seed: self.seed,
+                requests: &self.results,
+                limits: &self.limits,
+            },
             shard: self.shard,
             export: self.export,
             folder,

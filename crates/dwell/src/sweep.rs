@@ -3,8 +3,8 @@
 use crate::column_table::ColumnTable;
 use crate::error::Error;
 use crate::mechanism::scene::Scene;
-use dwell_study::sweep::compute_sweep;
 use dwell_study::{Progress, SceneTask, Step, StudyScene, with_dimension};
+use dwell_study::{SweepRequest, compute_request};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A parameter sweep: numbers of a scene over grids, lists or random samples, and the results of every combination, computed on all
@@ -24,9 +24,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub struct Sweep {
     scene: Scene,
     vary: Vec<String>,
+    tied: Vec<String>,
     samples: Option<u64>,
     seed: u64,
     results: Vec<String>,
+    limits: Vec<String>,
 }
 
 impl Sweep {
@@ -41,9 +43,11 @@ impl Sweep {
         Self {
             scene: scene.clone(),
             vary: Vec::new(),
+            tied: Vec::new(),
             samples: None,
             seed: 0,
             results: Vec::new(),
+            limits: Vec::new(),
         }
     }
 
@@ -58,6 +62,34 @@ impl Sweep {
     #[must_use]
     pub fn vary(mut self, path: &str, variation: &str) -> Self {
         self.vary.push(format!("{path}{variation}"));
+        self
+    }
+
+    /// Ties a number to others: it is the value of an expression of parameters, and of paths between backticks.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// let sweep = dwell::Sweep::new(&scene).vary("rod.mass", "=0.8:1.6:5");
+    /// let table = sweep.tied("rod.inertia", "`rod.mass` * 7e-3").result("m.max").run()?;
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    #[must_use]
+    pub fn tied(mut self, path: &str, expression: &str) -> Self {
+        self.tied.push(format!("{path}={expression}"));
+        self
+    }
+
+    /// Leaves out the variants beyond a limit, `RESULT <= LIMIT` or `RESULT >= LIMIT`: they have a message instead of results.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// let sweep = dwell::Sweep::new(&scene).vary("rod.mass", "=0.8:1.6:5");
+    /// let table = sweep.subject_to("m.max <= 1e-3").run()?;
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    #[must_use]
+    pub fn subject_to(mut self, limit: &str) -> Self {
+        self.limits.push(limit.to_owned());
         self
     }
 
@@ -140,8 +172,15 @@ impl SceneTask for ComputeSweep<'_> {
 
     fn run<S: StudyScene>(self, scene: &S) -> Self::Output {
         let (sweep, progress) = (self.sweep, self.progress);
-        let (vary, results) = (&sweep.vary, &sweep.results);
-        let swept = compute_sweep(scene, vary, sweep.samples, sweep.seed, results, progress)?;
+        let request = SweepRequest {
+            vary: &sweep.vary,
+            tied: &sweep.tied,
+            samples: sweep.samples,
+            seed: sweep.seed,
+            requests: &sweep.results,
+            limits: &sweep.limits,
+        };
+        let swept = compute_request(scene, &request, progress)?;
         Ok(SweepResults {
             table: ColumnTable {
                 columns: swept.table.columns,

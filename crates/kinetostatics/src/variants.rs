@@ -28,6 +28,8 @@ pub struct VariantModel {
     model: Model,
     guess: ModeGuess,
     loaded: Option<LoadedModel>,
+    /// Whether the means of curves, and both ends of forces under loads, are wanted.
+    has_means: bool,
 }
 
 /// The model under loads.
@@ -60,6 +62,7 @@ impl VariantModel {
             guess: guess.flatten()?,
             model,
             loaded: None,
+            has_means: false,
         })
     }
 
@@ -84,6 +87,13 @@ impl VariantModel {
             && (velocity.is_none() || model.loads.are_constant());
         self.loaded = supported.then_some(LoadedModel { model, velocity });
         self.loaded.is_some().then_some(self)
+    }
+
+    /// These variants with the means of ½m′ and of the forces under loads, and both ends of these.
+    #[must_use]
+    pub fn with_means(mut self) -> Self {
+        self.has_means = true;
+        self
     }
 
     /// Whether [`Turn`] has forces under loads.

@@ -10,7 +10,7 @@ use crate::events::EventReader;
 use crate::file::SceneFile;
 use crate::magnitude::Magnitudes;
 use crate::motion::{ParsedMotion, calibration};
-use crate::number_paths::body_numbers;
+use crate::number_paths::{body_numbers, section_numbers};
 use crate::points::{planar_only, three_numbers};
 use crate::prescribed::{coordinate_sweep, prescribed_motion};
 use crate::read::{named_text, syntax, text_of_file};
@@ -22,6 +22,7 @@ use crate::sections::{
 };
 use crate::stops::stops as stops_of;
 use crate::suspicious_numbers::Doubtful;
+use crate::swept::sweep_section;
 use crate::table_reader::TableReader;
 use dwell_geometry::{Body, BodyId};
 use dwell_kinetostatics::Load;
@@ -257,6 +258,9 @@ fn read<D: Sections>(
         }
         calibration(&f, known_numbers)
     });
+    let section_numbers = section_numbers(fields);
+    let numbers: Vec<_> = body_numbers.iter().chain(&section_numbers).collect();
+    let swept = section("sweep").map(|f| sweep_section(&f, &numbers));
     if log.count() > 0 {
         return None;
     }
@@ -279,7 +283,8 @@ fn read<D: Sections>(
             title.map(one_line),
             note.map(printable),
             fields,
-            body_numbers,
+            [body_numbers, section_numbers],
+            swept.unwrap_or_default(),
         ),
         masses: bodies.list.iter().map(|b| b.mass).collect(),
         points: bodies.named_points(),

@@ -1,8 +1,9 @@
 //! The file of a scene: its name, its text, and where in the text its things are.
 
 use crate::error::{SceneError, SceneWarning, Source};
-use crate::number_paths::{SceneNumber, section_numbers};
+use crate::number_paths::SceneNumber;
 use crate::spans::{SceneLocation, SceneSpans};
+use crate::swept::SweepSection;
 use crate::table_reader::TableReader;
 use crate::units::Units;
 use miette::NamedSource;
@@ -28,6 +29,8 @@ pub struct SceneFile {
     pub(crate) body_numbers: Vec<SceneNumber>,
     /// The numbers outside the bodies.
     pub(crate) section_numbers: Vec<SceneNumber>,
+    /// Tied numbers and limits of the variants in a sweep.
+    pub sweep_section: SweepSection,
 }
 
 impl SceneFile {
@@ -38,7 +41,8 @@ impl SceneFile {
         title: Option<String>,
         note: Option<String>,
         fields: &TableReader<'_>,
-        body_numbers: Vec<SceneNumber>,
+        [body_numbers, section_numbers]: [Vec<SceneNumber>; 2],
+        sweep_section: SweepSection,
     ) -> Self {
         let log = fields.log();
         Self {
@@ -50,7 +54,8 @@ impl SceneFile {
             units: fields.units().clone(),
             spans: log.take_spans(),
             body_numbers,
-            section_numbers: section_numbers(fields),
+            section_numbers,
+            sweep_section,
         }
     }
 

@@ -96,6 +96,7 @@ mod space;
 mod spans;
 mod stops;
 mod suspicious_numbers;
+mod swept;
 mod table_reader;
 mod unit_reader;
 mod units;
@@ -118,5 +119,6 @@ pub use scene_data::{
 };
 pub use schema::schema;
 pub use spans::SceneLocation;
+pub use swept::{ResultLimit, SweepSection, TiedNumber};
 pub use value::MAX_ANGLE;
 pub use wording::choices;

@@ -25,8 +25,8 @@ pub(crate) struct SceneNumber {
     pub(crate) location: SceneLocation,
 }
 
-/// Sections whose numbers can be varied: all that describe the mechanism and its motion.
-const SECTIONS: [&str; 9] = [
+/// Sections whose numbers can be varied: all that describe the mechanism and its motion, and the parameters.
+const SECTIONS: [&str; 10] = [
     "joints",
     "loads",
     "friction",
@@ -36,6 +36,7 @@ const SECTIONS: [&str; 9] = [
     "motion",
     "prescribed",
     "coordinate-sweep",
+    "sweep",
 ];
 
 /// The numbers outside the bodies, section by section: `loads.brake.damping`, `motion.initial-velocity.phi`,

@@ -9,6 +9,7 @@ use crate::load_functions::keep_functions;
 use crate::number_paths::{SceneNumber, no_number};
 use crate::scene_data::SceneIn;
 use crate::spans::SceneLocation;
+use crate::swept::PARAMETERS;
 use miette::NamedSource;
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -81,10 +82,12 @@ impl SceneFile {
         found.map_or(SceneLocation::Whole, |n| n.location)
     }
 
-    /// The number at a path; of a body that is called as a section is, before the section's.
+    /// The number at a path, or the parameter of that name; of a body that is called as a section is, before the section's.
     fn find_number(&self, path: &str) -> Result<&SceneNumber, SceneError> {
         let mut all = self.body_numbers.iter().chain(&self.section_numbers);
+        let is_parameter = |n: &&SceneNumber| n.path.strip_prefix(PARAMETERS) == Some(path);
         let found = all.find(|n| n.path == path);
+        let found = found.or_else(|| self.section_numbers.iter().find(is_parameter));
         found.ok_or_else(|| {
             let all = self.body_numbers.iter().chain(&self.section_numbers);
             let (message, help) = no_number(path, all);

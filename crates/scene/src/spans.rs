@@ -85,6 +85,10 @@ pub enum SceneLocation {
     Duration,
     /// The number that the calibration fits.
     Calibration,
+    /// The k-th tied number of `[sweep]`.
+    Tied(usize),
+    /// The k-th limit of `[sweep]`.
+    Limit(usize),
 }
 
 /// The places of the parts of a scene.

@@ -85,7 +85,7 @@ pub use progress::{Progress, Step, no_progress};
 pub use reduce::compute::TableRequest;
 pub use space::{PreparedSpaceScene, model_with_loads};
 pub use study_scene::{PageAndStop, SceneTask, StudyScene, with_dimension};
-pub use sweep::{Shard, compute_sweep};
+pub use sweep::{Shard, SweepRequest, compute_request, compute_sweep};
 pub use symbolic::compute::symbolic_findings;
 pub use trajectory::compute::Analysis;
 

@@ -40,11 +40,17 @@ pub struct Turn {
     pub m: [Extremum; 2],
     /// Smallest and largest ½m′, kg m².
     pub half_dm: [Extremum; 2],
+    /// Mean of ½m′, and of its square, if [means](super::VariantModel::with_means) are wanted.
+    pub half_dm_means: [f64; 2],
     /// By reaction: its value of largest magnitude in the free rotation, over 2E, 1/m or 1.
     pub free_reactions: Vec<Extremum>,
     /// The actuator force (N m), then each reaction (N or N m), of largest magnitude under the loads of the variants, if
     /// they are requested.
     pub loaded_forces: Vec<Extremum>,
+    /// By these forces, if means are wanted: the smallest and the largest value.
+    pub force_ends: Vec<[Extremum; 2]>,
+    /// As these: the mean, and the mean of the square.
+    pub force_means: Vec<[f64; 2]>,
     /// Positions of the rule that resolved it.
     pub positions: usize,
 }
@@ -144,6 +150,8 @@ pub(super) struct TurnSearch {
     curves: Vec<Interpolant>,
     /// The largest steepness of the samples so far.
     steepness: f64,
+    /// Whether the means of curves, and both ends of forces under loads, are wanted.
+    pub(super) has_means: bool,
     candidates: Vec<Candidate>,
     peaks: Vec<Peak>,
     start: f64,
@@ -169,6 +177,7 @@ impl TurnSearch {
             tables: Vec::new(),
             curves: vec![Interpolant::default(); curves],
             steepness: 0.0,
+            has_means: false,
             candidates: Vec::new(),
             peaks: Vec::new(),
             start: 0.0,
@@ -267,7 +276,8 @@ impl TurnSearch {
         self.turn.mean_root_m = sum_of_lanes(sum) / count as f64;
         self.turn.positions = count;
         let mut resolved = last_coefficient(last, count) <= RESOLVED_MEAN * self.turn.mean_root_m;
-        for curve in &mut self.curves {
+        let first_force = self.first_loaded();
+        for (k, curve) in self.curves.iter_mut().enumerate() {
             let (mut size, mut last) = (S::from_f64(0.0), [S::from_f64(0.0); 3]);
             for first in (0..count).step_by(S::LANES) {
                 let value = S::load(&curve.values()[first..]);
@@ -277,7 +287,13 @@ impl TurnSearch {
                 }
             }
             curve.size = largest_lane(size);
-            resolved &= last_coefficient(last, count) <= RESOLVED_CURVE * curve.size;
+            // A mean of a square has all digits if the last coefficients have half of them.
+            let part = if self.has_means && (k == 1 || k >= first_force) {
+                RESOLVED_MEAN
+            } else {
+                RESOLVED_CURVE
+            };
+            resolved &= last_coefficient(last, count) <= part * curve.size;
         }
         Some(resolved)
     }
@@ -310,9 +326,16 @@ impl TurnSearch {
         }
         self.peaks.clear();
         Peak::interpolate::<S>(&self.candidates, &self.curves, &mut self.peaks);
+        let first_force = self.first_loaded();
         for curve in 0..self.curves.len() {
-            Peak::keep_highest(curve, curve > 1, &mut self.peaks);
+            let has_both_ends = self.has_means && curve >= first_force;
+            Peak::keep_highest(curve, curve > 1 && !has_both_ends, &mut self.peaks);
         }
+    }
+
+    /// The first curve of a force under loads.
+    fn first_loaded(&self) -> usize {
+        Self::first_force(self.turn.free_reactions.len())
     }
 
     fn ask_for_peaks(&mut self) {
@@ -360,6 +383,9 @@ impl TurnSearch {
         if self.peaks.iter().any(|peak| peak.has_failed) {
             return;
         }
+        self.turn.force_ends.clear();
+        self.turn.force_means.clear();
+        let first_force = self.first_loaded();
         for (curve, values) in self.curves.iter().enumerate() {
             let mut ends = [Extremum::default(); 2];
             for (end, sign) in ends.iter_mut().zip([-1.0, 1.0]) {
@@ -378,7 +404,12 @@ impl TurnSearch {
             }
             match curve {
                 0 => self.turn.m = ends,
-                1 => self.turn.half_dm = ends,
+                1 => {
+                    self.turn.half_dm = ends;
+                    if self.has_means {
+                        self.turn.half_dm_means = values.means();
+                    }
+                }
                 of => {
                     let [low, high] = ends;
                     let larger = low.value.abs() > high.value.abs();
@@ -390,6 +421,10 @@ impl TurnSearch {
                     let mut forces = free_reactions.iter_mut().chain(loaded_forces);
                     if let Some(force) = forces.nth(of - 2) {
                         *force = if larger { low } else { high };
+                    }
+                    if self.has_means && of >= first_force {
+                        self.turn.force_ends.push(ends);
+                        self.turn.force_means.push(values.means());
                     }
                 }
             }

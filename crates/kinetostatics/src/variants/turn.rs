@@ -29,6 +29,7 @@ impl LaneWork for Turns<'_> {
         let mut loaded = loaded.map(|of| LoadedVariant::new(of, first_curve));
         let forces = loaded.as_ref().map_or(0, LoadedVariant::force_count);
         let mut search = TurnSearch::new(model.reactions().len(), forces);
+        search.has_means = self.of.has_means;
         let mut numbers = vec![0.0; self.of.number_count()];
         let inertial = self.of.inertial_numbers();
         for variant in self.variants {

@@ -48,9 +48,11 @@ impl From<StudyError> for SceneError {
 /// Why a sweep fails.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SweepError {
-    /// An axis is invalid.
-    #[error("`--vary {given}`: {reason}")]
+    /// An axis, a tied number or a limit is invalid.
+    #[error("`{option} {given}`: {reason}")]
     Axis {
+        /// The option.
+        option: &'static str,
         /// The text given.
         given: String,
         /// The fault.
@@ -66,6 +68,8 @@ pub enum SweepError {
     Result {
         /// The requested name.
         name: String,
+        /// The result that may be meant.
+        near: Option<String>,
         /// The available results.
         known: Vec<String>,
     },
@@ -98,7 +102,11 @@ impl SweepError {
             Self::Result { known, .. } if known.is_empty() => {
                 Some("it defines no motion, load or range to compute results from".to_owned())
             }
-            Self::Result { known, .. } => Some(format!("it has: {}", known.join(", "))),
+            Self::Result { near, known, .. } => {
+                let near = near.as_ref();
+                let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
+                Some(format!("{near}it has: {}", known.join(", ")))
+            }
             Self::DifferentStudy { .. } => Some(
                 "give the same --vary, --samples, --seed and --result to continue it, choose another folder \
                  with --out, or move it"

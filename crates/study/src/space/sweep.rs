@@ -9,7 +9,7 @@ use crate::sweep::compute::{
     Design, ExtremeValues, IndexedReaction, RangeCurves, RequestedQuantities, ResultKind, Results,
     SweptScene, VariantFamily,
 };
-use crate::trajectory::compute::{Analysis, Quantity, RowSource};
+use crate::trajectory::compute::{Analysis, Quantity, RowSource, Statistic};
 use dwell_kinetostatics::ExactModel;
 use dwell_kinetostatics::space::{Model, Reaction};
 use dwell_scene::{SceneError, SpaceScene};
@@ -66,21 +66,12 @@ impl SweptScene for SpaceScene {
         }
     }
 
-    fn compute_peaks(
+    fn largest_forces(
         &self,
-        rows: SpaceRows,
+        rows: &SpaceRows,
         analysis: Analysis,
-        _: &RequestedQuantities,
-        results: &mut Results<'_>,
-    ) -> Result<(), StudyError> {
-        match peaks(self, &rows, analysis) {
-            Ok([of_reactions, of_actuators]) => {
-                results.set_named(ResultKind::Reaction, Ok(of_reactions));
-                results.set_named(ResultKind::ActuatorForce, Ok(of_actuators));
-            }
-            Err(error) => results.set(ResultKind::Reaction, Err(error)),
-        }
-        Ok(())
+    ) -> Result<Vec<(String, f64)>, StudyError> {
+        peaks(self, rows, analysis)
     }
 
     fn varied(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
@@ -97,22 +88,21 @@ impl SweptScene for SpaceScene {
     }
 }
 
-/// Whether the largest magnitude of a reaction is requested.
+/// Whether a result of a reaction is requested.
 fn is_requested(requested: &RequestedQuantities, reaction: &str) -> bool {
     let mut quantities = requested.quantities.iter();
     quantities.any(|q| {
-        let name = q.name.strip_suffix(".max_abs");
-        let name = name.map(|name| name.strip_prefix("place.").unwrap_or(name));
-        name == Some(reaction)
+        let of = Statistic::of_name(&q.name).map(|(name, _)| name);
+        of.map(|name| name.strip_prefix("place.").unwrap_or(name)) == Some(reaction)
     })
 }
 
-/// The largest magnitudes of reactions and of actuator forces, also between the rows.
+/// The largest magnitudes of reactions and of actuator forces, also between the rows; zero where a column is zero within rounding.
 fn peaks(
     scene: &SpaceScene,
     rows: &SpaceRows,
     analysis: Analysis,
-) -> Result<[Vec<(String, f64)>; 2], StudyError> {
+) -> Result<Vec<(String, f64)>, StudyError> {
     // The abscissa is among them.
     let mut source = RowSource::new(scene, rows);
     source.is_wanted = |quantity| {
@@ -130,18 +120,12 @@ fn peaks(
     }
     let results = &computed.results;
     let columns = results.columns.iter().zip(&results.extrema.of_columns);
-    let [mut of_reactions, mut of_actuators] = [const { Vec::new() }; 2];
-    for (column, ends) in columns {
-        let largest = ends.iter().flatten();
-        let largest = largest.map(|end| end.value.abs()).fold(f64::NAN, f64::max);
-        let named = (format!("{}.max_abs", column.name), largest);
-        match column.quantity {
-            Quantity::Reaction(_) => of_reactions.push(named),
-            Quantity::ActuatorForce(_) => of_actuators.push(named),
-            _ => {}
-        }
-    }
-    Ok([of_reactions, of_actuators])
+    let largest = columns.map(|(column, ends)| {
+        let ends = ends.iter().flatten().map(|end| end.value.abs());
+        let largest = ends.fold(f64::NAN, f64::max);
+        (format!("{}.max_abs", column.name), largest)
+    });
+    Ok(largest.collect())
 }
 
 /// Curves over the range of the only actuator.

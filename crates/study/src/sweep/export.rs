@@ -246,12 +246,20 @@ impl<S: SweptScene> SweepReport<'_, S> {
 
     /// The number of failed points, and the first messages.
     fn failures(&self) -> String {
-        let FailedPoints { count, first } = &self.failed;
-        if *count == 0 {
-            return String::new();
-        }
+        let FailedPoints {
+            count,
+            left_out,
+            first,
+        } = &self.failed;
         let points = self.stored;
-        let mut text = format!(
+        let mut text = match left_out {
+            0 => String::new(),
+            left_out => format!("  {left_out} of {points} are left out by the limits\n"),
+        };
+        if *count == 0 {
+            return text;
+        }
+        text += &format!(
             "  {count} of {points} could not be computed completely; their rows hold the message\n"
         );
         for (index, message) in first {

@@ -19,4 +19,4 @@ mod spread;
 #[cfg(feature = "output")]
 mod tests;
 
-pub use compute::{Shard, compute_sweep};
+pub use compute::{Shard, SweepRequest, compute_request, compute_sweep};

@@ -11,7 +11,7 @@ use crate::explain::{StudyError, SweepError};
 use crate::output::Outcome;
 use crate::progress::{Progress, Step};
 use crate::sweep::compute::{
-    Axis, Design, RequestedQuantities, Shard, SweptScene, VariationKind, block_length,
+    Axis, Design, RequestedQuantities, Shard, SweepRequest, SweptScene, VariationKind, block_length,
 };
 use crate::sweep::identity::{SCENE_TEXT, StudyIdentity};
 use crate::sweep::parts::PartFolder;
@@ -27,15 +27,8 @@ const MAX_ROWS: u64 = 20_000_000;
 /// The definition of a parameter sweep.
 #[derive(Debug, Clone, Copy)]
 pub struct ParameterSweep<'a> {
-    /// The variations: `PATH=FROM:TO:COUNT`, `PATH=A,B,C`, `PATH~normal(MEAN,SD)`, `PATH~uniform(FROM,TO)`,
-    /// `PATH±TOLERANCE`, `PATH±PERCENT%`, each in the scene's unit.
-    pub vary: &'a [String],
-    /// Number of random samples.
-    pub samples: Option<u64>,
-    /// Random seed.
-    pub seed: u64,
-    /// Result columns to compute, by name or prefix; empty for all.
-    pub requests: &'a [String],
+    /// What it varies and computes.
+    pub request: SweepRequest<'a>,
     /// The shard to compute; `None` for the whole study.
     pub shard: Option<Shard>,
     /// Write the rows as a table, too, in this format.
@@ -57,8 +50,7 @@ pub(crate) struct PreparedSweep<'a, S> {
 
 impl<'a, S: SweptScene> PreparedSweep<'a, S> {
     fn new(scene: &'a S, sweep: &'a ParameterSweep<'_>) -> Result<Self, StudyError> {
-        let design = Design::new(scene, sweep.vary, sweep.samples, sweep.seed)?;
-        let requested = RequestedQuantities::new(scene, sweep.requests)?;
+        let (design, requested) = sweep.request.prepare(scene)?;
         let columns = requested.columns(&design);
         let mut inputs: Vec<String> = columns.iter().map(heading).collect();
         let results = inputs.split_off(design.axes.len());
@@ -73,7 +65,12 @@ impl<'a, S: SweptScene> PreparedSweep<'a, S> {
                 "{points} points are more than a table may have ({MAX_ROWS}): leave --export out, and read the Parquet files"
             ));
         }
-        let exact: Vec<String> = design.axes.iter().map(exact_text).collect();
+        let axes = design.axes.iter().map(exact_text);
+        let ties = design.ties.iter().map(|tie| &tie.number);
+        let ties = ties.map(|tie| format!("{} tied to {}", tie.path, tie.text));
+        let exact: Vec<String> = axes.chain(ties).collect();
+        let mut wanted = results.clone();
+        wanted.extend(requested.limit_texts());
         // A study without random axes has no seed.
         let seed = if design.is_random() {
             design.seed.to_string()
@@ -86,7 +83,7 @@ impl<'a, S: SweptScene> PreparedSweep<'a, S> {
             ("axes", exact.join("; ")),
             ("samples", design.samples.to_string()),
             ("seed", seed),
-            ("results", results.join("; ")),
+            ("results", wanted.join("; ")),
             ("points", design.points.to_string()),
             ("dwell", env!("CARGO_PKG_VERSION").to_owned()),
             ("part_length", PART_LENGTH.to_string()),

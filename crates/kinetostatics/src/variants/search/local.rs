@@ -90,6 +90,14 @@ impl Interpolant {
         &self.padded[REACH..]
     }
 
+    /// The mean over the turn, and the mean of the square.
+    pub(super) fn means(&self) -> [f64; 2] {
+        let values = &self.values()[..self.count()];
+        let mean_of =
+            |of: fn(f64) -> f64| values.iter().map(|v| of(*v)).sum::<f64>() / values.len() as f64;
+        [mean_of(|v| v), mean_of(|v| v * v)]
+    }
+
     /// Takes the values of the first rule, or those between the positions of the rule before.
     pub(super) fn add(&mut self, values: &[f64]) {
         let count = self.count();

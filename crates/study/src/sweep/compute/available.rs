@@ -4,6 +4,9 @@ use crate::number_format::{coordinate_unit, force_unit};
 use crate::reduce::compute::inertia_units;
 use crate::sweep::compute::motions::NamedUnit;
 use crate::sweep::compute::point::{ResultKind, SweepQuantity};
+use crate::sweep::compute::signals::NamedSignal;
+use crate::trajectory::compute::{Analysis, Quantity, STATISTICS, Statistic};
+use std::collections::HashSet;
 
 /// A reaction: its index among the results of its kind, its name and its unit.
 pub(crate) type IndexedReaction = (usize, String, &'static str);
@@ -59,12 +62,37 @@ impl Available {
         actuators: impl Iterator<Item = (&'a str, bool)>,
         reactions: Vec<IndexedReaction>,
     ) {
+        let largest = Statistic::MaxAbs;
         for (k, (name, is_angle)) in actuators.enumerate() {
             let name = format!("{name}.actuator_force.max_abs");
-            self.add(name, force_unit(is_angle), ResultKind::ActuatorForce, k);
+            let kind = ResultKind::ActuatorForce(largest);
+            self.add(name, force_unit(is_angle), kind, k);
         }
         for (k, name, unit) in reactions {
-            self.add(format!("{name}.max_abs"), unit, ResultKind::Reaction, k);
+            let kind = ResultKind::Reaction(largest);
+            self.add(format!("{name}.max_abs"), unit, kind, k);
+        }
+    }
+
+    /// All statistics of signals along the trajectory of an analysis that are not among the quantities yet.
+    pub(crate) fn add_along(&mut self, signals: &[NamedSignal], analysis: Analysis) {
+        let known: HashSet<String> = self.quantities.iter().map(|q| q.name.clone()).collect();
+        for (k, of) in signals.iter().enumerate() {
+            for (statistic, end, _) in STATISTICS {
+                let name = format!("{}.{end}", of.name);
+                let unit = statistic.unit(&of.signal, of.unit, analysis);
+                let Some(unit) = unit.filter(|_| !known.contains(&name)) else {
+                    continue;
+                };
+                // The largest forces that are computed by default are known.
+                let is_force = statistic != Statistic::MaxAbs;
+                let (kind, index) = match of.signal.quantity().filter(|_| is_force) {
+                    Some(Quantity::Reaction(k)) => (ResultKind::Reaction(statistic), k),
+                    Some(Quantity::ActuatorForce(i)) => (ResultKind::ActuatorForce(statistic), i),
+                    _ => (ResultKind::Along(statistic), k),
+                };
+                self.add(name, unit, kind, index);
+            }
         }
     }
 

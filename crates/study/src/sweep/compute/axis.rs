@@ -38,6 +38,7 @@ impl Axis {
     /// [`SweepError::Axis`].
     pub(crate) fn parse(scene: &SceneFile, given: &str) -> Result<Self, SweepError> {
         Self::read(scene, given).map_err(|Fault(reason, help)| SweepError::Axis {
+            option: "--vary",
             given: given.to_owned(),
             reason,
             help,

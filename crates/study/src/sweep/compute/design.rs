@@ -1,8 +1,9 @@
 //! The design of a sweep: the input values of each point. They depend on the design and on the index
 //! alone, so that any thread, shard or run may compute any point.
 
-use crate::explain::SweepError;
+use crate::explain::{StudyError, SweepError};
 use crate::sweep::compute::Axis;
+use crate::sweep::compute::tied::Tie;
 use dwell_scene::SceneFile;
 
 /// Maximum number of points: a result of all of them, 8 bytes each, is in memory for its mean and quantiles.
@@ -13,6 +14,8 @@ const MAX_POINTS: u64 = 1_000_000_000;
 #[derive(Debug)]
 pub struct Design {
     pub(crate) axes: Vec<Axis>,
+    /// The numbers that follow from these.
+    pub(crate) ties: Vec<Tie>,
     /// Number of random samples; 1 without random axes.
     pub(crate) samples: u64,
     pub(crate) seed: u64,
@@ -41,6 +44,7 @@ impl Design {
         }
         let mut found = Self {
             axes,
+            ties: Vec::new(),
             samples: samples.unwrap_or(1),
             seed,
             points: 0,
@@ -61,15 +65,34 @@ impl Design {
         Ok(found)
     }
 
+    /// The points with the tied numbers of the scene, and those that are `given`.
+    ///
+    /// # Errors
+    /// [`StudyError`] as of [`Tie::all`].
+    pub(crate) fn tied(mut self, scene: &SceneFile, given: &[String]) -> Result<Self, StudyError> {
+        self.ties = Tie::all(scene, &self.axes, given)?;
+        Ok(self)
+    }
+
     /// Whether an axis is random.
     pub(crate) fn is_random(&self) -> bool {
         self.axes.iter().any(Axis::is_random)
     }
 
-    /// Values of the axes with their paths.
-    pub(crate) fn assigned(&self, values: &[f64]) -> Vec<(&str, f64)> {
-        let paths = self.axes.iter().map(|axis| axis.path.as_str());
-        paths.zip(values.iter().copied()).collect()
+    /// The numbers of the variant at some values of the axes: these, then those that follow from them.
+    pub(crate) fn numbers(&self, values: &[f64]) -> Vec<f64> {
+        let mut numbers = values.to_vec();
+        for tie in &self.ties {
+            numbers.push(tie.value(&numbers));
+        }
+        numbers
+    }
+
+    /// Numbers of a variant with their paths.
+    pub(crate) fn assigned(&self, numbers: &[f64]) -> Vec<(&str, f64)> {
+        let axes = self.axes.iter().map(|axis| axis.path.as_str());
+        let tied = self.ties.iter().map(|tie| tie.number.path.as_str());
+        axes.chain(tied).zip(numbers.iter().copied()).collect()
     }
 
     /// The values of point `k`, by axis, in the scene's units.

@@ -4,10 +4,8 @@ use crate::trajectory::compute::{Point, highest_between};
 use dwell_geometry::PositionError;
 use dwell_kinetostatics::{Coefficients, ExactModel, ReducedModel as _, ReducibleModel};
 
-/// Number of intervals of the range at whose ends the curves are evaluated, as in `dwell reduce`; and number of local
-/// extrema around which the largest and smallest values are searched for between these positions.
+/// Number of intervals of the range at whose ends the curves are evaluated, as in `dwell reduce`.
 const INTERVALS: usize = 720;
-const REFINED: usize = 2;
 
 /// Values with the coordinates at which they occur.
 pub(crate) type ExtremeValues = Vec<Point>;
@@ -91,7 +89,7 @@ impl<M: ReducibleModel> RangeCurves<M> {
             let value = *(self.quantities)(&coefficients).get(k)?;
             Some(of(value)).filter(|value| value.is_finite())
         };
-        highest_between(&curve, REFINED, &mut value).unwrap_or([f64::NAN; 2])
+        highest_between(&curve, &mut value).unwrap_or([f64::NAN; 2])
     }
 
     /// The smallest and the largest value of each curve.

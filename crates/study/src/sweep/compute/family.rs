@@ -9,7 +9,6 @@ use crate::sweep::compute::family_forces::FamilyForces;
 use crate::sweep::compute::point::{RequestedQuantities, ResultKind, SweepQuantity};
 use crate::sweep::compute::{Axis, Design};
 use dwell_geometry::Reaction;
-use dwell_kinetostatics::InverseDynamics;
 use dwell_kinetostatics::variants::{Extremum, Turn, TurningVariant, VariantModel};
 use dwell_scene::PlaneScene;
 use std::cell::Cell;
@@ -148,12 +147,12 @@ impl VariantFamily {
             ResultKind::Inertia
             | ResultKind::InertiaPlace
             | ResultKind::Range
-            | ResultKind::Reaction
-            | ResultKind::ActuatorForce => true,
+            | ResultKind::Reaction(_)
+            | ResultKind::ActuatorForce(_) => true,
             ResultKind::Orbit | ResultKind::FreeReaction | ResultKind::FreeReactionPlace => {
                 scene.loads.is_empty()
             }
-            ResultKind::Motion | ResultKind::Cycle => false,
+            ResultKind::Motion | ResultKind::Cycle | ResultKind::Along(_) => false,
         };
         if !requested.quantities.iter().all(is_known) {
             return None;
@@ -174,7 +173,8 @@ impl VariantFamily {
         };
         let all_at = |which: usize| -> Vec<f64> {
             let axes = design.axes.iter().enumerate();
-            axes.map(|(k, axis)| at(k, axis, which)).collect()
+            let values: Vec<f64> = axes.map(|(k, axis)| at(k, axis, which)).collect();
+            design.numbers(&values)
         };
         let reference = all_at(0);
         let typical = scene_at(scene, design, &reference)?;
@@ -187,7 +187,7 @@ impl VariantFamily {
         let reactions = requested.indices(&free_kinds);
         let model = VariantModel::new(compile_model(&typical, &wanted(&reactions)).ok()?)?;
         let (mut model, mut forces) = (model, None);
-        if requested.includes(&[ResultKind::Reaction, ResultKind::ActuatorForce]) {
+        if requested.along().next().is_some() {
             let of_family = FamilyForces::new(&typical, requested)?;
             model = of_family.add_to(&model, &wanted(&of_family.reactions))?;
             forces = Some(of_family);
@@ -232,11 +232,11 @@ impl VariantFamily {
         let mut take = |k: usize, variant: Option<TurningVariant<'_>>| {
             let velocity = start_velocity.get();
             let values = variant.and_then(|variant| {
-                let peaks = match &self.forces {
-                    Some(forces) => Some(forces.peaks(variant)?),
-                    None => None,
+                let forces = match &self.forces {
+                    Some(forces) => forces.values(variant)?,
+                    None => Vec::new(),
                 };
-                Some(self.values(variant.turn, peaks.as_ref(), velocity, quantities))
+                Some(self.values(variant.turn, &forces, velocity, quantities))
             });
             // Of a start from rest the old way knows what to say.
             let finite = |values: &Vec<f64>| {
@@ -248,11 +248,11 @@ impl VariantFamily {
         self.model.turns(0..inputs.len(), &mut fill, &mut take);
     }
 
-    /// The values of the quantities, for a start with this velocity, rad/s.
+    /// The values of the quantities, for a start with this velocity, rad/s; those along the trajectory are known.
     fn values(
         &self,
         turn: &Turn,
-        peaks: Option<&InverseDynamics<f64>>,
+        along: &[f64],
         velocity: f64,
         quantities: &[SweepQuantity],
     ) -> Vec<f64> {
@@ -266,16 +266,11 @@ impl VariantFamily {
             let k = self.reactions.binary_search(&index).ok()?;
             turn.free_reactions.get(k).copied()
         };
-        let forces = self.forces.as_ref().zip(peaks);
-        let reaction = |index: usize| -> Option<f64> {
-            let (forces, peaks) = forces?;
-            let k = forces.reactions.binary_search(&index).ok()?;
-            peaks.reactions.get(k).copied()
-        };
-        let actuator = |index: usize| forces.and_then(|(_, peaks)| peaks.tau.get(index).copied());
-        let value = |quantity: &SweepQuantity| match quantity.kind {
-            ResultKind::Reaction => reaction(quantity.index).unwrap_or(f64::NAN),
-            ResultKind::ActuatorForce => actuator(quantity.index).unwrap_or(f64::NAN),
+        let mut along = along.iter().copied();
+        let mut value = |quantity: &SweepQuantity| match quantity.kind {
+            ResultKind::Reaction(_) | ResultKind::ActuatorForce(_) => {
+                along.next().unwrap_or(f64::NAN)
+            }
             ResultKind::Inertia => inertia(quantity.index).value,
             ResultKind::InertiaPlace => inertia(quantity.index).q,
             ResultKind::Orbit => [period, energy][quantity.index],
@@ -286,6 +281,6 @@ impl VariantFamily {
             // A full rotation has no ends.
             _ => f64::NAN,
         };
-        quantities.iter().map(value).collect()
+        quantities.iter().map(&mut value).collect()
     }
 }

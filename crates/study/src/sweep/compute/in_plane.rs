@@ -8,9 +8,7 @@ use crate::sweep::compute::available::IndexedReaction;
 use crate::sweep::compute::extremes::{ExtremeValues, RangeCurves};
 use crate::sweep::compute::point::{ResultKind, Results};
 use crate::sweep::compute::{Design, NamedUnit, RequestedQuantities, SweptScene, VariantFamily};
-use crate::trajectory::compute::{
-    Analysis, WantedForces, check_variables, default_limits, peak_forces,
-};
+use crate::trajectory::compute::{check_variables, default_limits};
 use dwell_dynamics::{CoordinateMode, Machine};
 use dwell_kinetostatics::Model;
 use dwell_scene::{PlaneScene, SceneError};
@@ -74,25 +72,8 @@ impl SweptScene for PlaneScene {
         results.set_points(kinds, curves.map(|curves| curves.largest(&reactions)));
     }
 
-    fn compute_peaks(
-        &self,
-        model: Model,
-        analysis: Analysis,
-        requested: &RequestedQuantities,
-        results: &mut Results<'_>,
-    ) -> Result<(), StudyError> {
-        let wanted = WantedForces {
-            reactions: requested.indices(&[ResultKind::Reaction]),
-            actuators: requested.indices(&[ResultKind::ActuatorForce]),
-        };
-        match peak_forces(self, &with_loads(self, model)?, analysis, &wanted) {
-            Ok(peaks) => {
-                results.set(ResultKind::Reaction, Ok(peaks.reactions));
-                results.set(ResultKind::ActuatorForce, Ok(peaks.tau));
-            }
-            Err(error) => results.set(ResultKind::Reaction, Err(error)),
-        }
-        Ok(())
+    fn with_all_loads(&self, model: Model) -> Result<Model, StudyError> {
+        with_loads(self, model)
     }
 
     fn varied(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {

@@ -11,8 +11,10 @@ mod motions;
 mod point;
 mod random;
 mod scene_results;
+mod signals;
 mod swept_scene;
 mod table;
+mod tied;
 
 pub(crate) use available::IndexedReaction;
 pub(crate) use axis::Axis;
@@ -27,6 +29,6 @@ pub(crate) use random::{normal, uniform};
 pub use swept_scene::SweptScene;
 #[cfg(feature = "output")]
 pub(crate) use table::block_length;
-pub use table::{ComputedSweep, compute_sweep};
+pub use table::{ComputedSweep, SweepRequest, compute_request, compute_sweep};
 #[cfg(feature = "output")]
-pub(crate) use {axis::VariationKind, point::PointResult, point::SweepQuantity};
+pub(crate) use {axis::VariationKind, point::LEFT_OUT, point::PointResult, point::SweepQuantity};

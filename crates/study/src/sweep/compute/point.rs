@@ -1,11 +1,14 @@
 //! One point of a sweep: the scene with its input values, and the results.
 
 use crate::explain::{StudyError, SweepError};
+use crate::number_format::digits;
 use crate::sweep::compute::SweptScene;
 use crate::sweep::compute::available::Available;
 use crate::sweep::compute::extremes::ExtremeValues;
 use crate::sweep::compute::scene_results::{available_quantities, compute_results};
-use crate::trajectory::compute::is_prefix_of;
+use crate::trajectory::compute::{STATISTICS, Statistic, is_prefix_of};
+use dwell_laws::expression::nearest;
+use dwell_scene::{ResultLimit, SceneFile, SceneLocation};
 use std::collections::BTreeSet;
 
 /// The computation that yields a result.
@@ -19,14 +22,16 @@ pub(crate) enum ResultKind {
     Range,
     /// Period and energy of the free motion.
     Orbit,
-    /// Largest absolute values, by reaction of the mechanism.
-    Reaction,
+    /// A statistic along the trajectory, by reaction of the mechanism.
+    Reaction(Statistic),
     /// Largest absolute values in the free rotation without loads, by reaction of the mechanism.
     FreeReaction,
     /// The coordinates at which they occur: only on request.
     FreeReactionPlace,
-    /// Largest absolute values, by actuator.
-    ActuatorForce,
+    /// A statistic along the trajectory, by actuator.
+    ActuatorForce(Statistic),
+    /// A statistic along the trajectory of any other quantity.
+    Along(Statistic),
     /// Results of the free motion: computed only on request, as they take an integration.
     Motion,
     /// Results of the steady cycle: computed only on request.
@@ -44,8 +49,25 @@ pub(crate) struct SweepQuantity {
 }
 
 impl ResultKind {
-    /// The word by which a request must name a result that is not computed by default.
-    fn on_request(self) -> Option<&'static str> {
+    /// Its statistic, if it is one along the trajectory.
+    pub(crate) fn statistic(self) -> Option<Statistic> {
+        match self {
+            Self::Reaction(of) | Self::ActuatorForce(of) | Self::Along(of) => Some(of),
+            _ => None,
+        }
+    }
+
+    /// Whether it is computed only if a request names it as a whole.
+    fn is_by_whole_name(self) -> bool {
+        let is_peak = matches!(
+            self,
+            Self::Reaction(Statistic::MaxAbs) | Self::ActuatorForce(Statistic::MaxAbs)
+        );
+        self.statistic().is_some() && !is_peak
+    }
+
+    /// The word by which a request may name all results of a kind that is not computed by default.
+    fn word(self) -> Option<&'static str> {
         match self {
             Self::Motion => Some("motion"),
             Self::Cycle => Some("cycle"),
@@ -53,19 +75,29 @@ impl ResultKind {
             _ => None,
         }
     }
+
+    pub(super) fn is_by_default(self) -> bool {
+        self.word().is_none() && !self.is_by_whole_name()
+    }
 }
 
 impl SweepQuantity {
     /// Whether it is the smallest or largest value along a motion or a range.
     #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for the summary"))]
     pub(crate) fn is_extremum(&self) -> bool {
-        use ResultKind::{ActuatorForce, FreeReaction, Inertia, Reaction};
-        matches!(self.kind, Inertia | Reaction | FreeReaction | ActuatorForce)
+        use Statistic::{Max, MaxAbs, Min, PeakPower, Stroke};
+        match self.kind {
+            ResultKind::Inertia | ResultKind::FreeReaction => true,
+            kind => matches!(
+                kind.statistic(),
+                Some(Max | MaxAbs | Min | PeakPower | Stroke)
+            ),
+        }
     }
 
     /// Whether a request names it: its whole name, or the part before one of its dots.
     fn matches(&self, request: &str) -> bool {
-        is_prefix_of(request, &self.name)
+        is_prefix_of(request, &self.name) && !(self.kind.is_by_whole_name() && request != self.name)
     }
 }
 
@@ -75,7 +107,12 @@ pub struct RequestedQuantities {
     pub(crate) quantities: Vec<SweepQuantity>,
     /// A line for each body far from its approximate angle.
     pub(crate) notes: String,
+    /// The limits, each of the quantity at this index.
+    limits: Vec<(usize, ResultLimit)>,
 }
+
+/// The beginning of the message of a point beyond a limit.
+pub(crate) const LEFT_OUT: &str = "left out: ";
 
 /// The results of a point: a value for each quantity, NaN where there is none, and the reason.
 #[derive(Clone)]
@@ -98,36 +135,53 @@ impl RequestedQuantities {
     ///
     /// # Errors
     /// [`StudyError`] where the unchanged scene cannot be assembled; [`SweepError::Result`].
+    #[cfg(test)]
     pub(crate) fn new(scene: &impl SweptScene, requests: &[String]) -> Result<Self, StudyError> {
+        Self::within(scene, requests, &[])
+    }
+
+    /// The requested quantities, or all that the scene has, and those of its limits and of the `given` ones.
+    ///
+    /// # Errors
+    /// [`StudyError`] where the unchanged scene cannot be assembled; [`SweepError`].
+    pub(crate) fn within(
+        scene: &impl SweptScene,
+        requests: &[String],
+        given: &[String],
+    ) -> Result<Self, StudyError> {
         let Available {
             mut quantities,
             notes,
         } = available_quantities(scene)?;
-        for request in requests {
-            if !quantities.iter().any(|q| q.matches(request)) {
-                let name = request.clone();
-                // Of the many results that are computed on request the first word is enough.
-                let always = quantities.iter().filter(|q| q.kind.on_request().is_none());
-                let mut known: Vec<String> = always.map(|q| q.name.clone()).collect();
-                let words = quantities.iter().filter_map(|q| q.kind.on_request());
-                let words: BTreeSet<&str> = words.collect();
-                known.extend(words.into_iter().map(str::to_owned));
-                return Err(SweepError::Result { name, known }.into());
-            }
+        let is_known = |request: &&String| quantities.iter().any(|q| q.matches(request));
+        if let Some(request) = requests.iter().find(|request| !is_known(request)) {
+            return Err(unknown_result(request, &quantities).into());
         }
         if quantities.is_empty() {
             let message = "this scene has no results to sweep: add a [prescribed] motion or a [coordinate-sweep]";
             return Err(SweepError::Design(message.to_owned()).into());
         }
-        quantities.retain(|q| match requests {
-            [] => q.kind.on_request().is_none(),
-            requests => requests.iter().any(|request| q.matches(request)),
+        let limits = limits(scene, given, &quantities)?;
+        quantities.retain(|q| {
+            let is_requested = match requests {
+                [] => q.kind.is_by_default(),
+                requests => requests.iter().any(|request| q.matches(request)),
+            };
+            is_requested || limits.iter().any(|limit| limit.result == q.name)
         });
         if quantities.is_empty() {
             let message = "no result is computed unless it is requested: name some with --result, as in --result motion or --result cycle";
             return Err(SweepError::Design(message.to_owned()).into());
         }
-        Ok(Self { quantities, notes })
+        let of_quantity = |limit: ResultLimit| {
+            let found = quantities.iter().position(|q| q.name == limit.result);
+            found.map(|k| (k, limit))
+        };
+        Ok(Self {
+            limits: limits.into_iter().filter_map(of_quantity).collect(),
+            quantities,
+            notes,
+        })
     }
 
     /// Computes the results with some numbers of the scene replaced. A result that fails has a message instead of a
@@ -149,6 +203,32 @@ impl RequestedQuantities {
         result
     }
 
+    /// The limits as text.
+    #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for the store"))]
+    pub(crate) fn limit_texts(&self) -> impl Iterator<Item = String> {
+        self.limits.iter().map(|(_, limit)| limit.to_string())
+    }
+
+    /// A point without its values if it is beyond a limit.
+    pub(crate) fn limited(&self, mut result: PointResult) -> PointResult {
+        let is_beyond = |&&(k, ref limit): &&(usize, ResultLimit)| {
+            let over = result.values[k] - limit.limit;
+            over != 0.0 && (over > 0.0) == limit.is_upper
+        };
+        if let Some((k, limit)) = self.limits.iter().find(is_beyond) {
+            let value = digits(result.values[*k], 6);
+            result.message = Some(format!("{LEFT_OUT}{value}, but {limit}"));
+            result.values.fill(f64::NAN);
+        }
+        result
+    }
+
+    /// The requested statistics along the trajectory.
+    pub(super) fn along(&self) -> impl Iterator<Item = (&SweepQuantity, Statistic)> + Clone {
+        let quantities = self.quantities.iter();
+        quantities.filter_map(|q| Some((q, q.kind.statistic()?)))
+    }
+
     /// Whether a quantity of some kinds is requested.
     pub(super) fn includes(&self, kinds: &[ResultKind]) -> bool {
         self.quantities.iter().any(|q| kinds.contains(&q.kind))
@@ -159,6 +239,58 @@ impl RequestedQuantities {
         let quantities = self.quantities.iter().filter(|q| kinds.contains(&q.kind));
         let indices: BTreeSet<usize> = quantities.map(|q| q.index).collect();
         indices.into_iter().collect()
+    }
+}
+
+/// The limits of a scene, and those that are `given`.
+fn limits(
+    scene: &SceneFile,
+    given: &[String],
+    quantities: &[SweepQuantity],
+) -> Result<Vec<ResultLimit>, StudyError> {
+    let is_known = |name: &str| quantities.iter().any(|q| q.name == name);
+    let mut all = scene.sweep_section.limits.clone();
+    if let Some(k) = all.iter().position(|limit| !is_known(&limit.result)) {
+        let error = unknown_result(&all[k].result, quantities);
+        let place = (SceneLocation::Limit(k), "no such result".to_owned());
+        return Err(scene
+            .error(error.to_string(), error.help(), &[place])
+            .into());
+    }
+    for text in given {
+        let refuse = |reason, help| SweepError::Axis {
+            option: "--subject-to",
+            given: text.clone(),
+            reason,
+            help,
+        };
+        let form = "write it as `m.max <= 2`, in the unit of the result";
+        let limit = ResultLimit::parse(text);
+        let limit = limit.map_err(|reason| refuse(reason, form.to_owned()))?;
+        if !is_known(&limit.result) {
+            let error = unknown_result(&limit.result, quantities);
+            return Err(refuse(error.to_string(), error.help().unwrap_or_default()).into());
+        }
+        all.push(limit);
+    }
+    Ok(all)
+}
+
+/// The error of a request that names no result: of the many that are computed on request, a word or a form is enough.
+fn unknown_result(request: &str, quantities: &[SweepQuantity]) -> SweepError {
+    let always = quantities.iter().filter(|q| q.kind.is_by_default());
+    let mut known: Vec<String> = always.map(|q| q.name.clone()).collect();
+    let words: BTreeSet<&str> = quantities.iter().filter_map(|q| q.kind.word()).collect();
+    known.extend(words.into_iter().map(str::to_owned));
+    if quantities.iter().any(|q| q.kind.is_by_whole_name()) {
+        let ends: Vec<&str> = STATISTICS.iter().map(|(_, name, _)| *name).collect();
+        known.push(format!("COLUMN.{} of its columns", ends.join("|")));
+    }
+    let names = quantities.iter().map(|q| q.name.as_str());
+    SweepError::Result {
+        name: request.to_owned(),
+        near: nearest(request, names).map(str::to_owned),
+        known,
     }
 }
 
@@ -173,7 +305,7 @@ impl Results<'_> {
     /// Fills the cells of a kind of quantities with their values, or records the error.
     fn fill<T>(
         &mut self,
-        kind: ResultKind,
+        is_filled: impl Fn(ResultKind) -> bool,
         computed: Result<T, StudyError>,
         of: impl Fn(&T, &SweepQuantity) -> Option<f64>,
     ) {
@@ -183,7 +315,7 @@ impl Results<'_> {
             }
             Ok(values) => {
                 let cells = self.quantities.iter().zip(&mut *self.cells);
-                for (quantity, cell) in cells.filter(|(q, _)| q.kind == kind) {
+                for (quantity, cell) in cells.filter(|(q, _)| is_filled(q.kind)) {
                     *cell = of(&values, quantity).unwrap_or(f64::NAN);
                 }
             }
@@ -191,7 +323,10 @@ impl Results<'_> {
     }
 
     pub(crate) fn set(&mut self, kind: ResultKind, computed: Result<Vec<f64>, StudyError>) {
-        self.fill(kind, computed, |values, of| values.get(of.index).copied());
+        let is_filled = |of| of == kind;
+        self.fill(is_filled, computed, |values, of| {
+            values.get(of.index).copied()
+        });
     }
 
     /// Values by the names of their quantities: of a kind whose quantities are not the same in every variant.
@@ -200,10 +335,12 @@ impl Results<'_> {
         kind: ResultKind,
         computed: Result<Vec<(String, f64)>, StudyError>,
     ) {
-        self.fill(kind, computed, |values, of| {
-            let named = values.iter().find(|(name, _)| *name == of.name);
-            named.map(|(_, value)| *value)
-        });
+        self.fill(|of| of == kind, computed, named);
+    }
+
+    /// The statistics along the trajectory, by the names of their quantities.
+    pub(crate) fn set_along(&mut self, computed: Result<Vec<(String, f64)>, StudyError>) {
+        self.fill(|of| of.statistic().is_some(), computed, named);
     }
 
     /// Values with their places.
@@ -219,6 +356,12 @@ impl Results<'_> {
             |points: ExtremeValues| points.iter().map(|[_, value]| *value).collect();
         self.set(values, computed.map(value_of_each));
     }
+}
+
+/// The value of that name.
+fn named(values: &Vec<(String, f64)>, of: &SweepQuantity) -> Option<f64> {
+    let mut values = values.iter();
+    values.find(|(name, _)| *name == of.name).map(|of| of.1)
 }
 
 /// The first sentence of an error: of several, the first.

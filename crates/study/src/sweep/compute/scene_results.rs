@@ -6,7 +6,9 @@ use crate::sweep::compute::motions::{
     cycle_quantities, cycle_values, motion_quantities, motion_values,
 };
 use crate::sweep::compute::point::{ResultKind, Results};
+use crate::sweep::compute::signals::{along_values, signals};
 use crate::sweep::compute::{RequestedQuantities, SweptScene};
+use crate::trajectory::compute::{analysis_along, peak_analysis};
 use dwell_dynamics::{DynamicsError, Orbit, ReducedState};
 use dwell_kinetostatics::ReducibleModel as _;
 
@@ -20,7 +22,7 @@ pub(super) fn available_quantities(scene: &impl SweptScene) -> Result<Available,
         notes: scene.notes(&compiled)?,
         ..Available::default()
     };
-    let has_peaks = scene.analysis_of_peaks().is_some();
+    let has_peaks = peak_analysis(scene).is_some();
     let actuators: Vec<(&str, bool)> = (0..).map_while(|k| scene.actuator(k)).collect();
     let reactions = || scene.swept_reactions(&compiled);
     if let [(_, is_angle)] = actuators[..] {
@@ -35,6 +37,9 @@ pub(super) fn available_quantities(scene: &impl SweptScene) -> Result<Available,
     }
     all.add_all(ResultKind::Motion, motion_quantities(scene, &compiled));
     all.add_all(ResultKind::Cycle, cycle_quantities(scene));
+    if let Some(analysis) = analysis_along(scene) {
+        all.add_along(&signals(scene, &compiled, analysis), analysis);
+    }
     Ok(all)
 }
 
@@ -48,8 +53,8 @@ pub(super) fn compute_results<S: SweptScene>(
     results: &mut Results<'_>,
 ) -> Result<(), StudyError> {
     use ResultKind::{
-        ActuatorForce, Cycle, FreeReaction, FreeReactionPlace, Inertia, InertiaPlace, Motion,
-        Orbit as OrbitKind, Range, Reaction,
+        Cycle, FreeReaction, FreeReactionPlace, Inertia, InertiaPlace, Motion, Orbit as OrbitKind,
+        Range,
     };
     let compiled = scene.unloaded_rows()?;
     let includes = |kinds: &[ResultKind]| requested.includes(kinds);
@@ -78,12 +83,12 @@ pub(super) fn compute_results<S: SweptScene>(
             orbit.map(|orbit| vec![orbit.period, orbit.energy]),
         );
     }
-    match scene.analysis_of_peaks() {
-        Some(analysis) if includes(&[Reaction, ActuatorForce]) => {
-            scene.compute_peaks(compiled, analysis, requested, results)
-        }
-        _ => Ok(()),
+    let analysis = analysis_along(scene).filter(|_| requested.along().next().is_some());
+    if let Some(analysis) = analysis {
+        let rows = scene.with_all_loads(compiled)?;
+        results.set_along(along_values(scene, &rows, analysis, requested));
     }
+    Ok(())
 }
 
 /// The start of the motion of the only coordinate; `None` if a law prescribes it, or a drive acts on it.

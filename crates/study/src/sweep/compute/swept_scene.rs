@@ -6,7 +6,7 @@ use crate::sweep::compute::available::IndexedReaction;
 use crate::sweep::compute::extremes::ExtremeValues;
 use crate::sweep::compute::point::Results;
 use crate::sweep::compute::{Design, NamedUnit, RequestedQuantities, VariantFamily};
-use crate::trajectory::compute::{Analysis, peak_analysis};
+use crate::trajectory::compute::Analysis;
 use dwell_dynamics::Machine;
 use dwell_scene::SceneError;
 
@@ -22,11 +22,6 @@ pub trait SweptScene: SimulatedScene {
 
     /// The requested reactions that are results.
     fn swept_reactions(&self, compiled: &Self::Rows) -> Vec<IndexedReaction>;
-
-    /// The analysis for peak forces: along its motion or sweep, or statics over its range.
-    fn analysis_of_peaks(&self) -> Option<Analysis> {
-        peak_analysis(self)
-    }
 
     /// Columns of a free motion whose results can be swept, in addition to coordinates, their speeds, and reactions.
     fn further_motion_columns(&self) -> Vec<NamedUnit> {
@@ -64,17 +59,25 @@ pub trait SweptScene: SimulatedScene {
         results: &mut Results<'_>,
     );
 
-    /// Computes the requested peak forces.
+    /// The rows with the loads of the scene, of [unloaded](crate::trajectory::compute::RowScene::unloaded_rows) ones.
     ///
     /// # Errors
-    /// [`StudyError`] if loads do not fit it; later failures are recorded in the results.
-    fn compute_peaks(
+    /// [`StudyError`] if a load does not fit.
+    fn with_all_loads(&self, rows: Self::Rows) -> Result<Self::Rows, StudyError> {
+        Ok(rows)
+    }
+
+    /// The largest forces by the names of their results, of scenes where they are searched in another way than other statistics.
+    ///
+    /// # Errors
+    /// [`StudyError`] where the trajectory ends early.
+    fn largest_forces(
         &self,
-        compiled: Self::Rows,
-        analysis: Analysis,
-        requested: &RequestedQuantities,
-        results: &mut Results<'_>,
-    ) -> Result<(), StudyError>;
+        _: &Self::Rows,
+        _: Analysis,
+    ) -> Result<Vec<(String, f64)>, StudyError> {
+        Ok(Vec::new())
+    }
 
     /// The scene with some numbers replaced, in its own units.
     ///

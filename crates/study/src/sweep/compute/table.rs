@@ -19,6 +19,39 @@ pub struct ComputedSweep {
     pub notes: String,
 }
 
+/// What a sweep varies and computes, each as an option of `dwell sweep`.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SweepRequest<'a> {
+    /// The variations: `PATH=FROM:TO:COUNT`, `PATH=A,B,C`, `PATH~normal(MEAN,SD)`, `PATH~uniform(FROM,TO)`,
+    /// `PATH±TOLERANCE`, `PATH±PERCENT%`, each in the scene's unit.
+    pub vary: &'a [String],
+    /// The numbers that follow from others, besides those of the scene: `PATH=EXPRESSION`.
+    pub tied: &'a [String],
+    /// Number of random samples.
+    pub samples: Option<u64>,
+    /// Random seed.
+    pub seed: u64,
+    /// Result columns to compute, by name or prefix; empty for all.
+    pub requests: &'a [String],
+    /// The limits of results, besides those of the scene: `RESULT <= LIMIT`, `RESULT >= LIMIT`.
+    pub limits: &'a [String],
+}
+
+impl SweepRequest<'_> {
+    /// The points and the results.
+    ///
+    /// # Errors
+    /// [`StudyError`] if the sweep is invalid or the unchanged scene cannot be assembled.
+    pub(crate) fn prepare(
+        &self,
+        scene: &impl SweptScene,
+    ) -> Result<(Design, RequestedQuantities), StudyError> {
+        let design = Design::new(scene, self.vary, self.samples, self.seed)?;
+        let requested = RequestedQuantities::within(scene, self.requests, self.limits)?;
+        Ok((design.tied(scene, self.tied)?, requested))
+    }
+}
+
 /// Computes all points of a sweep on all cores: `vary` and `requests` are those of
 /// `dwell sweep`, `samples` the number of random samples. Every computed block of points is a step of progress.
 ///
@@ -33,8 +66,26 @@ pub fn compute_sweep(
     requests: &[String],
     progress: Progress<'_>,
 ) -> Result<ComputedSweep, StudyError> {
-    let design = Design::new(scene, vary, samples, seed)?;
-    let requested = RequestedQuantities::new(scene, requests)?;
+    let request = SweepRequest {
+        vary,
+        samples,
+        seed,
+        requests,
+        ..SweepRequest::default()
+    };
+    compute_request(scene, &request, progress)
+}
+
+/// Computes all points of a sweep on all cores. Every computed block of points is a step of progress.
+///
+/// # Errors
+/// As of [`compute_sweep`].
+pub fn compute_request(
+    scene: &impl SweptScene,
+    request: &SweepRequest<'_>,
+    progress: Progress<'_>,
+) -> Result<ComputedSweep, StudyError> {
+    let (design, requested) = request.prepare(scene)?;
     let family = scene.family(&design, &requested);
     let indices: Vec<u64> = (0..design.points).collect();
     let length = block_length(family.as_ref());
@@ -100,24 +151,26 @@ impl RequestedQuantities {
         done: &mut dyn FnMut(Row),
     ) {
         let inputs: Vec<Vec<f64>> = indices.iter().map(|&k| design.values(k)).collect();
+        let numbers: Vec<Vec<f64>> = inputs.iter().map(|of| design.numbers(of)).collect();
         let mut known: Vec<Option<Vec<f64>>> = Vec::with_capacity(indices.len());
         if let Some(family) = family {
             let mut keep = |_: usize, found| known.push(found);
-            family.evaluate(&inputs, &self.quantities, &mut keep);
+            family.evaluate(&numbers, &self.quantities, &mut keep);
         }
         let known = known.into_iter().chain(std::iter::repeat(None));
-        for ((&index, inputs), values) in indices.iter().zip(inputs).zip(known) {
+        let points = indices.iter().zip(inputs).zip(&numbers);
+        for (((&index, inputs), numbers), values) in points.zip(known) {
             let result = match values {
                 Some(values) => PointResult {
                     values,
                     message: None,
                 },
-                None => self.evaluate(scene, &design.assigned(&inputs)),
+                None => self.evaluate(scene, &design.assigned(numbers)),
             };
             done(Row {
                 index,
                 inputs,
-                result,
+                result: self.limited(result),
             });
         }
     }

@@ -2,7 +2,7 @@
 //! column in memory.
 
 use crate::explain::SweepError;
-use crate::sweep::compute::Row;
+use crate::sweep::compute::{LEFT_OUT, Row};
 use crate::sweep::parts::PartFolder;
 use crate::sweep::parts::part_file::{PartFault, PartFile};
 use crate::sweep::share::Share;
@@ -27,6 +27,8 @@ pub(crate) struct StoredRows<'a> {
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct FailedPoints {
     pub(crate) count: usize,
+    /// Number of points beyond a limit, which are none of them.
+    pub(crate) left_out: usize,
     /// The first of them, with their messages.
     pub(crate) first: Vec<(u64, String)>,
 }
@@ -39,6 +41,10 @@ impl FailedPoints {
     fn of(points: impl Iterator<Item = (u64, Option<String>)>) -> Self {
         let mut failed = Self::default();
         for (index, message) in points.filter_map(|(k, message)| Some((k, message?))) {
+            if message.starts_with(LEFT_OUT) {
+                failed.left_out += 1;
+                continue;
+            }
             failed.count += 1;
             if failed.first.len() < MAX_LISTED {
                 failed.first.push((index, message));
@@ -105,6 +111,7 @@ impl<'a> StoredRows<'a> {
         let mut all = FailedPoints::default();
         for part in of_parts? {
             all.count += part.count;
+            all.left_out += part.left_out;
             all.first.extend(part.first);
         }
         all.first.truncate(MAX_LISTED);

@@ -409,7 +409,7 @@ fn evaluated<'e, E: RowEvaluator>(
 
 /// Whether a column can have extrema between rows. The error of the integration cannot, nor can columns that are
 /// infinite in some positions or count revolutions from row to row.
-fn is_continuous(column: &Column) -> bool {
+pub(super) fn is_continuous(column: &Column) -> bool {
     use Quantity::{MechanicalAdvantage, Pole, Power, Rotation, Time};
     match column.quantity {
         Time | Power(3) | MechanicalAdvantage(..) | Pole(..) => false,

@@ -3,6 +3,10 @@
 
 /// Highest number of evaluations for one extremum.
 const MAX_EVALUATIONS: usize = 40;
+/// Local extrema whose parabolas are lower than the highest by more than this part of it are not searched; of the others as many as this.
+/// Where several tie, as in an optimised mechanism, each may be the highest.
+const BAND: f64 = 0.03;
+const MOST: usize = 12;
 /// Width of the interval, relative to the first, at which an extremum is found, and the relative gain that is none.
 const WIDTH: f64 = 1e-7;
 pub(super) const NO_GAIN: f64 = 1e-13;
@@ -14,11 +18,10 @@ const GOLDEN: f64 = 0.381_966_011_250_105;
 /// A position: its parameter, and a value.
 pub(crate) type Point = [f64; 2];
 
-/// The highest point of a function that is known at some points, also between them: it is evaluated about its local
-/// maxima there, about those `count` whose parabolas are highest. `None` if no point has a value.
+/// The highest point of a function that is known at some points, also between them: it is evaluated about those of its local
+/// maxima there that are nearly as high as the highest. `None` if no point has a value.
 pub(crate) fn highest_between(
     points: &[Point],
-    count: usize,
     value: &mut dyn FnMut(f64) -> Option<f64>,
 ) -> Option<Point> {
     let known = points.iter().copied().filter(|[_, v]| !v.is_nan());
@@ -26,7 +29,8 @@ pub(crate) fn highest_between(
     let higher = |a: Point, b: Point| if b[1] > a[1] { b } else { a };
     let highest = known.reduce(higher)?;
     let parts: Vec<&[Point]> = between_events(points).collect();
-    let brackets = promising(&parts, 1.0, highest[1], count).into_iter();
+    let lowest = highest[1] - BAND * highest[1].abs();
+    let brackets = promising(&parts, 1.0, lowest, MOST).into_iter();
     let found = brackets.filter_map(|(_, bracket)| refine_maximum(value, bracket, scale));
     Some(found.fold(highest, higher))
 }
@@ -34,17 +38,17 @@ pub(crate) fn highest_between(
 /// Three points, the middle one not below the others; the middle one may be missing at an end.
 pub(super) type Bracket = (Point, Option<Point>, Point);
 
-/// The local maxima of `sign` times the values in whose neighbourhood the largest may be, each with its value: the first of
-/// them, and those whose parabolas are highest.
+/// The local maxima of `sign` times the values in whose neighbourhood a value above the lowest may be, each with its value: the first of
+/// them, and up to `count` whose parabolas are highest.
 pub(super) fn promising(
     parts: &[&[Point]],
     sign: f64,
-    largest: f64,
+    lowest: f64,
     count: usize,
 ) -> Vec<(f64, Bracket)> {
     let mut all = Vec::new();
     for part in parts {
-        add_peaks(part, sign, largest, &mut all);
+        add_peaks(part, sign, lowest, &mut all);
     }
     let first = all.first().copied();
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -65,8 +69,8 @@ pub(super) fn between_events(points: &[Point]) -> impl Iterator<Item = &[Point]>
 /// The value that a local maximum may have, its largest point, and its bracket.
 type Peak = (f64, f64, Bracket);
 
-/// Adds the local maxima of `sign` times the values that may be above the largest.
-fn add_peaks(points: &[Point], sign: f64, largest: f64, all: &mut Vec<Peak>) {
+/// Adds the local maxima of `sign` times the values that may be above the lowest that counts.
+fn add_peaks(points: &[Point], sign: f64, lowest: f64, all: &mut Vec<Peak>) {
     let Some(last) = points.len().checked_sub(1).filter(|last| *last > 0) else {
         return;
     };
@@ -74,7 +78,7 @@ fn add_peaks(points: &[Point], sign: f64, largest: f64, all: &mut Vec<Peak>) {
     let end = |i: usize| {
         let value = sign * points[i][1];
         let ends = (signed(i.max(1) - 1), signed((i + 1).min(last)));
-        (value >= largest).then_some((value, value, (ends.0, None, ends.1)))
+        (value >= lowest).then_some((value, value, (ends.0, None, ends.1)))
     };
     all.extend(end(0));
     for (i, around) in points.windows(3).enumerate() {
@@ -89,7 +93,7 @@ fn add_peaks(points: &[Point], sign: f64, largest: f64, all: &mut Vec<Peak>) {
             let (before, point, after) = (signed(i), signed(i + 1), signed(i + 2));
             let [_, top] = vertex([before, point, after]).unwrap_or(point);
             // A parabola through three points may be too low by as much again.
-            if value + 2.0 * (top - value).max(0.0) >= largest {
+            if value + 2.0 * (top - value).max(0.0) >= lowest {
                 all.push((top, value, (before, Some(point), after)));
             }
         }

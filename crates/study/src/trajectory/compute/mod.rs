@@ -1,5 +1,6 @@
 //! Computes columns, sections and peak forces along a trajectory.
 
+mod along;
 mod analysis;
 mod column;
 mod columns;
@@ -16,7 +17,6 @@ mod long_rows;
 mod maximum;
 mod mechanical_advantage;
 mod monitor;
-mod peak_forces;
 mod plane_columns;
 mod requested_columns;
 mod results;
@@ -27,10 +27,12 @@ mod row_source;
 mod second_rows;
 mod sectioned_link;
 mod selection;
+mod statistic;
 mod trajectory;
 mod unit_references;
 mod unit_scales;
 
+pub(crate) use along::{analysis_along, peak_analysis, statistics_along};
 pub use analysis::Analysis;
 pub(crate) use column::{Column, ColumnList, Quantity, is_prefix_of, units};
 pub(crate) use columns::all_columns;
@@ -51,7 +53,6 @@ pub(crate) use long_rows::{LongRows, RowStorage, not_stored};
 pub(crate) use maximum::{Point, highest_between};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::CouplingMonitor;
-pub(crate) use peak_forces::{WantedForces, peak_analysis, peak_forces};
 pub(crate) use requested_columns::RequestedColumns;
 pub(crate) use results::MotionBetweenRows;
 pub use results::{ComputedTrajectory, TrajectoryResults};
@@ -62,6 +63,7 @@ pub(crate) use row_source::{RowSource, compute_trajectory_in};
 pub(crate) use second_rows::SecondRows;
 pub use sectioned_link::SectionedLink;
 pub(crate) use selection::{check_variables, reject_unknown_variables};
+pub(crate) use statistic::{STATISTICS, Signal, Statistic};
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::{
     BALANCE, FreeTrajectory, KINETIC, POTENTIAL, Spacing, SweepLimits, TrajectorySample,

@@ -197,7 +197,7 @@ impl TrajectoryResults {
 }
 
 /// Unwraps an angle: adds the revolutions that bring it nearest to the one extrapolated by the velocities.
-fn unwrap_angle(last: &mut Option<[f64; 3]>, value: f64, speed: f64, t: f64) -> f64 {
+pub(super) fn unwrap_angle(last: &mut Option<[f64; 3]>, value: f64, speed: f64, t: f64) -> f64 {
     let unwrapped = last.map_or(value, |[previous, previous_speed, previous_time]| {
         let expected = previous + 0.5 * (previous_speed + speed) * (t - previous_time);
         value + TAU * ((expected - value) / TAU).round()

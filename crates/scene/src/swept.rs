@@ -1,0 +1,156 @@
+//! The section `[sweep]`: named parameters, numbers that are tied to others, and limits of results. It changes no other analysis.
+
+use crate::expression::expression;
+use crate::file::SceneFile;
+use crate::keys::table;
+use crate::number_paths::{SceneNumber, no_number};
+use crate::spans::SceneLocation;
+use crate::table_reader::TableReader;
+use crate::wording::shorten;
+use dwell_laws::Expression;
+
+/// The beginning of the path of every parameter.
+pub(crate) const PARAMETERS: &str = "sweep.parameters.";
+
+/// What `[sweep]` says about the variants of a scene.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SweepSection {
+    /// The numbers that follow from others.
+    pub tied: Vec<TiedNumber>,
+    /// The limits of results.
+    pub limits: Vec<ResultLimit>,
+}
+
+/// A number that follows from others.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TiedNumber {
+    /// The path of the number.
+    pub path: String,
+    /// The expression as written.
+    pub text: String,
+    /// The expression of the [variables](Expression::variables) that occur in it: paths of numbers and names of parameters.
+    pub expression: Expression,
+}
+
+/// A limit of a result: a variant beyond it is left out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResultLimit {
+    /// The name of the result.
+    pub result: String,
+    /// Whether it is an upper limit.
+    pub is_upper: bool,
+    /// In the unit of the result.
+    pub limit: f64,
+}
+
+impl ResultLimit {
+    /// Reads `RESULT <= LIMIT` or `RESULT >= LIMIT`; the limit is a number or an expression without variables.
+    ///
+    /// # Errors
+    /// Why it is none.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let upper = text.split_once("<=").map(|parts| (parts, true));
+        let parts = upper.or_else(|| text.split_once(">=").map(|parts| (parts, false)));
+        let ((result, limit), is_upper) =
+            parts.ok_or("a limit is `RESULT <= LIMIT` or `RESULT >= LIMIT`")?;
+        let (result, limit) = (result.trim(), limit.trim());
+        let value = Expression::parse(limit, &[]).map_err(|error| error.message)?;
+        if result.is_empty() {
+            return Err("the name of the result is missing".to_owned());
+        }
+        Ok(Self {
+            result: result.to_owned(),
+            is_upper,
+            limit: value.eval(&[]),
+        })
+    }
+}
+
+impl std::fmt::Display for ResultLimit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let sign = if self.is_upper { "<=" } else { ">=" };
+        write!(f, "{} {sign} {}", self.result, self.limit)
+    }
+}
+
+impl SceneFile {
+    /// The number at a path, tied to others by an expression.
+    ///
+    /// # Errors
+    /// Message and help if there is no such number, or the expression is none.
+    pub fn tied_number(&self, path: &str, text: &str) -> Result<TiedNumber, (String, String)> {
+        let numbers = self.body_numbers.iter().chain(&self.section_numbers);
+        if !numbers.clone().any(|number| number.path == path) {
+            return Err(no_number(path, numbers));
+        }
+        let variables = variables(numbers);
+        let expression = Expression::parse(text, &variables);
+        let expression = expression.map_err(|e| (e.message, e.help.unwrap_or_default()))?;
+        Ok(TiedNumber {
+            path: path.to_owned(),
+            text: text.to_owned(),
+            expression: expression.retain_used(),
+        })
+    }
+}
+
+/// The names that expressions know: of all parameters, and the paths of all numbers.
+fn variables<'n>(numbers: impl Iterator<Item = &'n SceneNumber> + Clone) -> Vec<&'n str> {
+    let names = numbers.map(|number| number.path.as_str());
+    let parameters = names.clone().filter_map(|p| p.strip_prefix(PARAMETERS));
+    parameters.chain(names).collect()
+}
+
+/// Reads `[sweep]` of a scene with these numbers.
+pub(crate) fn sweep_section(fields: &TableReader<'_>, numbers: &[&SceneNumber]) -> SweepSection {
+    fields.reject_unknown_keys(table("sweep"));
+    let mut found = SweepSection::default();
+    let variables = variables(numbers.iter().copied());
+    let open = |key: &str| TableReader::open(fields.get(key)?, format!("`{key}` of [sweep]"));
+    for entry in open("parameters").iter().flat_map(|table| &table.entries) {
+        // It is one of the numbers, by its path.
+        entry
+            .value
+            .number(format_args!("parameter `{}`", shorten(entry.name)));
+    }
+    for entry in open("tied").iter().flat_map(|table| &table.entries) {
+        if !numbers.iter().any(|number| number.path == entry.name) {
+            let (message, help) = no_number(entry.name, numbers.iter().copied());
+            entry.reject::<()>(message, "unknown number", help);
+            continue;
+        }
+        let what = format!("tied number `{}`", shorten(entry.name));
+        let location = SceneLocation::Tied(found.tied.len());
+        if let Some(expression) = expression(entry.value, &variables, &what)
+            && let Some(text) = entry.value.string(&what)
+        {
+            entry.log().place(location, &entry.span());
+            found.tied.push(TiedNumber {
+                path: entry.name.to_owned(),
+                text: text.to_owned(),
+                expression: expression.retain_used(),
+            });
+        }
+    }
+    let limits = fields.get("subject-to").and_then(|entry| {
+        let expected = "an array such as [\"m.max <= 2\"]";
+        entry.value.array(expected, "`subject-to` of [sweep]")
+    });
+    for value in limits.into_iter().flatten() {
+        let Some(text) = value.string("a limit in [sweep]") else {
+            continue;
+        };
+        match ResultLimit::parse(text) {
+            Ok(limit) => {
+                let location = SceneLocation::Limit(found.limits.len());
+                value.log().place(location, &value.span());
+                found.limits.push(limit);
+            }
+            Err(message) => {
+                let help = "write it as `m.max <= 2`, in the unit of the result";
+                value.reject::<()>(message, "no limit", help);
+            }
+        }
+    }
+    found
+}
