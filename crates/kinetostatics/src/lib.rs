@@ -60,6 +60,7 @@ pub use model::{
 pub use pass::InverseDynamics;
 pub use recorded::{
     Described, RecordableModel, RecordedState, StateLayout, StateRecordingError, WantedMotion,
+    signal_coordinates,
 };
 pub use reduced::{
     Batch, Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel, ReducibleModel,

@@ -30,7 +30,7 @@ use std::sync::Arc;
 /// The model of a mechanism with its masses and loads: constant, shared between threads.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
-    mechanism: Arc<Mechanism>,
+    pub(crate) mechanism: Arc<Mechanism>,
     pub(crate) pass_model: PassModel,
     /// The requested reactions, then the others on which friction and separating forces depend.
     reactions: Vec<Reaction>,

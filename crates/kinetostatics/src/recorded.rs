@@ -2,9 +2,12 @@
 //! gradients by these numbers are computed from.
 //!
 //! ```text
-//! inputs    q, q̇, q̈, magnitudes F of the loads, numbers p, solution u of the closures
+//! inputs    q, q̇, q̈, magnitudes of the loads, numbers p, solution u of the closures
 //! outputs   actuator forces τ, reactions, wanted coordinates s, ṡ, s̈, wanted points with velocity and acceleration
+//! magnitude of a load    F + Σ F′ (s − s₀)    of its signals s, with its value F, its slopes F′ and the values s₀ as inputs
 //! ```
+//!
+//! A law is therefore evaluated outside: its first order is what a derivative needs.
 //!
 //! Everything about a mechanism of prescribed motion follows from it: at q̇ = 0, q̈ = 1 and F = 0 the outputs are m and all a, at q̇ = 1, q̈ = 0
 //! they are ½m′ and all b. The code holds at other poses on the same branch; by its solution u it has no iterations, and its derivatives by
@@ -16,9 +19,10 @@ mod plane;
 pub(crate) use numbered::Numbered;
 
 use crate::error::PositionResult;
+use crate::load::{Magnitude, Signal};
 use crate::model::{MachineModel, ModelLoad};
 use dwell_geometry::{BodyId, PositionError};
-use dwell_numerics::{RecordedNumber, RecordingError, StraightLine, record_at};
+use dwell_numerics::{RecordedNumber, RecordingError, Scalar, StraightLine, record_at};
 use thiserror::Error;
 
 /// Why a state cannot be recorded.
@@ -90,6 +94,10 @@ pub trait RecordableModel: MachineModel {
     /// if it has another structure.
     fn numbers(&self, of: Described<'_, Self>) -> Option<Vec<f64>>;
 
+    /// This model with the numbers of another machine of its structure: of one whose numbers coincide by chance, say, where its own do
+    /// not. `None` if that machine has another structure. In space a structure has its own numbers only.
+    fn at_numbers(&self, of: Described<'_, Self>) -> Option<Self>;
+
     /// The solution of the closures at coordinates, rad or m.
     ///
     /// # Errors
@@ -108,6 +116,30 @@ pub trait RecordableModel: MachineModel {
     ) -> Result<Vec<RecordedNumber>, StateRecordingError>;
 }
 
+/// The magnitude of a load from the next inputs, F and by signal F′ and s₀, and from its signals.
+pub(crate) fn first_order<T: Scalar>(
+    inputs: &mut impl Iterator<Item = T>,
+    signals: impl Iterator<Item = Result<T, StateRecordingError>>,
+) -> Result<T, StateRecordingError> {
+    let mut next = || inputs.next().unwrap_or_default();
+    let mut magnitude = next();
+    for signal in signals {
+        let (slope, value) = (next(), next());
+        magnitude += slope * (signal? - value);
+    }
+    Ok(magnitude)
+}
+
+/// The coordinates on which a magnitude depends, each with whether its velocity is meant.
+pub fn signal_coordinates<C: Copy>(magnitude: &Magnitude<C>) -> impl Iterator<Item = (C, bool)> {
+    let signals = magnitude.signals().iter();
+    signals.filter_map(|signal| match *signal {
+        Signal::Time => None,
+        Signal::Value(coordinate) => Some((coordinate, false)),
+        Signal::Velocity(coordinate) => Some((coordinate, true)),
+    })
+}
+
 /// The inputs of a state, in parts.
 #[derive(Debug, Clone, Copy)]
 pub struct StateInputs<'a> {
@@ -124,21 +156,21 @@ pub struct StateInputs<'a> {
 pub struct StateLayout {
     /// Number of coordinates.
     pub actuators: usize,
-    /// Number of loads.
-    pub loads: usize,
+    /// Number of inputs of the magnitudes of the loads: for each load F, then by signal F′ and s₀.
+    pub magnitudes: usize,
     /// Number of the machine's numbers.
     pub numbers: usize,
 }
 
 impl StateLayout {
     /// Where the magnitudes of the loads begin.
-    pub fn magnitudes(&self) -> usize {
+    pub fn first_magnitude(&self) -> usize {
         3 * self.actuators
     }
 
     /// Where the machine's numbers begin.
     pub fn first_number(&self) -> usize {
-        self.magnitudes() + self.loads
+        self.first_magnitude() + self.magnitudes
     }
 
     /// Where the solution begins.
@@ -150,7 +182,7 @@ impl StateLayout {
         let (q, rest) = inputs.split_at(self.actuators);
         let (q_dot, rest) = rest.split_at(self.actuators);
         let (q_ddot, rest) = rest.split_at(self.actuators);
-        let (magnitudes, rest) = rest.split_at(self.loads);
+        let (magnitudes, rest) = rest.split_at(self.magnitudes);
         let (numbers, solution) = rest.split_at(self.numbers);
         StateInputs {
             q,
@@ -174,7 +206,7 @@ pub struct RecordedState {
 
 impl RecordedState {
     /// Records the states of a machine of the structure of a model at some inputs, where the operations must be the same. Each list of
-    /// inputs has q, q̇, q̈, magnitudes, [numbers](RecordableModel::numbers), [solution](RecordableModel::solution).
+    /// inputs has q, q̇, q̈, the magnitudes, [numbers](RecordableModel::numbers), [solution](RecordableModel::solution).
     ///
     /// # Errors
     /// [`RecordingError`].
@@ -186,7 +218,9 @@ impl RecordedState {
         let numbers = model.numbers(of).ok_or(StateRecordingError::Structure);
         let layout = StateLayout {
             actuators: model.actuators(),
-            loads: of.loads.len(),
+            magnitudes: (of.loads.iter())
+                .map(|load| 1 + 2 * signal_coordinates(&load.magnitude).count())
+                .sum(),
             numbers: numbers.map_err(RecordingError::Evaluation)?.len(),
         };
         let code = record_at(inputs, |inputs| model.outputs(of, &layout.parts(inputs)))?;

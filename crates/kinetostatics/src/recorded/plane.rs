@@ -1,6 +1,9 @@
 //! The recording of a state of a planar machine.
 
-use super::{Described, Numbered, RecordableModel, StateInputs, StateRecordingError};
+use super::{
+    Described, Numbered, RecordableModel, StateInputs, StateRecordingError, first_order,
+    signal_coordinates,
+};
 use crate::error::PositionResult;
 use crate::load::{ForceSource, LoadKind, LoadPlaces, LoadState};
 use crate::mass::Mass;
@@ -8,7 +11,8 @@ use crate::model::{Model, Workspace};
 use crate::pass::{GivenMotion, InverseDynamics, PassModel, RecursivePass};
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{BodyId, Mechanism, Plan, Vec2};
-use dwell_numerics::{Constant, Lift, RecordedNumber, Scalar};
+use dwell_numerics::{Constant, RecordedNumber, Scalar};
+use std::sync::Arc;
 
 impl Model {
     /// The coordinates that are wanted, as functions.
@@ -26,23 +30,30 @@ fn weighted<C: Constant>(plan: &Plan<C>, masses: &[Mass<C>]) -> Vec<(BodyId, Mas
     weighted.collect()
 }
 
-/// Adds the forces and moments of loads of these kinds and magnitudes on all bodies.
-fn add_loads<T: Constant + Lift<T>>(
-    kinds: &[LoadKind<T>],
-    magnitudes: &[T],
-    weighted_bodies: &[(BodyId, Mass<T>)],
-    states: &BodyStates<T, T>,
-    loads: &mut LoadState<T>,
+/// Adds the forces and moments of loads on all bodies, with the inputs of their magnitudes and with their numbers.
+fn add_loads(
+    of: Described<'_, Model>,
+    mut magnitudes: impl Iterator<Item = RecordedNumber>,
+    next: &mut impl FnMut(f64) -> RecordedNumber,
+    weighted_bodies: &[(BodyId, Mass<RecordedNumber>)],
+    states: &BodyStates<RecordedNumber, RecordedNumber>,
+    loads: &mut LoadState<RecordedNumber>,
 ) -> Result<(), StateRecordingError> {
-    // A couple has the same effect at each point.
-    let couple_points = [Vec2::zero(); 2];
-    let places = LoadPlaces {
-        weighted_bodies,
-        couple_points,
-    };
-    for (k, (kind, &magnitude)) in kinds.iter().zip(magnitudes).enumerate() {
-        let source = ForceSource::Load(k);
-        kind.add_wrenches(magnitude, source, &places, states, loads)
+    for (k, load) in of.loads.iter().enumerate() {
+        let kind: LoadKind<RecordedNumber> = load.kind.replaced(next);
+        let signals = signal_coordinates(&load.magnitude).map(|(coordinate, is_velocity)| {
+            let function = CoordinateFunction::find(of.mechanism, coordinate);
+            let function = function.ok_or(StateRecordingError::Structure)?;
+            let motion = states.coordinate(function.replaced(next));
+            Ok(motion[usize::from(is_velocity)])
+        });
+        let magnitude = first_order(&mut magnitudes, signals)?;
+        // A couple has the same effect at each point.
+        let places = LoadPlaces {
+            weighted_bodies,
+            couple_points: [Vec2::zero(); 2],
+        };
+        kind.add_wrenches(magnitude, ForceSource::Load(k), &places, states, loads)
             .ok_or(StateRecordingError::NoDirection(k))?;
     }
     loads.sum_by_body();
@@ -57,14 +68,25 @@ impl RecordableModel for Model {
     fn numbers(&self, of: Described<'_, Self>) -> Option<Vec<f64>> {
         let mut numbers = self.plan().dimensions(of.mechanism)?;
         of.masses.iter().for_each(|mass| mass.list(&mut numbers));
-        of.loads
-            .iter()
-            .for_each(|load| load.kind.list(&mut numbers));
+        for load in of.loads {
+            load.kind.list(&mut numbers);
+            for (coordinate, _) in signal_coordinates(&load.magnitude) {
+                CoordinateFunction::find(of.mechanism, coordinate)?.list(&mut numbers);
+            }
+        }
         for function in Self::wanted_functions(of)? {
             function.list(&mut numbers);
         }
         (of.wanted.points.iter()).for_each(|(_, point)| point.list(&mut numbers));
         Some(numbers)
+    }
+
+    fn at_numbers(&self, of: Described<'_, Self>) -> Option<Self> {
+        let mut model = self.clone();
+        let dimensions = model.plan().dimensions(of.mechanism)?;
+        let fits = model.pass_model.set_numbers(&dimensions, of.masses);
+        (model.mechanism, model.masses) = (Arc::new(of.mechanism.clone()), of.masses.to_vec());
+        fits.then_some(model)
     }
 
     fn solution(&self, q: &[f64], workspace: &mut Workspace<f64>) -> PositionResult<Vec<f64>> {
@@ -97,15 +119,8 @@ impl RecordableModel for Model {
         let mut states: BodyStates<RecordedNumber, RecordedNumber> = BodyStates::new(plan);
         states.fill(plan, &pose, &motion);
         let mut loads = self.loads.state::<RecordedNumber>(self.plan());
-        let kinds = of.loads.iter().map(|load| load.kind.replaced(&mut next));
-        let kinds: Vec<LoadKind<RecordedNumber>> = kinds.collect();
-        add_loads(
-            &kinds,
-            at.magnitudes,
-            &weighted(plan, &masses),
-            &states,
-            &mut loads,
-        )?;
+        let (magnitudes, weighted) = (at.magnitudes.iter().copied(), weighted(plan, &masses));
+        add_loads(of, magnitudes, &mut next, &weighted, &states, &mut loads)?;
         let mut pass = RecursivePass::new(&model);
         pass.evaluate_loaded(&model, &pose, GivenMotion(&motion), &mut loads);
         let mut result = InverseDynamics::buffer(plan.actuators(), self.reactions().len());

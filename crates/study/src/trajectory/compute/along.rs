@@ -5,9 +5,12 @@ use crate::trajectory::compute::extrema::is_continuous;
 use crate::trajectory::compute::results::unwrap_angle;
 use crate::trajectory::compute::{
     Analysis, Point, RowEvaluator, RowScene, Signal, Statistic, Trajectory, TrajectorySample,
-    highest_between,
+    high_points,
 };
 use std::f64::consts::TAU;
+
+/// Extremes that differ by less, as a part of the larger, tie.
+const TIE: f64 = 1e-6;
 
 /// The analysis for statistics: along the scene's motion or sweep, or statics over its range.
 pub(crate) fn analysis_along(scene: &impl RowScene) -> Option<Analysis> {
@@ -35,6 +38,56 @@ pub(crate) fn statistics_along<S: RowScene>(
     analysis: Analysis,
     wanted: &[(Signal, Statistic)],
 ) -> Result<Vec<f64>, StudyError> {
+    search_along(scene, rows, analysis, wanted, |search, curves, duration| {
+        let each = curves.into_iter();
+        let values = each.map(|(curve, statistic)| search.value(curve, statistic, duration));
+        values.collect()
+    })
+}
+
+/// A statistic and the positions on whose signal it depends: its derivative by a number of the scene is the sum of the weights times
+/// those of the signal there, at positions that stay where they are.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Weighted {
+    pub(crate) value: f64,
+    /// The summed signal.
+    pub(crate) signal: Signal,
+    /// Fractions of the trajectory, with their weights.
+    pub(crate) weights: Vec<Point>,
+    /// Other fractions at which an extremum is as large: the statistic has a kink there.
+    pub(crate) ties: Vec<f64>,
+}
+
+/// As [`statistics_along`], with their weights.
+///
+/// # Errors
+/// As of that.
+pub(crate) fn weighted_along<S: RowScene>(
+    scene: &S,
+    rows: &S::Rows,
+    analysis: Analysis,
+    wanted: &[(Signal, Statistic)],
+) -> Result<Vec<Weighted>, StudyError> {
+    search_along(scene, rows, analysis, wanted, |search, curves, duration| {
+        let each = curves.into_iter();
+        let all = each.map(|(curve, statistic)| search.weighted(curve, statistic, duration));
+        all.collect()
+    })
+}
+
+/// What a search among the curves of some signals along the scene's trajectory finds; each curve comes with the statistic that is wanted of it,
+/// and with the duration, s.
+fn search_along<S: RowScene, R>(
+    scene: &S,
+    rows: &S::Rows,
+    analysis: Analysis,
+    wanted: &[(Signal, Statistic)],
+    search: impl for<'c, 't, 'e> FnOnce(
+        &mut CurveSearch<'t, S::Evaluator<'e>>,
+        Vec<(&'c Curve, Statistic)>,
+        f64,
+    ) -> Vec<R>,
+) -> Result<Vec<R>, StudyError> {
     let model = S::model_of(rows);
     let followed = scene.followed(model);
     let trajectory = Trajectory::new(&followed, analysis, None)?;
@@ -65,13 +118,13 @@ pub(crate) fn statistics_along<S: RowScene>(
         return Err(scene.explain_stop(model, stop));
     }
     let duration = times.last().zip(times.first()).map_or(0.0, |(b, a)| b - a);
-    let mut search = CurveSearch {
+    let mut of_curves = CurveSearch {
         trajectory: &trajectory,
         evaluator,
     };
     let each = wanted.iter().zip(order);
-    let values = each.map(|(&(_, statistic), k)| search.value(&curves[k], statistic, duration));
-    Ok(values.collect())
+    let each = each.map(|(&(_, statistic), k)| (&curves[k], statistic));
+    Ok(search(&mut of_curves, each.collect(), duration))
 }
 
 /// A signal at the positions of a trajectory.
@@ -152,8 +205,82 @@ impl<E: RowEvaluator> CurveSearch<'_, E> {
         }
     }
 
+    /// The value of a statistic with its weights.
+    fn weighted(&mut self, curve: &Curve, statistic: Statistic, duration: f64) -> Weighted {
+        let value = self.value(curve, statistic, duration);
+        let mut found = Weighted {
+            value,
+            signal: curve.signal.clone(),
+            weights: Vec::new(),
+            ties: Vec::new(),
+        };
+        // Those of a mean by trapezoids, each times the derivative of its summand.
+        let last = (curve.points.len() - 1) as f64;
+        let mean = |slope: &dyn Fn(f64) -> f64| -> Vec<Point> {
+            let each = curve.points.iter().enumerate();
+            let weights = each.map(|(k, &[u, v])| {
+                let is_end = k == 0 || k + 1 == curve.points.len();
+                [u, slope(v) * if is_end { 0.5 } else { 1.0 } / last]
+            });
+            weights.collect()
+        };
+        match statistic {
+            Statistic::Mean => found.weights = mean(&|_| 1.0),
+            Statistic::Rms => found.weights = mean(&|v| v / value),
+            Statistic::Work => found.weights = mean(&|_| duration),
+            Statistic::Max => self.add_highest(curve, |v| v, 1.0, &mut found),
+            Statistic::Min => self.add_highest(curve, |v| -v, 1.0, &mut found),
+            Statistic::Stroke => {
+                self.add_highest(curve, |v| v, 1.0, &mut found);
+                self.add_highest(curve, |v| -v, -1.0, &mut found);
+            }
+            Statistic::MaxAbs | Statistic::PeakPower => {
+                self.add_highest(curve, f64::abs, 1.0, &mut found);
+                let at = found.weights.last().map_or(0.0, |[u, _]| *u);
+                let sign = curve.near(at).signum();
+                found.weights.iter_mut().for_each(|[_, w]| *w = sign);
+            }
+        }
+        found
+    }
+
+    /// Adds the position of the highest value of a function of a signal, with a weight, and those that tie with it.
+    fn add_highest(
+        &mut self,
+        curve: &Curve,
+        of: fn(f64) -> f64,
+        weight: f64,
+        found: &mut Weighted,
+    ) {
+        let all = self.high_points(curve, of);
+        let higher = |a: Point, b: Point| if b[1] > a[1] { b } else { a };
+        let Some([at, highest]) = all.iter().copied().reduce(higher) else {
+            return;
+        };
+        found.weights.push([at, weight]);
+        let apart = 1.0 / (curve.points.len() - 1) as f64;
+        for [u, value] in all {
+            // The two ends of a turn are one position.
+            let distance = (u - at).abs();
+            let is_other = distance.min((1.0 - distance).abs()) > apart;
+            let is_known = found.ties.iter().any(|tie| (tie - u).abs() <= apart);
+            if is_other && !is_known && highest - value <= TIE * highest.abs() {
+                found.ties.push(u);
+            }
+        }
+    }
+
     /// The largest value of a function of a signal.
     fn highest(&mut self, curve: &Curve, of: fn(f64) -> f64) -> f64 {
+        let values = self.high_points(curve, of).into_iter();
+        values
+            .map(|[_, value]| value)
+            .reduce(f64::max)
+            .unwrap_or(f64::NAN)
+    }
+
+    /// The highest position of a function of a signal, and those that are nearly as high.
+    fn high_points(&mut self, curve: &Curve, of: fn(f64) -> f64) -> Vec<Point> {
         let points: Vec<Point> = curve.points.iter().map(|[u, v]| [*u, of(*v)]).collect();
         let is_searched = match &curve.signal {
             Signal::Column(column) => is_continuous(column),
@@ -175,6 +302,6 @@ impl<E: RowEvaluator> CurveSearch<'_, E> {
             }
             Some(of(value)).filter(|value| value.is_finite())
         };
-        highest_between(&points, &mut value).map_or(f64::NAN, |[_, value]| value)
+        high_points(&points, &mut value)
     }
 }

@@ -24,15 +24,26 @@ pub(crate) fn highest_between(
     points: &[Point],
     value: &mut dyn FnMut(f64) -> Option<f64>,
 ) -> Option<Point> {
+    let higher = |a: Point, b: Point| if b[1] > a[1] { b } else { a };
+    high_points(points, value).into_iter().reduce(higher)
+}
+
+/// The highest of some points of a function, then its local maxima that are nearly as high.
+pub(crate) fn high_points(
+    points: &[Point],
+    value: &mut dyn FnMut(f64) -> Option<f64>,
+) -> Vec<Point> {
     let known = points.iter().copied().filter(|[_, v]| !v.is_nan());
     let scale = known.clone().map(|[_, v]| v.abs()).fold(0.0, f64::max);
     let higher = |a: Point, b: Point| if b[1] > a[1] { b } else { a };
-    let highest = known.reduce(higher)?;
+    let Some(highest) = known.reduce(higher) else {
+        return Vec::new();
+    };
     let parts: Vec<&[Point]> = between_events(points).collect();
     let lowest = highest[1] - BAND * highest[1].abs();
     let brackets = promising(&parts, 1.0, lowest, MOST).into_iter();
     let found = brackets.filter_map(|(_, bracket)| refine_maximum(value, bracket, scale));
-    Some(found.fold(highest, higher))
+    std::iter::once(highest).chain(found).collect()
 }
 
 /// Three points, the middle one not below the others; the middle one may be missing at an end.
