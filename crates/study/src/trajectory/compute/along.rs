@@ -39,14 +39,14 @@ pub(crate) fn statistics_along<S: RowScene>(
     let followed = scene.followed(model);
     let trajectory = Trajectory::new(&followed, analysis, None)?;
     trajectory.check_laws(&followed)?;
+    let wanted: Vec<(Signal, Statistic)> = wanted
+        .iter()
+        .map(|(signal, statistic)| (signal.summed_by(*statistic), *statistic))
+        .collect();
     let mut curves: Vec<Curve> = Vec::new();
-    let mut order = Vec::with_capacity(wanted.len());
-    for (signal, statistic) in wanted {
-        let signal = signal.summed_by(*statistic);
-        let known = curves.iter().position(|curve| curve.signal == signal);
-        order.push(known.unwrap_or(curves.len()));
-        if known.is_none() {
-            curves.push(Curve::new(signal));
+    for signal in wanted.iter().flat_map(|(signal, _)| signal.parts()) {
+        if !curves.iter().any(|curve| curve.signal == *signal) {
+            curves.push(Curve::new(signal.clone()));
         }
     }
     let mut evaluator = scene.evaluator(rows, rows, analysis, &[])?;
@@ -69,15 +69,34 @@ pub(crate) fn statistics_along<S: RowScene>(
         trajectory: &trajectory,
         evaluator,
     };
-    let each = wanted.iter().zip(order);
-    let values = each.map(|(&(_, statistic), k)| search.value(&curves[k], statistic, duration));
+    let values = wanted.iter().map(|(signal, statistic)| match signal {
+        Signal::Distance(distance) => {
+            let distances = search.distances(distance, &curves).unwrap_or_default();
+            of_distances(&distances, *statistic)
+        }
+        own => {
+            let curve = curves.iter().find(|curve| curve.signal == *own);
+            curve.map_or(f64::NAN, |curve| search.value(curve, *statistic, duration))
+        }
+    });
     Ok(values.collect())
 }
 
+/// A statistic of distances from the rows of a table; NaN if there are none.
+fn of_distances(distances: &[f64], statistic: Statistic) -> f64 {
+    let mean_of =
+        |of: fn(f64) -> f64| distances.iter().map(|d| of(*d)).sum::<f64>() / distances.len() as f64;
+    match statistic {
+        Statistic::Mean => mean_of(|d| d),
+        Statistic::Rms => mean_of(|d| d * d).sqrt(),
+        _ => distances.iter().copied().fold(f64::NAN, f64::max),
+    }
+}
+
 /// A signal at the positions of a trajectory.
-struct Curve {
-    signal: Signal,
-    points: Vec<Point>,
+pub(super) struct Curve {
+    pub(super) signal: Signal,
+    pub(super) points: Vec<Point>,
     /// Of an angle that unwraps: the last value, its rate and its time.
     last: Option<[f64; 3]>,
 }
@@ -130,13 +149,14 @@ fn value_of(signal: &Signal, evaluator: &impl RowEvaluator, sample: &TrajectoryS
             squares.sum::<f64>().sqrt()
         }
         Signal::Power(i) => evaluator.forces().tau[*i] * sample.q_dot[*i],
+        Signal::Distance(_) => f64::NAN,
     }
 }
 
 /// The search for extremes between the positions.
-struct CurveSearch<'a, E> {
+pub(super) struct CurveSearch<'a, E> {
     trajectory: &'a Trajectory<'a>,
-    evaluator: E,
+    pub(super) evaluator: E,
 }
 
 impl<E: RowEvaluator> CurveSearch<'_, E> {
@@ -157,24 +177,30 @@ impl<E: RowEvaluator> CurveSearch<'_, E> {
         let points: Vec<Point> = curve.points.iter().map(|[u, v]| [*u, of(*v)]).collect();
         let is_searched = match &curve.signal {
             Signal::Column(column) => is_continuous(column),
-            Signal::Norm(_) | Signal::Power(_) => true,
+            Signal::Norm(_) | Signal::Power(_) | Signal::Distance(_) => true,
         };
         self.evaluator
             .limit_to(curve.signal.quantities().into_iter());
-        let (trajectory, evaluator) = (self.trajectory, &mut self.evaluator);
         let mut value = |u: f64| {
-            let sample = trajectory.sample_at(u);
-            let t = trajectory.load_time(&sample);
-            evaluator
-                .evaluate(&sample, t)
-                .ok()
-                .filter(|()| is_searched)?;
-            let mut value = value_of(&curve.signal, &*evaluator, &sample);
-            if curve.unwraps() {
-                value += TAU * ((curve.near(u) - value) / TAU).round();
-            }
-            Some(of(value)).filter(|value| value.is_finite())
+            let found = self.values(u, &[curve]).filter(|_| is_searched)?;
+            Some(of(found[0])).filter(|value| value.is_finite())
         };
         highest_between(&points, &mut value).map_or(f64::NAN, |[_, value]| value)
+    }
+
+    /// The values of signals at a completed fraction; the revolutions of an angle are those of the nearest position.
+    pub(super) fn values(&mut self, u: f64, curves: &[&Curve]) -> Option<Vec<f64>> {
+        let sample = self.trajectory.sample_at(u);
+        let t = self.trajectory.load_time(&sample);
+        self.evaluator.evaluate(&sample, t).ok()?;
+        let values = curves.iter().map(|curve| {
+            let value = value_of(&curve.signal, &self.evaluator, &sample);
+            let revolutions = match curve.unwraps() {
+                true => ((curve.near(u) - value) / TAU).round(),
+                false => 0.0,
+            };
+            value + TAU * revolutions
+        });
+        Some(values.collect())
     }
 }

@@ -5,6 +5,7 @@ mod analysis;
 mod column;
 mod columns;
 mod corners;
+mod distances;
 mod dyads;
 mod early_stop;
 mod evaluator;
@@ -36,6 +37,7 @@ pub(crate) use along::{analysis_along, peak_analysis, statistics_along};
 pub use analysis::Analysis;
 pub(crate) use column::{Column, ColumnList, Quantity, is_prefix_of, units};
 pub(crate) use columns::all_columns;
+pub(crate) use distances::Distance;
 pub(crate) use dyads::{Dyad, dyads};
 pub(crate) use early_stop::{
     CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
