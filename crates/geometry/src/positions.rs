@@ -3,6 +3,7 @@
 mod closed_forms;
 mod construct;
 mod factored_group;
+mod nearness;
 mod solution;
 
 use crate::error::PositionError;

@@ -17,6 +17,31 @@ pub fn factor<T: Scalar>(a: &mut [T], factors: &mut [T], m: usize) -> FactorOutc
     }
 }
 
+/// The volume of the parallelepiped of the columns of a row-major m×n matrix over the product of their lengths: 1 if they are perpendicular,
+/// 0 if they are dependent. The columns are left perpendicular.
+pub fn relative_volume(a: &mut [f64], m: usize, n: usize) -> f64 {
+    let dot = |a: &[f64], j: usize, k: usize| (0..m).map(|i| a[i * n + j] * a[i * n + k]).sum();
+    let mut volume = 1.0;
+    for k in 0..n {
+        let whole: f64 = dot(a, k, k);
+        for j in 0..k {
+            let (part, square): (f64, f64) = (dot(a, j, k), dot(a, j, j));
+            if square > 0.0 {
+                for i in 0..m {
+                    a[i * n + k] -= part / square * a[i * n + j];
+                }
+            }
+        }
+        let rest: f64 = dot(a, k, k);
+        volume *= if whole > 0.0 {
+            (rest / whole).sqrt()
+        } else {
+            0.0
+        };
+    }
+    volume
+}
+
 #[inline(always)]
 fn factor_inline<T: Scalar>(a: &mut [T], factors: &mut [T], m: usize, n: usize) -> FactorOutcome {
     let (a, factors) = (&mut a[..m * n], &mut factors[..n]);

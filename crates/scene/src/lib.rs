@@ -119,6 +119,6 @@ pub use scene_data::{
 };
 pub use schema::schema;
 pub use spans::SceneLocation;
-pub use swept::{ResultLimit, SweepSection, TiedNumber};
+pub use swept::{ResultLimit, SweepSection, SweepTarget, TiedNumber};
 pub use value::MAX_ANGLE;
 pub use wording::choices;

@@ -89,6 +89,8 @@ pub enum SceneLocation {
     Tied(usize),
     /// The k-th limit of `[sweep]`.
     Limit(usize),
+    /// The name of the k-th target of `[sweep]`.
+    Target(usize),
 }
 
 /// The places of the parts of a scene.

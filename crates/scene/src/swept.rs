@@ -5,7 +5,7 @@ use crate::file::SceneFile;
 use crate::keys::table;
 use crate::number_paths::{SceneNumber, no_number};
 use crate::spans::SceneLocation;
-use crate::table_reader::TableReader;
+use crate::table_reader::{Entry, TableReader};
 use crate::wording::shorten;
 use dwell_laws::Expression;
 
@@ -19,6 +19,8 @@ pub struct SweepSection {
     pub tied: Vec<TiedNumber>,
     /// The limits of results.
     pub limits: Vec<ResultLimit>,
+    /// The tables of values that quantities should have.
+    pub targets: Vec<SweepTarget>,
 }
 
 /// A number that follows from others.
@@ -30,6 +32,17 @@ pub struct TiedNumber {
     pub text: String,
     /// The expression of the [variables](Expression::variables) that occur in it: paths of numbers and names of parameters.
     pub expression: Expression,
+}
+
+/// A table of values that quantities should have.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SweepTarget {
+    /// Its name, with which its results begin.
+    pub name: String,
+    /// The file of the table, beside that of the scene.
+    pub table: String,
+    /// The column at whose values the others should have theirs.
+    pub at: Option<String>,
 }
 
 /// A limit of a result: a variant beyond it is left out.
@@ -129,6 +142,23 @@ pub(crate) fn sweep_section(fields: &TableReader<'_>, numbers: &[&SceneNumber]) 
                 path: entry.name.to_owned(),
                 text: text.to_owned(),
                 expression: expression.retain_used(),
+            });
+        }
+    }
+    for entry in open("targets").iter().flat_map(|table| &table.entries) {
+        let what = format!("target `{}`", shorten(entry.name));
+        let Some(of) = TableReader::open(entry, what) else {
+            continue;
+        };
+        of.reject_unknown_keys(table("target"));
+        let help = "name its file: `table = \"curve.csv\"`";
+        let text = |e: &Entry<'_>| e.value.string(of.name_of(e)).map(str::to_owned);
+        if let Some(table) = of.require("table", help).and_then(text) {
+            entry.place(SceneLocation::Target(found.targets.len()));
+            found.targets.push(SweepTarget {
+                name: entry.name.to_owned(),
+                table,
+                at: of.get("at").and_then(text),
             });
         }
     }

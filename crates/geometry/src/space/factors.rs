@@ -3,7 +3,8 @@
 
 use super::groups::Group;
 use super::plan::{Plan, Pose};
-use dwell_numerics::{Constant, FactorOutcome, Scalar, lu, qr};
+use dwell_numerics::qr::{self, relative_volume};
+use dwell_numerics::{Constant, FactorOutcome, Scalar, lu};
 
 impl<C: Constant> Plan<C> {
     /// Factors a group's Jacobian, scaled.
@@ -22,6 +23,22 @@ impl<C: Constant> Plan<C> {
         } else {
             qr::factor(matrix, &mut pose.reflections[group.columns..][..n], m)
         }
+    }
+
+    /// The least determinant of a group's Jacobian, as that in the [plane](crate::Plan::least_relative_determinant), with lengths in parts of
+    /// the size of the mechanism.
+    pub fn least_relative_determinant(&self, pose: &Pose<f64>) -> f64 {
+        let mut memory = pose.clone();
+        let each = self.groups.iter().map(|group| {
+            self.fill_rows(group, &mut memory);
+            let (m, n) = (group.rows.len(), group.unknowns.len());
+            let mut matrix = vec![0.0; m * n];
+            for inner in &group.inner {
+                matrix[inner.at] = memory.entries[inner.entry] * inner.scale;
+            }
+            relative_volume(&mut matrix, m, n)
+        });
+        each.fold(1.0, f64::min)
     }
 
     /// The solution of a closed group's equations for the right-hand sides in the scratch memory, by row; it leaves the unknowns there.

@@ -232,7 +232,7 @@ fn find(table: &ExportedTable, name: &str) -> Result<ExportedColumn, SceneError>
 }
 
 /// A unit in SI, and whether it is one of angles.
-fn unit_factor(unit: &str) -> Option<(f64, bool)> {
+pub(crate) fn unit_factor(unit: &str) -> Option<(f64, bool)> {
     Some(match unit {
         "rad" => (1.0, true),
         "deg" | "°" | "degree" | "degrees" => (PI / 180.0, true),

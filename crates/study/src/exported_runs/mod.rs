@@ -21,6 +21,7 @@ mod timed_run;
 mod written_scene;
 
 pub use columns::ColumnNames;
+pub(crate) use columns::unit_factor;
 pub use combine::{ExportedRuns, combine_runs};
 #[cfg(feature = "output")]
 pub use output::reduce_runs;

@@ -91,7 +91,7 @@ fn group(quantity: Quantity) -> &'static str {
         Quantity::MechanicalAdvantage(..) => "Mechanical advantages",
         Quantity::Pole(..) => "Poles",
         Quantity::Point(..) => "Points",
-        Quantity::TransmissionAngle(_) => "Transmission angles",
+        Quantity::TransmissionAngle(_) | Quantity::LeastDeterminant => "Transmission angles",
         Quantity::ForceMagnitude(_) | Quantity::MomentMagnitude(_) => "Reactions, magnitudes",
         Quantity::ForceDirection(_) => "Reactions, directions",
         Quantity::Reaction(_) | Quantity::KnownReaction(..) => "Reactions, components",

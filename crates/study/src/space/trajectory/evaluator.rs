@@ -153,6 +153,10 @@ impl RowEvaluator for SpaceEvaluator<'_> {
             Quantity::ForceMagnitude(joint) => wrench(joint)[0].norm(),
             Quantity::MomentMagnitude(joint) => wrench(joint)[1].norm(),
             Quantity::ShakingForce(k) => self.totals.shaking[k],
+            Quantity::LeastDeterminant => {
+                let plan = self.rows.model.plan();
+                plan.least_relative_determinant(&self.pose)
+            }
             Quantity::LoadForce(k) => {
                 let (plan, magnitude) = (self.rows.model.plan(), self.totals.magnitudes[k]);
                 let force = self.load_forces[k].map(|f| f.at(plan, &self.pose, magnitude));

@@ -5,6 +5,7 @@ use crate::reduce::compute::inertia_units;
 use crate::sweep::compute::motions::NamedUnit;
 use crate::sweep::compute::point::{ResultKind, SweepQuantity};
 use crate::sweep::compute::signals::NamedSignal;
+use crate::sweep::compute::targets::Target;
 use crate::trajectory::compute::{Analysis, Quantity, STATISTICS, Statistic};
 use std::collections::HashSet;
 
@@ -17,6 +18,8 @@ pub(super) struct Available {
     pub(crate) quantities: Vec<SweepQuantity>,
     /// Notes on the scene's assembly.
     pub(crate) notes: String,
+    /// The tables of wanted values.
+    pub(crate) targets: Vec<Target>,
 }
 
 impl Available {

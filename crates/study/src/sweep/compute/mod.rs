@@ -14,6 +14,7 @@ mod scene_results;
 mod signals;
 mod swept_scene;
 mod table;
+mod targets;
 mod tied;
 
 pub(crate) use available::IndexedReaction;

@@ -6,6 +6,7 @@ use crate::sweep::compute::SweptScene;
 use crate::sweep::compute::available::Available;
 use crate::sweep::compute::extremes::ExtremeValues;
 use crate::sweep::compute::scene_results::{available_quantities, compute_results};
+use crate::sweep::compute::targets::Target;
 use crate::trajectory::compute::{STATISTICS, Statistic, is_prefix_of};
 use dwell_laws::expression::nearest;
 use dwell_scene::{ResultLimit, SceneFile, SceneLocation};
@@ -109,6 +110,8 @@ pub struct RequestedQuantities {
     pub(crate) notes: String,
     /// The limits, each of the quantity at this index.
     limits: Vec<(usize, ResultLimit)>,
+    /// The tables of wanted values.
+    pub(super) targets: Vec<Target>,
 }
 
 /// The beginning of the message of a point beyond a limit.
@@ -152,6 +155,7 @@ impl RequestedQuantities {
         let Available {
             mut quantities,
             notes,
+            targets,
         } = available_quantities(scene)?;
         let is_known = |request: &&String| quantities.iter().any(|q| q.matches(request));
         if let Some(request) = requests.iter().find(|request| !is_known(request)) {
@@ -181,6 +185,7 @@ impl RequestedQuantities {
             limits: limits.into_iter().filter_map(of_quantity).collect(),
             quantities,
             notes,
+            targets,
         })
     }
 

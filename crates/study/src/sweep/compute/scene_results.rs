@@ -7,6 +7,7 @@ use crate::sweep::compute::motions::{
 };
 use crate::sweep::compute::point::{ResultKind, Results};
 use crate::sweep::compute::signals::{along_values, signals};
+use crate::sweep::compute::targets::Target;
 use crate::sweep::compute::{RequestedQuantities, SweptScene};
 use crate::trajectory::compute::{analysis_along, peak_analysis};
 use dwell_dynamics::{DynamicsError, Orbit, ReducedState};
@@ -38,7 +39,12 @@ pub(super) fn available_quantities(scene: &impl SweptScene) -> Result<Available,
     all.add_all(ResultKind::Motion, motion_quantities(scene, &compiled));
     all.add_all(ResultKind::Cycle, cycle_quantities(scene));
     if let Some(analysis) = analysis_along(scene) {
-        all.add_along(&signals(scene, &compiled, analysis), analysis);
+        all.targets = Target::all(scene)?;
+        let signals = signals(scene, &compiled, analysis, &all.targets);
+        for (k, target) in all.targets.iter().enumerate() {
+            target.check(scene, k, &signals)?;
+        }
+        all.add_along(&signals, analysis);
     }
     Ok(all)
 }

@@ -1,9 +1,10 @@
-//! The quantities along a trajectory whose statistics a sweep computes: the columns of its analysis, and the magnitudes of the shaking force
-//! and moment.
+//! The quantities along a trajectory whose statistics a sweep computes: the columns of its analysis, the magnitudes of the shaking force
+//! and moment, the least determinant, and distances from tables.
 
 use crate::explain::StudyError;
 use crate::sweep::compute::SweptScene;
 use crate::sweep::compute::point::RequestedQuantities;
+use crate::sweep::compute::targets::Target;
 use crate::trajectory::compute::{
     Analysis, Quantity, Signal, Statistic, all_columns, statistics_along,
 };
@@ -15,11 +16,12 @@ pub(super) struct NamedSignal {
     pub(super) signal: Signal,
 }
 
-/// All signals along the trajectory of an analysis.
+/// All signals along the trajectory of an analysis, the distances from targets last.
 pub(super) fn signals<S: SweptScene>(
     scene: &S,
     rows: &S::Rows,
     analysis: Analysis,
+    targets: &[Target],
 ) -> Vec<NamedSignal> {
     let columns = all_columns(scene, rows, false).into_iter();
     let columns = columns.filter(|column| column.is_computed_by(analysis));
@@ -43,6 +45,14 @@ pub(super) fn signals<S: SweptScene>(
             });
         }
     }
+    all.push(NamedSignal {
+        name: "closure.determinant".to_owned(),
+        unit: "",
+        signal: Signal::of(Quantity::LeastDeterminant),
+    });
+    let distances = targets.iter().flat_map(|target| target.distances(&all));
+    let distances: Vec<NamedSignal> = distances.collect();
+    all.extend(distances);
     all
 }
 
@@ -76,7 +86,7 @@ pub(super) fn along_values<S: SweptScene>(
         of.is_some_and(|(name, _)| is_among(&known, name))
     });
     if !are_forces {
-        let all = signals(scene, rows, analysis).into_iter();
+        let all = signals(scene, rows, analysis, &requested.targets).into_iter();
         known = all.map(|of| (of.name, of.signal)).collect();
     }
     let has_peaks = requested.along().any(|(q, _)| q.kind.is_by_default());
@@ -100,7 +110,7 @@ pub(super) fn along_values<S: SweptScene>(
     let values = statistics_along(scene, rows, analysis, &wanted)?;
     if let Some(k) = values.iter().position(|value| !value.is_finite()) {
         let message = format!(
-            "`{}` has no value: its column is empty at some positions",
+            "`{}` has no value: its column is empty at some positions, or its table goes beyond them",
             found[k]
         );
         return Err(scene.error(message, None, &[]).into());

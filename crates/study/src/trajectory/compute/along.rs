@@ -9,9 +9,6 @@ use crate::trajectory::compute::{
 };
 use std::f64::consts::TAU;
 
-/// Extremes that differ by less, as a part of the larger, tie.
-const TIE: f64 = 1e-6;
-
 /// The analysis for statistics: along the scene's motion or sweep, or statics over its range.
 pub(crate) fn analysis_along(scene: &impl RowScene) -> Option<Analysis> {
     if let (Some(_), _) | (_, Some(_)) = scene.prescribed() {
@@ -38,53 +35,38 @@ pub(crate) fn statistics_along<S: RowScene>(
     analysis: Analysis,
     wanted: &[(Signal, Statistic)],
 ) -> Result<Vec<f64>, StudyError> {
-    search_along(scene, rows, analysis, wanted, |search, curves, duration| {
-        let each = curves.into_iter();
-        let values = each.map(|(curve, statistic)| search.value(curve, statistic, duration));
-        values.collect()
-    })
+    search_along(
+        scene,
+        rows,
+        analysis,
+        wanted,
+        |search, curves, all, duration| {
+            let values = all.iter().map(|(signal, statistic)| match signal {
+                Signal::Distance(distance) => {
+                    let distances = search.distances(distance, curves).unwrap_or_default();
+                    of_distances(&distances, *statistic)
+                }
+                own => {
+                    let curve = curves.iter().find(|curve| curve.signal == *own);
+                    curve.map_or(f64::NAN, |curve| search.value(curve, *statistic, duration))
+                }
+            });
+            values.collect()
+        },
+    )
 }
 
-/// A statistic and the positions on whose signal it depends: its derivative by a number of the scene is the sum of the weights times
-/// those of the signal there, at positions that stay where they are.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Weighted {
-    pub(crate) value: f64,
-    /// The summed signal.
-    pub(crate) signal: Signal,
-    /// Fractions of the trajectory, with their weights.
-    pub(crate) weights: Vec<Point>,
-    /// Other fractions at which an extremum is as large: the statistic has a kink there.
-    pub(crate) ties: Vec<f64>,
-}
-
-/// As [`statistics_along`], with their weights.
-///
-/// # Errors
-/// As of that.
-pub(crate) fn weighted_along<S: RowScene>(
-    scene: &S,
-    rows: &S::Rows,
-    analysis: Analysis,
-    wanted: &[(Signal, Statistic)],
-) -> Result<Vec<Weighted>, StudyError> {
-    search_along(scene, rows, analysis, wanted, |search, curves, duration| {
-        let each = curves.into_iter();
-        let all = each.map(|(curve, statistic)| search.weighted(curve, statistic, duration));
-        all.collect()
-    })
-}
-
-/// What a search among the curves of some signals along the scene's trajectory finds; each curve comes with the statistic that is wanted of it,
-/// and with the duration, s.
-fn search_along<S: RowScene, R>(
+/// What a search finds among the curves of some signals along the scene's trajectory. It takes the curves, the wanted statistics with the
+/// signals that they sum up, and the duration, s.
+pub(super) fn search_along<S: RowScene, R>(
     scene: &S,
     rows: &S::Rows,
     analysis: Analysis,
     wanted: &[(Signal, Statistic)],
     search: impl for<'c, 't, 'e> FnOnce(
         &mut CurveSearch<'t, S::Evaluator<'e>>,
-        Vec<(&'c Curve, Statistic)>,
+        &'c [Curve],
+        &'c [(Signal, Statistic)],
         f64,
     ) -> Vec<R>,
 ) -> Result<Vec<R>, StudyError> {
@@ -92,14 +74,14 @@ fn search_along<S: RowScene, R>(
     let followed = scene.followed(model);
     let trajectory = Trajectory::new(&followed, analysis, None)?;
     trajectory.check_laws(&followed)?;
+    let wanted: Vec<(Signal, Statistic)> = wanted
+        .iter()
+        .map(|(signal, statistic)| (signal.summed_by(*statistic), *statistic))
+        .collect();
     let mut curves: Vec<Curve> = Vec::new();
-    let mut order = Vec::with_capacity(wanted.len());
-    for (signal, statistic) in wanted {
-        let signal = signal.summed_by(*statistic);
-        let known = curves.iter().position(|curve| curve.signal == signal);
-        order.push(known.unwrap_or(curves.len()));
-        if known.is_none() {
-            curves.push(Curve::new(signal));
+    for signal in wanted.iter().flat_map(|(signal, _)| signal.parts()) {
+        if !curves.iter().any(|curve| curve.signal == *signal) {
+            curves.push(Curve::new(signal.clone()));
         }
     }
     let mut evaluator = scene.evaluator(rows, rows, analysis, &[])?;
@@ -122,15 +104,24 @@ fn search_along<S: RowScene, R>(
         trajectory: &trajectory,
         evaluator,
     };
-    let each = wanted.iter().zip(order);
-    let each = each.map(|(&(_, statistic), k)| (&curves[k], statistic));
-    Ok(search(&mut of_curves, each.collect(), duration))
+    Ok(search(&mut of_curves, &curves, &wanted, duration))
+}
+
+/// A statistic of distances from the rows of a table; NaN if there are none.
+fn of_distances(distances: &[f64], statistic: Statistic) -> f64 {
+    let mean_of =
+        |of: fn(f64) -> f64| distances.iter().map(|d| of(*d)).sum::<f64>() / distances.len() as f64;
+    match statistic {
+        Statistic::Mean => mean_of(|d| d),
+        Statistic::Rms => mean_of(|d| d * d).sqrt(),
+        _ => distances.iter().copied().fold(f64::NAN, f64::max),
+    }
 }
 
 /// A signal at the positions of a trajectory.
-struct Curve {
-    signal: Signal,
-    points: Vec<Point>,
+pub(super) struct Curve {
+    pub(super) signal: Signal,
+    pub(super) points: Vec<Point>,
     /// Of an angle that unwraps: the last value, its rate and its time.
     last: Option<[f64; 3]>,
 }
@@ -158,7 +149,7 @@ impl Curve {
     }
 
     /// The value at the position nearest to a fraction.
-    fn near(&self, u: f64) -> f64 {
+    pub(super) fn near(&self, u: f64) -> f64 {
         let last = self.points.len().saturating_sub(1);
         let k = (u * last as f64).round() as usize;
         self.points.get(k).map_or(f64::NAN, |[_, value]| *value)
@@ -183,17 +174,18 @@ fn value_of(signal: &Signal, evaluator: &impl RowEvaluator, sample: &TrajectoryS
             squares.sum::<f64>().sqrt()
         }
         Signal::Power(i) => evaluator.forces().tau[*i] * sample.q_dot[*i],
+        Signal::Distance(_) => f64::NAN,
     }
 }
 
 /// The search for extremes between the positions.
-struct CurveSearch<'a, E> {
+pub(super) struct CurveSearch<'a, E> {
     trajectory: &'a Trajectory<'a>,
-    evaluator: E,
+    pub(super) evaluator: E,
 }
 
 impl<E: RowEvaluator> CurveSearch<'_, E> {
-    fn value(&mut self, curve: &Curve, statistic: Statistic, duration: f64) -> f64 {
+    pub(super) fn value(&mut self, curve: &Curve, statistic: Statistic, duration: f64) -> f64 {
         match statistic {
             Statistic::Max => self.highest(curve, |v| v),
             Statistic::Min => -self.highest(curve, |v| -v),
@@ -202,71 +194,6 @@ impl<E: RowEvaluator> CurveSearch<'_, E> {
             Statistic::Mean => curve.mean_of(|v| v),
             Statistic::Rms => curve.mean_of(|v| v * v).sqrt(),
             Statistic::Work => duration * curve.mean_of(|v| v),
-        }
-    }
-
-    /// The value of a statistic with its weights.
-    fn weighted(&mut self, curve: &Curve, statistic: Statistic, duration: f64) -> Weighted {
-        let value = self.value(curve, statistic, duration);
-        let mut found = Weighted {
-            value,
-            signal: curve.signal.clone(),
-            weights: Vec::new(),
-            ties: Vec::new(),
-        };
-        // Those of a mean by trapezoids, each times the derivative of its summand.
-        let last = (curve.points.len() - 1) as f64;
-        let mean = |slope: &dyn Fn(f64) -> f64| -> Vec<Point> {
-            let each = curve.points.iter().enumerate();
-            let weights = each.map(|(k, &[u, v])| {
-                let is_end = k == 0 || k + 1 == curve.points.len();
-                [u, slope(v) * if is_end { 0.5 } else { 1.0 } / last]
-            });
-            weights.collect()
-        };
-        match statistic {
-            Statistic::Mean => found.weights = mean(&|_| 1.0),
-            Statistic::Rms => found.weights = mean(&|v| v / value),
-            Statistic::Work => found.weights = mean(&|_| duration),
-            Statistic::Max => self.add_highest(curve, |v| v, 1.0, &mut found),
-            Statistic::Min => self.add_highest(curve, |v| -v, 1.0, &mut found),
-            Statistic::Stroke => {
-                self.add_highest(curve, |v| v, 1.0, &mut found);
-                self.add_highest(curve, |v| -v, -1.0, &mut found);
-            }
-            Statistic::MaxAbs | Statistic::PeakPower => {
-                self.add_highest(curve, f64::abs, 1.0, &mut found);
-                let at = found.weights.last().map_or(0.0, |[u, _]| *u);
-                let sign = curve.near(at).signum();
-                found.weights.iter_mut().for_each(|[_, w]| *w = sign);
-            }
-        }
-        found
-    }
-
-    /// Adds the position of the highest value of a function of a signal, with a weight, and those that tie with it.
-    fn add_highest(
-        &mut self,
-        curve: &Curve,
-        of: fn(f64) -> f64,
-        weight: f64,
-        found: &mut Weighted,
-    ) {
-        let all = self.high_points(curve, of);
-        let higher = |a: Point, b: Point| if b[1] > a[1] { b } else { a };
-        let Some([at, highest]) = all.iter().copied().reduce(higher) else {
-            return;
-        };
-        found.weights.push([at, weight]);
-        let apart = 1.0 / (curve.points.len() - 1) as f64;
-        for [u, value] in all {
-            // The two ends of a turn are one position.
-            let distance = (u - at).abs();
-            let is_other = distance.min((1.0 - distance).abs()) > apart;
-            let is_known = found.ties.iter().any(|tie| (tie - u).abs() <= apart);
-            if is_other && !is_known && highest - value <= TIE * highest.abs() {
-                found.ties.push(u);
-            }
         }
     }
 
@@ -280,28 +207,34 @@ impl<E: RowEvaluator> CurveSearch<'_, E> {
     }
 
     /// The highest position of a function of a signal, and those that are nearly as high.
-    fn high_points(&mut self, curve: &Curve, of: fn(f64) -> f64) -> Vec<Point> {
+    pub(super) fn high_points(&mut self, curve: &Curve, of: fn(f64) -> f64) -> Vec<Point> {
         let points: Vec<Point> = curve.points.iter().map(|[u, v]| [*u, of(*v)]).collect();
         let is_searched = match &curve.signal {
             Signal::Column(column) => is_continuous(column),
-            Signal::Norm(_) | Signal::Power(_) => true,
+            Signal::Norm(_) | Signal::Power(_) | Signal::Distance(_) => true,
         };
         self.evaluator
             .limit_to(curve.signal.quantities().into_iter());
-        let (trajectory, evaluator) = (self.trajectory, &mut self.evaluator);
         let mut value = |u: f64| {
-            let sample = trajectory.sample_at(u);
-            let t = trajectory.load_time(&sample);
-            evaluator
-                .evaluate(&sample, t)
-                .ok()
-                .filter(|()| is_searched)?;
-            let mut value = value_of(&curve.signal, &*evaluator, &sample);
-            if curve.unwraps() {
-                value += TAU * ((curve.near(u) - value) / TAU).round();
-            }
-            Some(of(value)).filter(|value| value.is_finite())
+            let found = self.values(u, &[curve]).filter(|_| is_searched)?;
+            Some(of(found[0])).filter(|value| value.is_finite())
         };
         high_points(&points, &mut value)
+    }
+
+    /// The values of signals at a completed fraction; the revolutions of an angle are those of the nearest position.
+    pub(super) fn values(&mut self, u: f64, curves: &[&Curve]) -> Option<Vec<f64>> {
+        let sample = self.trajectory.sample_at(u);
+        let t = self.trajectory.load_time(&sample);
+        self.evaluator.evaluate(&sample, t).ok()?;
+        let values = curves.iter().map(|curve| {
+            let value = value_of(&curve.signal, &self.evaluator, &sample);
+            let revolutions = match curve.unwraps() {
+                true => ((curve.near(u) - value) / TAU).round(),
+                false => 0.0,
+            };
+            value + TAU * revolutions
+        });
+        Some(values.collect())
     }
 }

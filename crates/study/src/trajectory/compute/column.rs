@@ -41,6 +41,8 @@ pub enum Quantity {
     MomentMagnitude(JointId),
     /// Force x, y and moment on the frame; in space three components of each.
     ShakingForce(usize),
+    /// The least determinant of a closure over the lengths of its columns; it has no column.
+    LeastDeterminant,
     /// A term of the power balance: actuators, loads, rate of the kinetic energy, residual; and the kinetic energy.
     Power(usize),
     LoadForce(usize),
@@ -92,6 +94,7 @@ impl Column {
             | Quantity::Point(_, _, order, _) => order == 0 || moves,
             Quantity::VelocityRatio(_)
             | Quantity::MechanicalAdvantage(..)
+            | Quantity::LeastDeterminant
             | Quantity::TransmissionAngle(_) => analysis != Analysis::FreeMotion,
             Quantity::Extra(_) => analysis == Analysis::FreeMotion,
             Quantity::Pole(..) => moves,

@@ -124,6 +124,7 @@ fn is_kinematic(quantity: Quantity) -> bool {
             | Q::Rotation(..)
             | Q::Point(..)
             | Q::TransmissionAngle(_)
+            | Q::LeastDeterminant
             | Q::VelocityRatio(_)
     )
 }
@@ -253,13 +254,15 @@ impl RowEvaluator for PositionEvaluator<'_> {
     fn limit_to(&mut self, quantities: impl Iterator<Item = Quantity>) {
         (self.has_forces_on_bodies, self.forces.has_forces) = (false, false);
         (self.has_quotients, self.has_scales) = (false, false);
+        let mut has_determinants = false;
         for quantity in quantities {
+            has_determinants |= quantity == Quantity::LeastDeterminant;
             self.has_forces_on_bodies |= needs_forces_on_bodies(quantity);
             self.forces.has_forces |= !is_kinematic(quantity);
             self.has_quotients |= is_quotient(quantity);
             self.has_scales |= has_scale(quantity);
         }
-        self.forces.keeps_poses = self.has_quotients;
+        self.forces.keeps_poses = self.has_quotients || has_determinants;
     }
 
     fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
@@ -335,6 +338,11 @@ impl RowEvaluator for PositionEvaluator<'_> {
             }
             Quantity::Pole(body, order, axis) => component(self.pole(body, order), axis),
             Quantity::TransmissionAngle(dyad) => dyad.angle(states),
+            Quantity::LeastDeterminant => {
+                let forces = &self.forces;
+                let plan = forces.model.plan();
+                plan.least_relative_determinant(&forces.pose)
+            }
             Quantity::KnownReaction(i, k) => self.known_reaction(i, k),
             Quantity::BodyFrameForce(joint, body, axis) => {
                 let rotation = states.body(body).rotation;

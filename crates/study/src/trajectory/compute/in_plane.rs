@@ -97,6 +97,7 @@ impl RowScene for PlaneScene {
             | Q::ActuatorCoordinate(..)
             | Q::ActuatorForce(_)
             | Q::ShakingForce(_)
+            | Q::LeastDeterminant
             | Q::Power(_)
             | Q::LoadForce(_)
             | Q::LoadPower(_)

@@ -5,6 +5,7 @@ mod analysis;
 mod column;
 mod columns;
 mod corners;
+mod distances;
 mod dyads;
 mod early_stop;
 mod evaluator;
@@ -31,11 +32,13 @@ mod statistic;
 mod trajectory;
 mod unit_references;
 mod unit_scales;
+mod weighted;
 
 pub(crate) use along::{analysis_along, peak_analysis, statistics_along};
 pub use analysis::Analysis;
 pub(crate) use column::{Column, ColumnList, Quantity, is_prefix_of, units};
 pub(crate) use columns::all_columns;
+pub(crate) use distances::Distance;
 pub(crate) use dyads::{Dyad, dyads};
 pub(crate) use early_stop::{
     CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
@@ -71,3 +74,4 @@ pub(crate) use trajectory::{
 };
 pub(crate) use unit_references::UnitReferences;
 pub(crate) use unit_scales::{UnitScales, force_scales};
+pub(crate) use weighted::{Weighted, weighted_along};

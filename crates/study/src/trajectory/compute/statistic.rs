@@ -1,6 +1,6 @@
 //! What a result of a sweep says about a quantity along a trajectory: the one table of its names, units and meanings.
 
-use crate::trajectory::compute::{Analysis, Column, Quantity};
+use crate::trajectory::compute::{Analysis, Column, Distance, Quantity};
 
 /// A number that sums up a quantity along a trajectory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,6 +48,8 @@ pub(crate) enum Signal {
     Norm(Vec<Quantity>),
     /// The power of an actuator.
     Power(usize),
+    /// The distance from the rows of a table.
+    Distance(Box<Distance>),
 }
 
 impl Statistic {
@@ -67,13 +69,13 @@ impl Statistic {
         analysis: Analysis,
     ) -> Option<&'u str> {
         let quantity = signal.quantity();
+        let is_distance = matches!(signal, Signal::Distance(_));
         let is_force = matches!(quantity, Some(Quantity::ActuatorForce(_)));
         match self {
             Self::Work => (is_force || unit == "W").then_some("J"),
             Self::PeakPower => (is_force && analysis != Analysis::Statics).then_some("W"),
-            Self::Max | Self::Min | Self::MaxAbs | Self::Mean | Self::Rms | Self::Stroke => {
-                Some(unit)
-            }
+            Self::MaxAbs | Self::Mean | Self::Rms => Some(unit),
+            Self::Max | Self::Min | Self::Stroke => (!is_distance).then_some(unit),
         }
     }
 }
@@ -83,7 +85,7 @@ impl Signal {
     pub(crate) fn quantity(&self) -> Option<Quantity> {
         match self {
             Self::Column(column) => Some(column.quantity),
-            Self::Norm(_) | Self::Power(_) => None,
+            Self::Norm(_) | Self::Power(_) | Self::Distance(_) => None,
         }
     }
 
@@ -108,9 +110,21 @@ impl Signal {
         }
     }
 
+    /// The signals whose values along the trajectory it needs.
+    pub(super) fn parts(&self) -> Vec<&Self> {
+        match self {
+            Self::Distance(distance) => {
+                let all = distance.at.iter().chain(&distance.of);
+                all.map(|(signal, _)| signal).collect()
+            }
+            own => vec![own],
+        }
+    }
+
     /// The quantities from which it follows.
     pub(super) fn quantities(&self) -> Vec<Quantity> {
         match self {
+            Self::Distance(_) => self.parts().iter().flat_map(|of| of.quantities()).collect(),
             Self::Column(column) => vec![column.quantity],
             Self::Norm(components) => components.clone(),
             Self::Power(i) => vec![Quantity::ActuatorForce(*i)],
