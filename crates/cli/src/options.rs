@@ -81,6 +81,17 @@ pub(crate) enum Command {
         #[arg(long, value_parser = choice(OPERATING_POINTS), default_value = "equilibrium")]
         about: OperatingPoint,
     },
+    /// Derivatives of results of a sweep by all numbers of the scene: on which of them a peak, a mean or a period depends, and how much
+    Gradient {
+        /// The scene file, or `-` for standard input
+        scene: PathBuf,
+        /// The results, by their names in a sweep: `phi.actuator_force.rms,m.max`
+        #[arg(long, value_name = "RESULT,…", value_delimiter = ',', required = true)]
+        of: Vec<String>,
+        /// Compare each derivative with differences of results
+        #[arg(long)]
+        check: bool,
+    },
     /// The two kinetostatic runs that give the reduced parameters (unit speed, unit acceleration), in time, and their combination
     Runs {
         /// The scene file
@@ -175,6 +186,7 @@ impl Command {
             | Self::WorkPrecision { scene }
             | Self::Equilibria { scene }
             | Self::Linearise { scene, .. }
+            | Self::Gradient { scene, .. }
             | Self::Runs { scene, .. }
             | Self::Symbolic { scene, .. }
             | Self::Calibrate { scene, .. }

@@ -59,6 +59,10 @@ fn request<'a>(command: &'a Command, out: &'a Path) -> Result<Option<Request<'a>
         },
         Command::Equilibria { .. } => Request::Equilibria,
         Command::Linearise { about, .. } => Request::Linearise { about: *about },
+        Command::Gradient { of, check, .. } => Request::Gradient {
+            results: of,
+            has_check: *check,
+        },
         Command::Runs { points, .. } => Request::UnitRuns {
             points: points.map(|n| n as usize),
         },

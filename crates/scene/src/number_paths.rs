@@ -4,7 +4,7 @@
 use crate::bodies::Bodies;
 use crate::diagnostics::Span;
 use crate::dimensions::Dimensions;
-use crate::keys::{ValueShape, schemas_of, table};
+use crate::keys::{KeySchema, schemas_of, table};
 use crate::spans::SceneLocation;
 use crate::table_reader::TableReader;
 use crate::value::written_number;
@@ -23,6 +23,8 @@ pub(crate) struct SceneNumber {
     pub(crate) span: Span,
     /// The part of a body to which it belongs; outside the bodies, the whole scene.
     pub(crate) location: SceneLocation,
+    /// Its unit as the key is described, such as `length/s`; of a body that of its location.
+    pub(crate) unit: &'static str,
 }
 
 /// Sections whose numbers can be varied: all that describe the mechanism and its motion, and the parameters.
@@ -46,13 +48,7 @@ pub(crate) fn section_numbers(root: &TableReader<'_>) -> Vec<SceneNumber> {
     for section in SECTIONS {
         if let (Some(entry), Some(key)) = (root.get(section), table("scene").key(section)) {
             let (location, path) = (SceneLocation::Whole, section.to_owned());
-            gather(
-                location,
-                path,
-                entry.value.tree,
-                Some(&key.shape),
-                &mut found,
-            );
+            gather(location, path, entry.value.tree, Some(key), &mut found);
         }
     }
     found
@@ -95,22 +91,22 @@ fn gather(
     location: SceneLocation,
     path: String,
     value: &Spanned<DeValue<'_>>,
-    shape: Option<&'static ValueShape>,
+    key: Option<&'static KeySchema>,
     found: &mut Vec<SceneNumber>,
 ) {
     match value.get_ref() {
         DeValue::Table(table) => {
-            let schemas = shape.map_or_else(Vec::new, |shape| schemas_of(table, shape));
+            let schemas = key.map_or_else(Vec::new, |key| schemas_of(table, &key.shape));
             for (key, value) in table {
                 let name = key.get_ref().as_ref();
                 let schema = schemas.iter().find_map(|schema| schema.key(name));
                 let path = format!("{path}.{name}");
-                gather(location, path, value, schema.map(|s| &s.shape), found);
+                gather(location, path, value, schema, found);
             }
         }
         DeValue::Array(array) => {
             for (i, value) in array.iter().enumerate() {
-                gather(location, format!("{path}[{i}]"), value, None, found);
+                gather(location, format!("{path}[{i}]"), value, key, found);
             }
         }
         number => {
@@ -121,6 +117,7 @@ fn gather(
                     value,
                     span,
                     location,
+                    unit: key.map_or("", |key| key.unit.as_str()),
                 });
             }
         }

@@ -23,6 +23,12 @@ impl SceneFile {
         self.body_numbers.iter().map(|n| n.path.clone()).collect()
     }
 
+    /// The path of every number of the bodies and of the sections of joints, loads, frictions, drives and motions.
+    pub fn all_number_paths(&self) -> Vec<String> {
+        let all = self.body_numbers.iter().chain(&self.section_numbers);
+        all.map(|number| number.path.clone()).collect()
+    }
+
     /// The number at `path`, in the scene's own unit. In addition to [`number_paths`](Self::number_paths), these are all numbers in
     /// the sections of joints, loads, frictions, drives and motions, by their keys: `loads.brake.damping`,
     /// `motion.initial-velocity.phi`, `joints.guide.axis[0]`.
@@ -33,14 +39,29 @@ impl SceneFile {
         self.find_number(path).map(|n| n.value)
     }
 
-    /// The unit of the number at `path`, such as `mm` or `kg m2`; empty if there is no such number.
-    pub fn unit_of(&self, path: &str) -> &str {
-        match self.location_of(path) {
-            SceneLocation::Mass(_) => &self.units.mass.name,
-            SceneLocation::Inertia(_) => &self.units.inertia.name,
-            SceneLocation::Center(_) | SceneLocation::Point(..) => &self.units.length.name,
-            _ => "",
+    /// The unit of the number at `path`, such as `mm` or `kg m2`; empty if there is no such number, it has no unit, or its unit depends on
+    /// other numbers.
+    pub fn unit_of(&self, path: &str) -> String {
+        let units = &self.units;
+        let unit = match self.location_of(path) {
+            SceneLocation::Mass(_) => "mass",
+            SceneLocation::Inertia(_) => "inertia",
+            SceneLocation::Center(_) | SceneLocation::Point(..) => "length",
+            _ => self.find_number(path).map_or("", |number| number.unit),
+        };
+        if unit.contains(" or ") || unit.contains(',') || unit == "SI" {
+            return String::new();
         }
+        let named = [
+            ("length", &units.length),
+            ("angle", &units.angle),
+            ("mass", &units.mass),
+            ("inertia", &units.inertia),
+        ];
+        let named = named.into_iter();
+        named.fold(unit.to_owned(), |text, (word, unit)| {
+            text.replace(word, &unit.name)
+        })
     }
 
     /// The text with the numbers at some paths replaced by values in the scene's own unit.

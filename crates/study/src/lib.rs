@@ -50,6 +50,7 @@ pub mod equilibria;
 mod export;
 pub mod exported_runs;
 pub mod free_motion;
+pub mod gradient;
 mod in_plane;
 pub mod linearise;
 pub mod machines;

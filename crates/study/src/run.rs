@@ -10,6 +10,7 @@ use crate::explain::StudyError;
 use crate::export::ExportRequest;
 use crate::export::output::ExportTarget;
 use crate::free_motion::compute::MotionSolver;
+use crate::gradient::output::gradient;
 use crate::linearise::compute::OperatingPoint;
 use crate::linearise::output::linearise;
 use crate::models::SolverSettings;
@@ -97,6 +98,13 @@ pub enum Request<'a> {
     },
     /// [`sweep`].
     Sweep(ParameterSweep<'a>),
+    /// [`gradient`].
+    Gradient {
+        /// The results, by their names in a sweep.
+        results: &'a [String],
+        /// Whether each derivative is compared with differences.
+        has_check: bool,
+    },
 }
 
 /// Studies a scene.
@@ -154,6 +162,9 @@ impl SceneTask for Study<'_> {
             Request::Export { target, asked } => export(scene, *target, asked)?,
             Request::Calibrate { parameter, period } => calibrate(scene, *parameter, *period)?,
             Request::Sweep(asked) => sweep(scene, asked, progress)?,
+            Request::Gradient { results, has_check } => {
+                gradient(scene, results, *has_check, progress)?
+            }
         };
         Ok(TrajectoryOutcome::from(outcome))
     }

@@ -5,6 +5,7 @@ use crate::calibrate::CalibratedScene;
 use crate::explain::StudyError;
 use crate::export::ExportRequest;
 use crate::free_motion::compute::SimulatedScene;
+use crate::gradient::GradientScene;
 use crate::trajectory::compute::{ComputedTrajectory, RowSource};
 use crate::unit_runs::compute::UnitRunScene;
 use dwell_dynamics::{Orbit, ReducedState};
@@ -24,7 +25,7 @@ use {
 pub type PageAndStop = (Page, Option<StudyError>);
 
 /// A scene in the plane or in space.
-pub trait StudyScene: SimulatedScene + UnitRunScene + CalibratedScene {
+pub trait StudyScene: SimulatedScene + UnitRunScene + CalibratedScene + GradientScene {
     /// The text that [`check`](crate::check()) prints; its numbers are recorded.
     ///
     /// # Errors

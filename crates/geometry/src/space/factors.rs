@@ -25,22 +25,6 @@ impl<C: Constant> Plan<C> {
         }
     }
 
-    /// The least determinant of a group's Jacobian, as that in the [plane](crate::Plan::least_relative_determinant), with lengths in parts of
-    /// the size of the mechanism.
-    pub fn least_relative_determinant(&self, pose: &Pose<f64>) -> f64 {
-        let mut memory = pose.clone();
-        let each = self.groups.iter().map(|group| {
-            self.fill_rows(group, &mut memory);
-            let (m, n) = (group.rows.len(), group.unknowns.len());
-            let mut matrix = vec![0.0; m * n];
-            for inner in &group.inner {
-                matrix[inner.at] = memory.entries[inner.entry] * inner.scale;
-            }
-            relative_volume(&mut matrix, m, n)
-        });
-        each.fold(1.0, f64::min)
-    }
-
     /// The solution of a closed group's equations for the right-hand sides in the scratch memory, by row; it leaves the unknowns there.
     #[inline(always)]
     pub(super) fn solve<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) {
@@ -107,6 +91,22 @@ impl<C: Constant> Plan<C> {
 }
 
 impl Plan {
+    /// The least determinant of a group's Jacobian, as that in the [plane](crate::Plan::least_relative_determinant), with lengths in parts of
+    /// the size of the mechanism.
+    pub fn least_relative_determinant(&self, pose: &Pose<f64>) -> f64 {
+        let mut memory = pose.clone();
+        let each = self.groups.iter().map(|group| {
+            self.fill_rows(group, &mut memory);
+            let (m, n) = (group.rows.len(), group.unknowns.len());
+            let mut matrix = vec![0.0; m * n];
+            for inner in &group.inner {
+                matrix[inner.at] = memory.entries[inner.entry] * inner.scale;
+            }
+            relative_volume(&mut matrix, m, n)
+        });
+        each.fold(1.0, f64::min)
+    }
+
     /// The inverse of a group's factored Jacobian, unknowns by rows; the least-squares inverse if equations are
     /// redundant.
     pub(super) fn inverse(&self, group: &Group, pose: &mut Pose) -> Vec<f64> {

@@ -68,6 +68,13 @@ pub(super) fn rows_along<C: Constant>(
 }
 
 impl Plan {
+    /// Whether a loop keeps to a plane.
+    pub fn keeps_to_planes(&self) -> bool {
+        self.closures
+            .iter()
+            .any(|closure| !closure.unmoved.is_empty())
+    }
+
     /// Gives each closure that keeps to a plane its rows along the plane and across it, at the assembled pose.
     pub(super) fn find_planes(&mut self, mechanism: &Mechanism, pose: &Pose) {
         for c in 0..self.closures.len() {

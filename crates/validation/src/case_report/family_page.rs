@@ -16,9 +16,9 @@ const DECIDED: f64 = 1.1;
 type Of = fn(&Member) -> f64;
 
 /// A quantity that the source shows or could show.
-struct Observable<'a> {
+struct Observable {
     name: String,
-    unit: &'a str,
+    unit: String,
     /// Its value in a member.
     of: Of,
     /// An angle, whose ratio to another says nothing.
@@ -70,13 +70,14 @@ fn drawn_row(number: &DrawnNumber) -> Vec<String> {
     vec![number.name.clone(), format!("{from} and {to} times")]
 }
 
-fn observables(scene: &PlaneScene) -> Vec<Observable<'_>> {
+fn observables(scene: &PlaneScene) -> Vec<Observable> {
     let reaction = scene.requests.reactions.first();
     let (reaction, force) = reaction.map_or(("reaction".to_owned(), "N"), |r| {
         (scene.mechanism.reaction_name(*r), r.component.unit())
     });
     let fitted = scene.calibration.as_ref();
-    let (fitted, unit) = fitted.map_or(("", ""), |c| (&c.path, scene.unit_of(&c.path)));
+    let (fitted, unit) = fitted.map_or(("", String::new()), |c| (&c.path, scene.unit_of(&c.path)));
+    let unit = unit.as_str();
     let of_fitted = format!("fitted `{fitted}`");
     let largest = format!("largest magnitude of {reaction}");
     let changes = format!("changes of sign of {reaction}");
@@ -97,9 +98,9 @@ fn observables(scene: &PlaneScene) -> Vec<Observable<'_>> {
         (LARGEST_AT, "°", |m| signed_degrees(strongest(m).q)),
         (&changes, "", sign_changes),
     ];
-    let observable = |(name, unit, of): (&str, _, _)| Observable {
+    let observable = |(name, unit, of): (&str, &str, _)| Observable {
         name: name.to_owned(),
-        unit,
+        unit: unit.to_owned(),
         of,
         is_position: name == LARGEST_AT,
     };
@@ -149,10 +150,10 @@ fn spread(family: &Family, of: Of) -> [f64; 4] {
     [0.0, 0.1, 0.9, 1.0].map(|part| part_below(&values, part))
 }
 
-fn observable_row(family: &Family, observable: &Observable<'_>) -> Vec<String> {
+fn observable_row(family: &Family, observable: &Observable) -> Vec<String> {
     let own = (observable.of)(&family.reconstruction);
     let values = [own].into_iter().chain(spread(family, observable.of));
-    let names = [observable.name.clone(), observable.unit.to_owned()];
+    let names = [observable.name.clone(), observable.unit.clone()];
     names
         .into_iter()
         .chain(values.map(|v| digits(v, 4)))
@@ -160,7 +161,7 @@ fn observable_row(family: &Family, observable: &Observable<'_>) -> Vec<String> {
 }
 
 /// What the source decides: what hardly varies over the family, or over most of it.
-fn decision_sentence(family: &Family, observables: &[Observable<'_>]) -> String {
+fn decision_sentence(family: &Family, observables: &[Observable]) -> String {
     let hardly_varies = |low: f64, high: f64| high < DECIDED * low;
     let mut names: [Vec<&str>; 3] = Default::default();
     for observable in observables.iter().filter(|o| !o.is_position) {

@@ -64,7 +64,7 @@ impl Axis {
         };
         Ok(Self {
             path: path.to_owned(),
-            unit: scene.unit_of(path).to_owned(),
+            unit: scene.unit_of(path),
             kind,
         })
     }

@@ -27,6 +27,7 @@ pub(crate) use motions::NamedUnit;
 pub use point::{RequestedQuantities, Results};
 pub(crate) use point::{ResultKind, Row};
 pub(crate) use random::{normal, uniform};
+pub(crate) use signals::signal_of;
 pub use swept_scene::SweptScene;
 #[cfg(feature = "output")]
 pub(crate) use table::block_length;

@@ -46,7 +46,7 @@ pub(crate) struct SweepQuantity {
     pub(crate) unit: String,
     pub(crate) kind: ResultKind,
     /// Its index among the results of its kind.
-    pub(super) index: usize,
+    pub(crate) index: usize,
 }
 
 impl ResultKind {

@@ -56,6 +56,21 @@ pub(super) fn signals<S: SweptScene>(
     all
 }
 
+/// The signal of a statistic along the trajectory of an analysis, by the name of the result.
+pub(crate) fn signal_of<S: SweptScene>(
+    scene: &S,
+    rows: &S::Rows,
+    analysis: Analysis,
+    name: &str,
+) -> Option<Signal> {
+    let (of, _) = Statistic::of_name(name)?;
+    let all = signals(scene, rows, analysis, &[]).into_iter();
+    let mut named = all.map(|named| (named.name, named.signal));
+    let found = named.find(|(name, _)| name == of);
+    let found = found.or_else(|| forces(scene, rows).into_iter().find(|(name, _)| name == of));
+    found.map(|(_, signal)| signal)
+}
+
 /// Actuator forces and requested reactions, which need no list of columns.
 fn forces<S: SweptScene>(scene: &S, rows: &S::Rows) -> Vec<(String, Signal)> {
     let actuators = (0..).map_while(|i| Some((i, scene.actuator(i)?)));

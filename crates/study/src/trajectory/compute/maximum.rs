@@ -46,6 +46,79 @@ pub(crate) fn high_points(
     std::iter::once(highest).chain(found).collect()
 }
 
+/// Parts of the spacing of known points at which the derivatives of a function about its extremum are taken, and steps of Newton's method.
+const STENCIL: f64 = 0.3;
+const LEAST: f64 = 3e-3;
+const STEPS: usize = 3;
+
+/// The place of an extremum, near `u` among points of this spacing, where the derivative is zero: an extreme value is flat, so that a search
+/// by values leaves half of the digits of its place. It is `u` where the function is not known on both sides.
+pub(crate) fn stationary_near(
+    value: &mut dyn FnMut(f64) -> Option<f64>,
+    u: f64,
+    [from, to]: [f64; 2],
+    spacing: f64,
+) -> f64 {
+    let step = STENCIL * spacing.min(u - from).min(to - u);
+    if step < LEAST * spacing {
+        return u;
+    }
+    let mut at = u;
+    for _ in 0..STEPS {
+        let mut values = [0.0; 7];
+        for (k, value_there) in values.iter_mut().enumerate() {
+            match value(at + (k as f64 - 3.0) * step) {
+                Some(found) => *value_there = found,
+                None => return u,
+            }
+        }
+        let [a, b, c, d, e, f, g] = values;
+        // Central differences of sixth order.
+        let slope = (45.0 * (e - c) - 9.0 * (f - b) + (g - a)) / (60.0 * step);
+        let curvature =
+            (270.0 * (e + c) - 27.0 * (f + b) + 2.0 * (g + a) - 490.0 * d) / (180.0 * step * step);
+        let next = at - slope / curvature;
+        if !next.is_finite() || (next - u).abs() > spacing {
+            return u;
+        }
+        at = next;
+    }
+    at
+}
+
+/// Extremes that differ by less, as a part of the larger, tie.
+const TIE: f64 = 1e-6;
+
+/// A highest place, and others that are as high.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct TiedExtremum {
+    pub(crate) at: f64,
+    pub(crate) value: f64,
+    pub(crate) ties: Vec<f64>,
+}
+
+/// The highest of some [high points](high_points) with those that tie with it, of a function that is known between two places at
+/// points of this spacing. If its values at both are the same they are one place of a turn.
+pub(crate) fn extremum_with_ties(
+    high: &[Point],
+    [from, to]: [f64; 2],
+    spacing: f64,
+) -> Option<TiedExtremum> {
+    let higher = |a: Point, b: Point| if b[1] > a[1] { b } else { a };
+    let [at, value] = high.iter().copied().reduce(higher)?;
+    let mut ties: Vec<f64> = Vec::new();
+    for &[u, other] in high {
+        let apart = |v: f64| {
+            let distance = (u - v).abs();
+            distance.min((to - from - distance).abs()) > spacing
+        };
+        if value - other <= TIE * value.abs() && apart(at) && ties.iter().all(|tie| apart(*tie)) {
+            ties.push(u);
+        }
+    }
+    Some(TiedExtremum { at, value, ties })
+}
+
 /// Three points, the middle one not below the others; the middle one may be missing at an end.
 pub(super) type Bracket = (Point, Option<Point>, Point);
 

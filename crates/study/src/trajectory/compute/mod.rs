@@ -53,7 +53,9 @@ pub(crate) use force_evaluator::ForceEvaluator;
 pub(crate) use in_plane::lifted;
 pub(crate) use in_plane::requested_bodies;
 pub(crate) use long_rows::{LongRows, RowStorage, not_stored};
-pub(crate) use maximum::{Point, highest_between};
+pub(crate) use maximum::{
+    Point, extremum_with_ties, high_points, highest_between, stationary_near,
+};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::CouplingMonitor;
 pub(crate) use requested_columns::RequestedColumns;

@@ -122,7 +122,7 @@ impl Signal {
     }
 
     /// The quantities from which it follows.
-    pub(super) fn quantities(&self) -> Vec<Quantity> {
+    pub(crate) fn quantities(&self) -> Vec<Quantity> {
         match self {
             Self::Distance(_) => self.parts().iter().flat_map(|of| of.quantities()).collect(),
             Self::Column(column) => vec![column.quantity],

@@ -2,10 +2,9 @@
 
 use crate::explain::StudyError;
 use crate::trajectory::compute::along::{Curve, CurveSearch, search_along};
-use crate::trajectory::compute::{Analysis, Point, RowEvaluator, RowScene, Signal, Statistic};
-
-/// Extremes that differ by less, as a part of the larger, tie.
-const TIE: f64 = 1e-6;
+use crate::trajectory::compute::{
+    Analysis, Point, RowEvaluator, RowScene, Signal, Statistic, extremum_with_ties, stationary_near,
+};
 
 /// A statistic and the positions on whose signal it depends: its derivative by a number of the scene is the sum of the weights times
 /// those of the signal there, at positions that stay where they are.
@@ -67,6 +66,8 @@ impl<E: RowEvaluator> CurveSearch<'_, E> {
         };
         match statistic {
             Statistic::Mean => found.weights = mean(&|_| 1.0),
+            // At zero it has a kink.
+            Statistic::Rms if value == 0.0 => {}
             Statistic::Rms => found.weights = mean(&|v| v / value),
             Statistic::Work => found.weights = mean(&|_| duration),
             Statistic::Max => self.add_highest(curve, |v| v, 1.0, &mut found),
@@ -93,21 +94,14 @@ impl<E: RowEvaluator> CurveSearch<'_, E> {
         weight: f64,
         found: &mut Weighted,
     ) {
-        let all = self.high_points(curve, of);
-        let higher = |a: Point, b: Point| if b[1] > a[1] { b } else { a };
-        let Some([at, highest]) = all.iter().copied().reduce(higher) else {
+        let spacing = 1.0 / (curve.points.len() - 1) as f64;
+        let high = self.high_points(curve, of);
+        let Some(extremum) = extremum_with_ties(&high, [0.0, 1.0], spacing) else {
             return;
         };
+        let mut value = |u: f64| Some(of(self.values(u, &[curve])?[0]));
+        let at = stationary_near(&mut value, extremum.at, [0.0, 1.0], spacing);
         found.weights.push([at, weight]);
-        let apart = 1.0 / (curve.points.len() - 1) as f64;
-        for [u, value] in all {
-            // The two ends of a turn are one position.
-            let distance = (u - at).abs();
-            let is_other = distance.min((1.0 - distance).abs()) > apart;
-            let is_known = found.ties.iter().any(|tie| (tie - u).abs() <= apart);
-            if is_other && !is_known && highest - value <= TIE * highest.abs() {
-                found.ties.push(u);
-            }
-        }
+        found.ties.extend(extremum.ties);
     }
 }

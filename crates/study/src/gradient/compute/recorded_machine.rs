@@ -1,0 +1,316 @@
+//! The states of a machine as recorded operations, and the derivatives of weighted sums of their outputs.
+
+use super::machine_numbers::{GradientScene, WantedOf, machine_numbers};
+use crate::machines::MachineScene;
+use crate::trajectory::compute::{Quantity, RowScene, Signal};
+use dwell_geometry::JointId;
+use dwell_kinetostatics::{
+    InverseDynamics, MachineModel, Magnitude, RecordableModel as _, RecordedState,
+    ReducibleModel as _, Signal as LoadSignal, WantedMotion,
+};
+use dwell_laws::HeldPieces;
+use dwell_numerics::ReverseSweep;
+
+/// Actuator forces of a recording and of the model agree to this part of the largest; otherwise the operations differ at a pose, and are
+/// recorded anew.
+const SAME: f64 = 1e-9;
+
+/// The memory of the model of a scene for one pose.
+type WorkspaceOf<S> =
+    <<S as MachineScene>::Model as dwell_kinetostatics::ReducibleModel>::Workspace<f64>;
+
+/// A state of motion under loads.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StateOfMotion<'a> {
+    /// The time of the loads, s; `None` without loads.
+    pub(super) load_time: Option<f64>,
+    /// By actuator: coordinate (rad or m), velocity and acceleration.
+    pub(super) q: &'a [f64],
+    pub(super) q_dot: &'a [f64],
+    pub(super) q_ddot: &'a [f64],
+}
+
+/// A machine whose states are recorded.
+pub(super) struct RecordedMachine<'a, S: GradientScene> {
+    scene: &'a S,
+    /// The model under its loads.
+    model: &'a S::Model,
+    workspace: WorkspaceOf<S>,
+    forces: InverseDynamics<f64>,
+    /// The model of the recordings.
+    structure: S::Model,
+    structure_workspace: WorkspaceOf<S>,
+    wanted: WantedOf<S>,
+    /// By wanted coordinate: its number among the measured ones.
+    measured: Vec<usize>,
+    /// By wanted point: its body, and its place there.
+    points: Vec<(usize, [f64; 3])>,
+    /// The numbers of the machine, with the constant magnitudes of its loads.
+    numbers: Vec<f64>,
+    /// Recordings: where one's operations are not those of a pose, there is another.
+    recordings: Vec<RecordedState>,
+    sweep: ReverseSweep<f64>,
+    /// The largest force so far, N or N·m.
+    largest: f64,
+}
+
+impl<'a, S: GradientScene> RecordedMachine<'a, S> {
+    /// The machine of a scene whose rows have this model, for these signals. `None` if they cannot be recorded.
+    pub(super) fn new(scene: &'a S, model: &'a S::Model, signals: &[Signal]) -> Option<Self> {
+        let is_fixed = |m: &Magnitude<_>| !matches!(m, Magnitude::External(_));
+        let is_recordable = model.frictions().len() == 0
+            && model.loads().len() == scene.loads().len()
+            && model.loads().iter().all(|load| is_fixed(&load.magnitude));
+        let quantities: Vec<Quantity> = signals.iter().flat_map(Signal::quantities).collect();
+        if !is_recordable || !quantities.iter().all(|q| is_recorded(*q)) {
+            return None;
+        }
+        let (mut measured, mut points) = (Vec::new(), Vec::new());
+        for quantity in quantities {
+            match quantity {
+                Quantity::Measured(k, _) if !measured.contains(&k) => measured.push(k),
+                Quantity::Point(body, at, ..) if !points.contains(&(body.0, at)) => {
+                    points.push((body.0, at));
+                }
+                _ => {}
+            }
+        }
+        let coordinates = measured.iter().map(|&k| coordinate(scene, k));
+        let wanted = WantedMotion {
+            coordinates: coordinates.collect::<Option<_>>()?,
+            points: points
+                .iter()
+                .map(|&(b, at)| (b.into(), S::point(at)))
+                .collect(),
+        };
+        let structure = scene.with_all_places(model);
+        Some(Self {
+            numbers: machine_numbers(scene, &structure, &wanted)?,
+            workspace: model.pass_workspace(),
+            forces: InverseDynamics {
+                tau: vec![0.0; model.actuators()],
+                reactions: vec![0.0; model.reaction_count()],
+            },
+            structure_workspace: structure.pass_workspace(),
+            structure,
+            scene,
+            model,
+            wanted,
+            measured,
+            points,
+            recordings: Vec::new(),
+            sweep: ReverseSweep::default(),
+            largest: 0.0,
+        })
+    }
+
+    /// The model of the recordings.
+    pub(super) fn structure(&self) -> &S::Model {
+        &self.structure
+    }
+
+    /// Whether redundant constraints may not allow other numbers.
+    pub(super) fn is_redundant(&self) -> bool {
+        S::is_redundant(&self.structure)
+    }
+
+    /// What is wanted of the states.
+    pub(super) fn wanted(&self) -> &WantedOf<S> {
+        &self.wanted
+    }
+
+    /// The numbers by which derivatives are taken.
+    pub(super) fn numbers(&self) -> &[f64] {
+        &self.numbers
+    }
+
+    /// Adds the derivative of a signal at a state by all numbers, times a weight, to `gradient`; `None` if the state cannot be recorded.
+    pub(super) fn add_gradient(
+        &mut self,
+        at: StateOfMotion<'_>,
+        signal: &Signal,
+        weight: f64,
+        gradient: &mut [f64],
+    ) -> Option<()> {
+        let inputs = self.inputs(at)?;
+        self.evaluate(at)?;
+        let forces = self.forces.tau.iter().chain(&self.forces.reactions);
+        let largest = forces.fold(self.largest, |max, v| max.max(v.abs()));
+        self.largest = largest;
+        let agrees = |outputs: &[f64], expected: &[f64]| {
+            let mut pairs = outputs.iter().zip(expected);
+            pairs.all(|(a, b)| (a - b).abs() <= SAME * largest)
+        };
+        let sweep = &mut self.sweep;
+        let tau = &self.forces.tau;
+        let mut recordings = self.recordings.iter();
+        let known = recordings.position(|r| agrees(sweep.evaluate(&r.code, &inputs), tau));
+        let k = match known {
+            Some(k) => k,
+            None => {
+                let described = self.scene.described(&self.wanted);
+                let one = std::slice::from_ref(&inputs);
+                let recorded = RecordedState::record(&self.structure, described, one).ok()?;
+                if !agrees(sweep.evaluate(&recorded.code, &inputs), tau) {
+                    return None;
+                }
+                self.recordings.push(recorded);
+                self.recordings.len() - 1
+            }
+        };
+        let recorded = &self.recordings[k];
+        let outputs = self.sweep.outputs();
+        let mut weights = vec![0.0; outputs.len()];
+        for (output, slope) in self.slopes(signal, outputs, at.q_dot) {
+            weights[output] += weight * slope;
+        }
+        let slopes = self.sweep.gradient(&recorded.code, &inputs, &weights);
+        let layout = recorded.layout;
+        let (of_machine, of_loads) = gradient.split_at_mut(layout.numbers);
+        let own = &slopes[layout.first_number()..layout.solution()];
+        of_machine
+            .iter_mut()
+            .zip(own)
+            .for_each(|(sum, slope)| *sum += slope);
+        if at.load_time.is_some() {
+            let first = layout.first_magnitude();
+            let places = magnitude_places(self.scene.loads());
+            for (sum, place) in of_loads.iter_mut().zip(places) {
+                *sum += slopes[first + place];
+            }
+        }
+        Some(())
+    }
+
+    /// The inputs of a recording at a state.
+    fn inputs(&mut self, at: StateOfMotion<'_>) -> Option<Vec<f64>> {
+        let of_machine = self.numbers.len() - self.scene.loads().len();
+        let mut inputs = [at.q, at.q_dot, at.q_ddot].concat();
+        self.model
+            .update_kinematics(at.q, at.q_dot, &mut self.workspace)
+            .ok()?;
+        if let Some(t) = at.load_time {
+            self.model.update_magnitudes(t, &mut self.workspace).ok()?;
+        }
+        for (k, load) in self.model.loads().iter().enumerate() {
+            let values: Vec<f64> = (self.model.compiled_signals(k).iter())
+                .map(|signal| match *signal {
+                    LoadSignal::Time => at.load_time.unwrap_or(0.0),
+                    LoadSignal::Value(of) => self.model.coordinate_motion(of, &self.workspace)[0],
+                    LoadSignal::Velocity(of) => {
+                        self.model.coordinate_motion(of, &self.workspace)[1]
+                    }
+                })
+                .collect();
+            let is_loaded = at.load_time.is_some();
+            let magnitude = S::Model::magnitudes(&self.workspace)[k];
+            inputs.push(if is_loaded { magnitude } else { 0.0 });
+            for (i, signal) in load.magnitude.signals().iter().enumerate() {
+                if matches!(signal, LoadSignal::Time) {
+                    continue;
+                }
+                let rates = values.iter().enumerate();
+                let rates: Vec<[f64; 2]> = rates.map(|(j, v)| [*v, f64::from(i == j)]).collect();
+                let slope = load.magnitude.rate(&rates, &HeldPieces::default());
+                inputs.extend([if is_loaded { slope } else { 0.0 }, values[i]]);
+            }
+        }
+        inputs.extend(&self.numbers[..of_machine]);
+        inputs.extend(
+            self.structure
+                .solution(at.q, &mut self.structure_workspace)
+                .ok()?,
+        );
+        Some(inputs)
+    }
+
+    /// The forces of the model at a state whose velocities and magnitudes are known.
+    fn evaluate(&mut self, at: StateOfMotion<'_>) -> Option<()> {
+        let Self {
+            model,
+            workspace,
+            forces,
+            ..
+        } = self;
+        model.update_accelerations(at.q_ddot, workspace);
+        if at.load_time.is_none() {
+            S::Model::magnitudes_mut(workspace).fill(0.0);
+        }
+        model.update_wrenches(workspace).ok()?;
+        model.loaded_balance(workspace, forces);
+        Some(())
+    }
+
+    /// The outputs on which a signal depends, with its derivatives by them, where the outputs and velocities have these values.
+    fn slopes(&self, signal: &Signal, outputs: &[f64], q_dot: &[f64]) -> Vec<(usize, f64)> {
+        let place = |quantity: Quantity| self.place(quantity);
+        match signal {
+            Signal::Column(column) => place(column.quantity)
+                .map(|k| (k, 1.0))
+                .into_iter()
+                .collect(),
+            Signal::Norm(components) => {
+                let places: Vec<usize> = components.iter().filter_map(|c| place(*c)).collect();
+                let squares = places.iter().map(|k| outputs[*k] * outputs[*k]);
+                let norm = squares.sum::<f64>().sqrt();
+                places.into_iter().map(|k| (k, outputs[k] / norm)).collect()
+            }
+            Signal::Power(i) => vec![(*i, q_dot[*i])],
+            Signal::Distance(_) => Vec::new(),
+        }
+    }
+
+    /// The output that a quantity is; none of a coordinate of an actuator, which no number changes.
+    fn place(&self, quantity: Quantity) -> Option<usize> {
+        let (actuators, reactions) = (self.model.actuators(), self.model.reaction_count());
+        let coordinates = actuators + reactions;
+        let points = coordinates + 3 * self.measured.len();
+        match quantity {
+            Quantity::ActuatorForce(i) => Some(i),
+            Quantity::Reaction(k) => Some(actuators + k),
+            Quantity::Measured(k, order) => {
+                let at = self.measured.iter().position(|m| *m == k)?;
+                Some(coordinates + 3 * at + order)
+            }
+            Quantity::Point(body, at, order, axis) => {
+                let k = self.points.iter().position(|p| *p == (body.0, at))?;
+                Some(points + S::DIMENSION * (3 * k + order) + axis)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Whether a quantity is an output of a recording, or depends on no number.
+fn is_recorded(quantity: Quantity) -> bool {
+    matches!(
+        quantity,
+        Quantity::Time
+            | Quantity::ActuatorCoordinate(..)
+            | Quantity::ActuatorForce(_)
+            | Quantity::Reaction(_)
+            | Quantity::Measured(..)
+            | Quantity::Point(..)
+    )
+}
+
+/// By load: the place of its magnitude among the inputs of all.
+fn magnitude_places<K, C: Copy>(loads: &[dwell_kinetostatics::Load<K, C>]) -> Vec<usize> {
+    let mut next = 0;
+    let place = |load: &dwell_kinetostatics::Load<K, C>| {
+        let signals = dwell_kinetostatics::signal_coordinates(&load.magnitude).count();
+        let at = next;
+        next += 1 + 2 * signals;
+        at
+    };
+    loads.iter().map(place).collect()
+}
+
+/// A measured coordinate by its number, as of [`RowScene::measured`].
+fn coordinate<S: RowScene>(scene: &S, k: usize) -> Option<crate::machines::CoordinateOf<S>> {
+    let named = scene.named_coordinates();
+    match k.checked_sub(named.len()) {
+        None => Some(named[k].coordinate),
+        Some(joint) => (joint < scene.joint_names().len()).then(|| S::travel(JointId(joint))),
+    }
+}
