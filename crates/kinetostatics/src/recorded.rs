@@ -160,6 +160,8 @@ pub struct StateLayout {
     pub magnitudes: usize,
     /// Number of the machine's numbers.
     pub numbers: usize,
+    /// Number of all inputs.
+    pub inputs: usize,
 }
 
 impl StateLayout {
@@ -222,6 +224,7 @@ impl RecordedState {
                 .map(|load| 1 + 2 * signal_coordinates(&load.magnitude).count())
                 .sum(),
             numbers: numbers.map_err(RecordingError::Evaluation)?.len(),
+            inputs: inputs.first().map_or(0, Vec::len),
         };
         let code = record_at(inputs, |inputs| model.outputs(of, &layout.parts(inputs)))?;
         Ok(Self { code, layout })

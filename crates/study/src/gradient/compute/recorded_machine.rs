@@ -132,32 +132,20 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
         weight: f64,
         gradient: &mut [f64],
     ) -> Option<()> {
-        let inputs = self.inputs(at)?;
+        let mut inputs = self.inputs(at)?;
         self.evaluate(at)?;
         let forces = self.forces.tau.iter().chain(&self.forces.reactions);
-        let largest = forces.fold(self.largest, |max, v| max.max(v.abs()));
-        self.largest = largest;
-        let agrees = |outputs: &[f64], expected: &[f64]| {
-            let mut pairs = outputs.iter().zip(expected);
-            pairs.all(|(a, b)| (a - b).abs() <= SAME * largest)
-        };
-        let sweep = &mut self.sweep;
-        let tau = &self.forces.tau;
-        let mut recordings = self.recordings.iter();
-        let known = recordings.position(|r| agrees(sweep.evaluate(&r.code, &inputs), tau));
-        let k = match known {
-            Some(k) => k,
-            None => {
-                let described = self.scene.described(&self.wanted);
-                let one = std::slice::from_ref(&inputs);
-                let recorded = RecordedState::record(&self.structure, described, one).ok()?;
-                if !agrees(sweep.evaluate(&recorded.code, &inputs), tau) {
-                    return None;
-                }
-                self.recordings.push(recorded);
-                self.recordings.len() - 1
-            }
-        };
+        self.largest = forces.fold(self.largest, |max, v| max.max(v.abs()));
+        let known = inputs.len();
+        // The model follows its own branch; its structure may have other unknowns.
+        let own = self.model.solution(at.q, &mut self.workspace).ok()?;
+        inputs.extend(own);
+        let k = self.recording(&inputs).or_else(|| {
+            let other = self.structure.solution(at.q, &mut self.structure_workspace);
+            inputs.truncate(known);
+            inputs.extend(other.ok()?);
+            self.recording(&inputs)
+        })?;
         let recorded = &self.recordings[k];
         let outputs = self.sweep.outputs();
         let mut weights = vec![0.0; outputs.len()];
@@ -182,7 +170,7 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
         Some(())
     }
 
-    /// The inputs of a recording at a state.
+    /// The inputs of a recording at a state, without the solution of the closures.
     fn inputs(&mut self, at: StateOfMotion<'_>) -> Option<Vec<f64>> {
         let of_machine = self.numbers.len() - self.scene.loads().len();
         let mut inputs = [at.q, at.q_dot, at.q_ddot].concat();
@@ -216,12 +204,33 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
             }
         }
         inputs.extend(&self.numbers[..of_machine]);
-        inputs.extend(
-            self.structure
-                .solution(at.q, &mut self.structure_workspace)
-                .ok()?,
-        );
         Some(inputs)
+    }
+
+    /// Evaluates the recording whose operations are those at some inputs, and gives its number: that is, whose actuator forces are those of
+    /// the model. If there is none, the state is recorded. `None` if it cannot be.
+    fn recording(&mut self, inputs: &[f64]) -> Option<usize> {
+        let Self {
+            sweep,
+            forces,
+            largest,
+            ..
+        } = self;
+        let mut agrees = |recorded: &RecordedState| {
+            let outputs = sweep.evaluate(&recorded.code, inputs);
+            let mut pairs = outputs.iter().zip(&forces.tau);
+            pairs.all(|(a, b)| (a - b).abs() <= SAME * *largest)
+        };
+        let mut recordings = self.recordings.iter();
+        let fits = |r: &RecordedState| r.layout.inputs == inputs.len();
+        if let Some(known) = recordings.position(|r| fits(r) && agrees(r)) {
+            return Some(known);
+        }
+        let described = self.scene.described(&self.wanted);
+        let recorded = RecordedState::record(&self.structure, described, &[inputs.to_vec()]);
+        let recorded = recorded.ok().filter(|recorded| agrees(recorded))?;
+        self.recordings.push(recorded);
+        Some(self.recordings.len() - 1)
     }
 
     /// The forces of the model at a state whose velocities and magnitudes are known.

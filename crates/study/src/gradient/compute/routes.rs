@@ -87,7 +87,7 @@ fn unit_state(q: f64, is_half_dm: bool) -> WeightedState {
 /// Positions of a range among which its extremes are, as of a reduction.
 const INTERVALS: usize = 720;
 
-/// An extremum of m or ½m′ over the range, with those that tie.
+/// An extremum of m or ½m′ over the range, with those that tie; `None` at an end of the range, which moves with the numbers.
 fn extreme_inertia<S: GradientScene>(scene: &S, rows: &S::Rows, index: usize) -> Option<Route> {
     let (is_half_dm, sign) = (index >= 2, if index % 2 == 0 { -1.0 } else { 1.0 });
     let exact = scene.unit_models(&[]).ok()?.exact;
@@ -102,7 +102,9 @@ fn extreme_inertia<S: GradientScene>(scene: &S, rows: &S::Rows, index: usize) ->
     let points: Option<Vec<Point>> = places.map(|q| Some([q, value(q)?])).collect();
     let found = extremum_with_ties(&high_points(&points?, &mut value), [from, to], spacing)?;
     let at = stationary_near(&mut value, found.at, [from, to], spacing);
-    Some(Route {
+    let is_turn = S::model_of(rows).range().period().is_some();
+    let is_inside = at > from + spacing && at < to - spacing;
+    (is_turn || is_inside).then(|| Route {
         signal: Signal::of(Quantity::ActuatorForce(0)),
         states: vec![(unit_state(at, is_half_dm), 1.0)],
         ties: found.ties,
@@ -160,6 +162,9 @@ fn orbit_route<S: GradientScene>(
     }
     None
 }
+
+/// A part of a trajectory that belongs to its end.
+const END: f64 = 3e-3;
 
 /// The positions and weights of a statistic along the trajectory of the scene; `None` if its positions move with the numbers.
 fn statistic_route<S: GradientScene>(
