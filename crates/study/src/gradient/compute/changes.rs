@@ -63,8 +63,7 @@ fn around<S: GradientScene>(
         if !scene.differs_in_numbers_only(&varied, structure) {
             return Ok(None);
         }
-        // Redundant constraints may not allow another value.
-        if machine.is_redundant() {
+        if machine.may_refuse_numbers() {
             varied.rows().map_err(|error| error.to_string())?;
         }
         Ok(machine_numbers(&varied, structure, machine.wanted()))
@@ -87,7 +86,11 @@ pub(super) fn change<S: GradientScene>(
             Ok(None) => return Change::More,
             Err(reason) => return Change::Fixed(reason),
         }
-        if found.len() == 1 && is_affine(machine.numbers(), &found[0].1) {
+        let around = &found[found.len() - 1].1;
+        if jumps(machine.numbers(), around) {
+            return Change::More;
+        }
+        if found.len() == 1 && is_affine(machine.numbers(), around) {
             break;
         }
     }
@@ -126,4 +129,13 @@ fn is_affine(at: &[f64], [after, before]: &Around) -> bool {
         let rounding = 4.0 * f64::EPSILON * at.abs();
         (ahead - behind).abs() <= PROPORTIONAL * ahead.abs() + rounding
     })
+}
+
+/// A change that no small step makes, as a part of a number or of 1.
+const JUMP: f64 = 1e-2;
+
+/// Whether a number jumps: a direction at right angles to an axis that is chosen by its least component.
+fn jumps(at: &[f64], [after, before]: &Around) -> bool {
+    let mut each = at.iter().zip(after.iter().zip(before));
+    each.any(|(at, (after, before))| (after + before - 2.0 * at).abs() > JUMP * at.abs().max(1.0))
 }

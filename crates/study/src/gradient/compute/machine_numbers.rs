@@ -31,8 +31,8 @@ pub trait GradientScene: SweptScene<Model: RecordableModel> {
     /// Whether another scene differs in numbers of its machine alone: in dimensions, masses, and constant numbers of loads.
     fn differs_in_numbers_only(&self, other: &Self, model: &Self::Model) -> bool;
 
-    /// Whether a model has redundant constraints, which may not allow other numbers.
-    fn is_redundant(model: &Self::Model) -> bool;
+    /// Whether a model has redundant constraints or rods that turn idly, which may not allow other numbers.
+    fn may_refuse_numbers(model: &Self::Model) -> bool;
 
     /// The loads.
     fn loads(&self) -> &[ModelLoad<Self::Model>];
@@ -109,7 +109,7 @@ impl GradientScene for PlaneScene {
         differ_in_numbers_only(self, other)
     }
 
-    fn is_redundant(model: &Model) -> bool {
+    fn may_refuse_numbers(model: &Model) -> bool {
         let mut reactions = 0..model.mechanism().reactions().len();
         !reactions.all(|k| model.plan().is_determinate(k))
     }
@@ -179,8 +179,9 @@ impl GradientScene for SpaceScene {
         differ_in_numbers_only(self, other) && !(turned && model.plan().keeps_to_planes())
     }
 
-    fn is_redundant(model: &dwell_kinetostatics::space::Model) -> bool {
-        model.plan().mobility().redundant_count > 0
+    fn may_refuse_numbers(model: &dwell_kinetostatics::space::Model) -> bool {
+        let mobility = model.plan().mobility();
+        mobility.redundant_count > 0 || !mobility.idle.is_empty()
     }
 
     fn loads(&self) -> &[ModelLoad<dwell_kinetostatics::space::Model>] {

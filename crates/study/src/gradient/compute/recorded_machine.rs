@@ -109,9 +109,9 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
         &self.structure
     }
 
-    /// Whether redundant constraints may not allow other numbers.
-    pub(super) fn is_redundant(&self) -> bool {
-        S::is_redundant(&self.structure)
+    /// Whether the mechanism may not allow other numbers.
+    pub(super) fn may_refuse_numbers(&self) -> bool {
+        S::may_refuse_numbers(&self.structure)
     }
 
     /// What is wanted of the states.

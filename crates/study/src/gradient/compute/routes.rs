@@ -177,20 +177,19 @@ fn statistic_route<S: GradientScene>(
         return Ok(None);
     };
     let model = S::model_of(rows);
-    // Without a prescribed motion or sweep a mean is over the range, whose limits move.
-    let is_summed = matches!(
-        statistic,
-        Statistic::Mean | Statistic::Rms | Statistic::Work
-    );
-    let moves = scene.prescribed() == (None, None) && model.range().period().is_none();
-    let Some(signal) = signal_of(scene, rows, analysis, name).filter(|_| !(is_summed && moves))
-    else {
+    let Some(signal) = signal_of(scene, rows, analysis, name) else {
         return Ok(None);
     };
     let found = weighted_along(scene, rows, analysis, &[(signal, statistic)])?;
     let Some(Some(weighted)) = found.into_iter().next() else {
         return Ok(None);
     };
+    // Without a prescribed motion or sweep the trajectory is the range, whose ends move; an extremum inside does not.
+    let moves = scene.prescribed() == (None, None) && model.range().period().is_none();
+    let is_inside = |u: f64| u > END && u < 1.0 - END;
+    if moves && !weighted.weights.iter().all(|[u, _]| is_inside(*u)) {
+        return Ok(None);
+    }
     let followed = scene.followed(model);
     let trajectory = Trajectory::new(&followed, analysis, None)?;
     Ok(Some(route_of(&trajectory, analysis, weighted)))
