@@ -24,6 +24,7 @@ mod equilibria_found;
 mod events;
 mod extremes;
 mod findings;
+mod gradient;
 mod invariance;
 mod joints;
 mod limits;

@@ -8,6 +8,7 @@ use crate::reduced::{CoefficientSource, SceneCoefficients};
 use dwell_dynamics::DynamicsError;
 use dwell_kinetostatics::{InverseDynamics, ReducibleModel as _};
 use dwell_study::assembled::{AssembledModel, FoundStates};
+use dwell_study::gradient::{Gradient, compute_gradient};
 use dwell_study::{
     Analysis, SceneTask, StudyError, StudyScene, compute_free_motion, compute_period,
     compute_trajectory, no_progress,
@@ -102,6 +103,8 @@ pub(crate) trait Assembled: fmt::Debug + Send + Sync {
     fn equilibria(&self) -> Result<Vec<Equilibrium>, Error>;
 
     fn linearise(&self) -> Result<StateSpace, Error>;
+
+    fn gradient(&self, results: &[String]) -> Result<Gradient, Error>;
 
     fn cycle(&self, solver: &Solver, fluctuation: Option<f64>) -> Result<Cycle, Error>;
 }
@@ -260,6 +263,15 @@ impl<S: StudyScene> Assembled for AssembledScene<S> {
 
     fn linearise(&self) -> Result<StateSpace, Error> {
         linearisation_of(&*self.scene)
+    }
+
+    fn gradient(&self, results: &[String]) -> Result<Gradient, Error> {
+        Ok(compute_gradient(
+            &*self.scene,
+            results,
+            false,
+            &no_progress,
+        )?)
     }
 
     fn cycle(&self, solver: &Solver, fluctuation: Option<f64>) -> Result<Cycle, Error> {

@@ -44,6 +44,7 @@
 //! | where does it rest, how does it vibrate? | [`Mechanism::equilibria`], [`Mechanism::linearise`] |
 //! | how steadily does it run, which flywheel does it need? | [`Mechanism::cycle`] |
 //! | what if its dimensions vary? | [`Sweep`] |
+//! | on which numbers does a result depend, and how much? | [`Mechanism::gradient`] |
 //! | code for a controller, or formulas | [`Scene::export`], [`Scene::closed_form`] |
 //!
 //! # Your own loads
@@ -128,6 +129,19 @@ pub use dwell_export::FmiVersion;
 /// # Ok::<(), dwell::Error>(())
 /// ```
 pub use dwell_study::Language;
+/// Results with their derivatives by all numbers of a scene.
+///
+/// ```
+/// let scene = dwell::Scene::read("../../docs/slider.toml")?;
+/// let gradient = scene.assemble()?.gradient(&["m.max"])?;
+/// let inertia = &gradient.results[0];
+/// // The generalised inertia is a sum of multiples of all masses and moments of inertia.
+/// let of_masses = inertia.numbers.iter().filter(|n| n.path.ends_with(".mass") || n.path.ends_with(".inertia"));
+/// let sum: f64 = of_masses.map(|n| n.slope * n.value).sum();
+/// assert!((sum - inertia.value).abs() < 1e-12 * inertia.value);
+/// # Ok::<(), dwell::Error>(())
+/// ```
+pub use dwell_study::gradient::{Gradient, NumberSlope, ResultGradient, SlopeMethod};
 pub use equation::EquationOfMotion;
 pub use error::Error;
 pub use export::ExportTarget;

@@ -35,6 +35,43 @@ impl From<dwell::Equilibrium> for Equilibrium {
     }
 }
 
+/// A result with its gradient: name, unit, value; by number its path, unit, value, derivative and estimated error, which is zero of an
+/// exact one; coordinates at which other extrema are as large.
+#[derive(IntoPyObject)]
+pub(crate) struct ResultGradient {
+    name: String,
+    unit: String,
+    value: f64,
+    paths: Vec<String>,
+    units: Vec<String>,
+    values: Vec<f64>,
+    derivatives: Vec<f64>,
+    errors: Vec<f64>,
+    ties: Vec<f64>,
+}
+
+impl From<dwell::ResultGradient> for ResultGradient {
+    fn from(found: dwell::ResultGradient) -> Self {
+        let numbers = || found.numbers.iter();
+        Self {
+            paths: numbers().map(|n| n.path.clone()).collect(),
+            units: numbers().map(|n| n.unit.clone()).collect(),
+            values: numbers().map(|n| n.value).collect(),
+            derivatives: numbers().map(|n| n.slope).collect(),
+            errors: numbers()
+                .map(|n| match n.method {
+                    dwell::SlopeMethod::Exact => 0.0,
+                    dwell::SlopeMethod::Differences(error) => error,
+                })
+                .collect(),
+            name: found.name,
+            unit: found.unit,
+            value: found.value,
+            ties: found.ties,
+        }
+    }
+}
+
 /// A linearised motion; matrices are lists of rows.
 #[derive(IntoPyObject)]
 pub(crate) struct Linear {

@@ -2,7 +2,7 @@
 
 use crate::errors::Raise as _;
 use crate::interrupt::run;
-use crate::machine::{Cycle, Equation, Equilibrium, Linear};
+use crate::machine::{Cycle, Equation, Equilibrium, Linear, ResultGradient};
 use crate::motion::{Rows, solver};
 use crate::reduced::ReducedModel;
 use numpy::{IntoPyArray as _, PyArray1, PyReadonlyArray1};
@@ -129,6 +129,20 @@ impl Mechanism {
     fn equilibria(&self, progress: &Bound<'_, PyAny>) -> PyResult<Vec<Equilibrium>> {
         let found = run(progress, |_| self.mechanism.equilibria())?;
         Ok(found.into_iter().map(Equilibrium::from).collect())
+    }
+
+    fn gradient(
+        &self,
+        results: Vec<String>,
+        progress: &Bound<'_, PyAny>,
+    ) -> PyResult<Vec<ResultGradient>> {
+        let results: Vec<&str> = results.iter().map(String::as_str).collect();
+        let found = run(progress, |_| self.mechanism.gradient(&results))?;
+        Ok(found
+            .results
+            .into_iter()
+            .map(ResultGradient::from)
+            .collect())
     }
 
     fn linearise(&self, progress: &Bound<'_, PyAny>) -> PyResult<Linear> {

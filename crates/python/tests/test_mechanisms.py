@@ -155,6 +155,13 @@ def test_equilibrium_linear_motion_and_period():
     assert abs(bob.period().period - 2 * np.pi / a / omega) < 1e-13
 
 
+def test_a_gradient_is_homogeneous_in_the_masses():
+    (inertia,) = pendulum(duration=1.0).assemble().gradient(["m.max"])
+    of_masses = [inertia[p] * v for p, v in zip(inertia.paths, inertia.values) if p.endswith((".mass", ".inertia"))]
+    assert abs(sum(of_masses) - inertia.value) < 1e-12 * inertia.value
+    assert inertia["nothing"] == 0.0 and np.all(inertia.errors == 0.0)
+
+
 def test_the_published_period(single_dwell):
     assert abs(single_dwell.period().period - 5.41966267706427) < 1e-12
 

@@ -4,6 +4,7 @@ use super::Mechanism;
 use crate::error::Error;
 use crate::machine::{Cycle, Equilibrium, StateSpace};
 use crate::motion::Solver;
+use dwell_study::gradient::Gradient;
 
 impl Mechanism {
     /// The equilibria: with one coordinate all in its range, with several those that Newton's method reaches from many initial positions.
@@ -28,6 +29,23 @@ impl Mechanism {
     /// ```
     pub fn equilibria(&self) -> Result<Vec<Equilibrium>, Error> {
         self.assembled.equilibria()
+    }
+
+    /// The derivatives of results of a [`Sweep`](crate::Sweep) by all numbers of the scene, in its units: exact where a result is an
+    /// extremum, a mean or a sum along the trajectory, an extremum of m or a period; otherwise by differences.
+    ///
+    /// # Errors
+    /// [`Error::Study`] if there is no such result, or the scene cannot be evaluated.
+    ///
+    /// ```
+    /// let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// let gradient = scene.assemble()?.gradient(&["m.max", "m.min"])?;
+    /// assert_eq!(gradient.results.len(), 2);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn gradient(&self, results: &[&str]) -> Result<Gradient, Error> {
+        let results: Vec<String> = results.iter().map(|name| (*name).to_owned()).collect();
+        self.assembled.gradient(&results)
     }
 
     /// Small motions about the equilibrium nearest to the initial state, as ẋ = A x + B u, z = C x + D u.

@@ -9,7 +9,7 @@ use crate::error::StructureError;
 use crate::plane::Vec2;
 use crate::structure::frames::Frames;
 use crate::structure::lower::{ActuatedCoordinate, Lowered, PairKind};
-use dwell_numerics::{Constant, Scalar};
+use dwell_numerics::Constant;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -267,12 +267,12 @@ fn vector_between<C: Constant>(
     }
 }
 
-/// A sum; zero if it is below the rounding of its parts.
-fn rounded_sum<C: Scalar>(a: Vec2<C>, b: Vec2<C>) -> Vec2<C> {
+/// A sum; zero if it is below the rounding of its parts, unless an evaluation is to depend on it.
+fn rounded_sum<C: Constant>(a: Vec2<C>, b: Vec2<C>) -> Vec2<C> {
     let sum = a + b;
     let length = |vector: Vec2<C>| vector.values().norm();
     let rounding = 4.0 * f64::EPSILON * (length(a) + length(b));
-    if length(sum) <= rounding {
+    if C::IS_PREPARED && length(sum) <= rounding {
         Vec2::zero()
     } else {
         sum

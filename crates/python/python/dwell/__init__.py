@@ -40,7 +40,7 @@ from ._builder import Builder
 from ._closed_form import ClosedForm
 from ._cluster import StoredSweep
 from ._mechanism import Mechanism, State
-from ._moving import Cycle, Equilibrium, Period, StateSpace
+from ._moving import Cycle, Equilibrium, Gradient, Period, StateSpace
 from ._native import DwellError, SceneError, __version__
 from ._reduced import Coefficients, ReducedModel, Table
 from ._results import Motion, Results
@@ -55,6 +55,7 @@ __all__ = [
     "Cycle",
     "DwellError",
     "Equilibrium",
+    "Gradient",
     "Mechanism",
     "Motion",
     "Period",

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from ._moving import Cycle, Equilibrium, Period, StateSpace, complex_numbers
+from ._moving import Cycle, Equilibrium, Gradient, Period, StateSpace, complex_numbers
 from ._progress import Progress
 from ._reduced import Coefficients, ReducedModel
 from ._results import Motion, Results
@@ -178,6 +178,29 @@ class Mechanism:
             found = self._native.equilibria(progress)
         return [
             Equilibrium(np.array(e["coordinates"]), e["stability"], e["modes"], complex_numbers(e["eigenvalues"])) for e in found
+        ]
+
+    def gradient(self, results: list[str]) -> list[Gradient]:
+        """The derivatives of results of ``sweep`` by all numbers of the scene, in its units, the strongest first.
+
+        They are exact where a result is an extremum, a mean or a sum along the trajectory, an extremum of m or a period; otherwise by
+        differences, with an estimated error.
+        """
+        with Progress("gradient") as progress:
+            found = self._native.gradient(results, progress)
+        return [
+            Gradient(
+                r["name"],
+                r["unit"],
+                r["value"],
+                r["paths"],
+                r["units"],
+                np.array(r["values"]),
+                np.array(r["derivatives"]),
+                np.array(r["errors"]),
+                r["ties"],
+            )
+            for r in found
         ]
 
     def linearise(self) -> StateSpace:

@@ -30,6 +30,29 @@ class Equilibrium:
 
 
 @dataclass(frozen=True)
+class Gradient:
+    """A result with its derivatives by the numbers of the scene at ``paths``: in its unit per unit of the number.
+
+    errors: estimated errors of derivatives by differences, zero of exact ones. ties: coordinates (rad or m) at which other extrema are as
+    large; the derivative is that of one of them.
+    """
+
+    name: str
+    unit: str
+    value: float
+    paths: list[str]
+    units: list[str]
+    values: Array
+    derivatives: Array
+    errors: Array
+    ties: list[float]
+
+    def __getitem__(self, path: str) -> float:
+        """The derivative by a number; zero by one on which the result does not depend."""
+        return float(self.derivatives[self.paths.index(path)]) if path in self.paths else 0.0
+
+
+@dataclass(frozen=True)
 class StateSpace:
     """A linearised motion, ẋ = A x + B u, z = C x + D u, in deviations from the operating point.
 

@@ -27,6 +27,17 @@ class _Equilibrium(TypedDict):
     modes: list[tuple[float, float]]
     eigenvalues: list[list[float]]
 
+class _ResultGradient(TypedDict):
+    name: str
+    unit: str
+    value: float
+    paths: list[str]
+    units: list[str]
+    values: list[float]
+    derivatives: list[float]
+    errors: list[float]
+    ties: list[float]
+
 class _Linear(TypedDict):
     states: list[str]
     inputs: list[str]
@@ -95,6 +106,7 @@ class Mechanism:
     ) -> Rows: ...
     def period(self, progress: _Progress) -> tuple[float, float]: ...
     def equilibria(self, progress: _Progress) -> list[_Equilibrium]: ...
+    def gradient(self, results: list[str], progress: _Progress) -> list[_ResultGradient]: ...
     def linearise(self, progress: _Progress) -> _Linear: ...
     def cycle(
         self, accuracy: float | None, method: str | None, tolerance: float, fluctuation: float | None, progress: _Progress

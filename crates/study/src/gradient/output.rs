@@ -8,7 +8,7 @@ use crate::number_format::{count, digits, number};
 use crate::output::{Outcome, add_results_page, scene_caption};
 use crate::progress::Progress;
 use dwell_findings::Record;
-use dwell_report::{Drawing, Figure, Paint, Pen, Shape, TextPlacement};
+use dwell_report::{Axis, Drawing, Figure, Paint, Pen, Shape, TextPlacement};
 use dwell_scene::SceneFile;
 
 /// Numbers that the summary lists of each result, and bars of the figure.
@@ -240,13 +240,13 @@ fn bars(result: &ResultGradient) -> Drawing {
             [0.0, y + HALF],
         ];
         shapes.push(Shape::area(corners, Pen::new(color, 1.0), 0.6));
-        let placement = if value < 0.0 {
-            TextPlacement::Left
-        } else {
-            TextPlacement::Right
+        // The name is on the other side of the axis.
+        let [outside, inside] = match value < 0.0 {
+            true => [TextPlacement::Left, TextPlacement::Right],
+            false => [TextPlacement::Right, TextPlacement::Left],
         };
-        shapes.push(Shape::text([end, y], digits(value, 3), placement));
-        shapes.push(Shape::text([-1.2, y], of.path.clone(), TextPlacement::Left));
+        shapes.push(Shape::text([end, y], digits(value, 3), outside));
+        shapes.push(Shape::text([0.0, y], of.path.clone(), inside));
     }
     let bottom = -DISTANCE * (listed().count() as f64 - 0.5);
     let zero = vec![[0.0, 0.5 * DISTANCE], [0.0, bottom]];
@@ -254,6 +254,10 @@ fn bars(result: &ResultGradient) -> Drawing {
     Drawing {
         title: format!("{} = {} {}", result.name, number(result.value), result.unit),
         shapes,
+        x: Axis {
+            range: Some([-1.3, 1.3]),
+            ..Axis::default()
+        },
         without_axes: true,
         ..Drawing::default()
     }
