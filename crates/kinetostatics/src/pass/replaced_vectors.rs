@@ -11,7 +11,8 @@ pub(super) fn replace_vector<C: Constant>(place: &mut Option<Vec2<C>>, value: Ve
             *place = value;
             true
         }
-        None => value == Vec2::zero(),
+        // A recording follows a model that the numbers fit.
+        None => !C::IS_PREPARED || value == Vec2::zero(),
     }
 }
 
