@@ -212,6 +212,17 @@ fn points_are_all_combinations_with_the_same_samples() {
 }
 
 #[test]
+fn the_page_has_every_statistic() {
+    let page = include_str!("../../../../docs/sweep.md");
+    for (_, name, meaning) in crate::trajectory::compute::STATISTICS {
+        assert!(
+            page.contains(&format!("| `.{name}` | {meaning} |")),
+            "{name}"
+        );
+    }
+}
+
+#[test]
 fn nonsense_is_refused() {
     let scene = case("single-dwell");
     let refused = |vary: &str, samples: Option<u64>| {
