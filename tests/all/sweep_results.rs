@@ -186,14 +186,14 @@ fn check_statistics(scene: &impl StudyScene, vary: &str) {
         let result = |end: &str| column(&swept, &format!("{name}.{end}"))[0];
         let size = largest(dense, f64::abs).max(1e-2);
         let rounding = 1e-13 * size;
-        let is_smooth = ![".direction", ".residual", ".rotation."]
+        let is_smooth = ![".direction", "magnitude", ".residual", ".rotation."]
             .iter()
             .any(|end| name.contains(end));
         assert_near(result("mean"), mean(values), rounding, name);
         assert_near(result("rms"), coarse.rms(|k| values[k]), rounding, name);
         let stroke = result("max") - result("min");
         assert_near(result("stroke"), stroke, rounding, name);
-        // Between the dense rows a peak is higher by 1e-5 of the size; a direction may jump, a residual is rounding, and rotations in
+        // Between the dense rows a peak is higher by 1e-5 of the size; a direction may jump, a magnitude has corners, a residual is rounding, and rotations in
         // space are those of rows.
         let signed: [(&str, f64, fn(f64) -> f64); 3] = [
             ("max", 1.0, |v| v),
