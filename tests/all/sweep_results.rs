@@ -112,7 +112,6 @@ fn column(swept: &ComputedSweep, name: &str) -> Vec<f64> {
     swept.table.rows.iter().map(|row| row[k]).collect()
 }
 
-/// A result of one variant.
 fn value(scene: &impl StudyScene, vary: &str, result: &str) -> f64 {
     column(&swept(scene, vary, &[], &[result]), result)[0]
 }
@@ -150,6 +149,8 @@ fn mean(all: &[f64]) -> f64 {
     let ends = 0.5 * (all[0] + all[all.len() - 1]);
     (all.iter().sum::<f64>() - ends) / (all.len() - 1) as f64
 }
+
+type Value = fn(f64) -> f64;
 
 fn largest(values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
     values
@@ -195,7 +196,7 @@ fn check_statistics(scene: &impl StudyScene, vary: &str) {
         assert_near(result("stroke"), stroke, rounding, name);
         // Between the dense rows a peak is higher by 1e-5 of the size; a direction may jump, a magnitude has corners, a residual is rounding, and rotations in
         // space are those of rows.
-        let signed: [(&str, f64, fn(f64) -> f64); 3] = [
+        let signed: [(&str, f64, Value); 3] = [
             ("max", 1.0, |v| v),
             ("min", -1.0, |v| -v),
             ("max_abs", 1.0, f64::abs),
