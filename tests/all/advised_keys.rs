@@ -123,7 +123,7 @@ fn messages_advise_sections_and_keys_that_exist() {
             .wrong_in("give a `duration` (s) in [motion]")
             .is_empty()
     );
-    for retired in ["give a `speed` in [motion]", "add `centre`", "see [sweep]"] {
+    for retired in ["give a `speed` in [motion]", "add `centre`", "see [sweeps]"] {
         assert_eq!(known.wrong_in(retired).len(), 1, "{retired}");
     }
     let mut files = Vec::new();

@@ -49,6 +49,7 @@ mod scaling;
 mod separating;
 mod slides;
 mod space;
+mod sweep_results;
 mod symbolic;
 mod tables;
 mod tabulated;

@@ -24,7 +24,7 @@ pub(crate) struct SweepArgs {
         allow_hyphen_values = true
     )]
     vary: Vec<String>,
-    /// A number that follows from others: PATH=EXPRESSION of parameters, and of paths between backticks; may be given several times
+    /// A number that follows from others: PATH=EXPRESSION of parameters and paths, these between backticks if they have brackets; may be given several times
     #[arg(long, value_name = "TIE", allow_hyphen_values = true)]
     tied: Vec<String>,
     /// Number of random samples for each combination of listed values

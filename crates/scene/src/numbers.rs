@@ -9,7 +9,8 @@ use crate::load_functions::keep_functions;
 use crate::number_paths::{SceneNumber, no_number};
 use crate::scene_data::SceneIn;
 use crate::spans::SceneLocation;
-use crate::swept::PARAMETERS;
+use crate::swept::{PARAMETERS, TiedNumber, variables};
+use dwell_laws::Expression;
 use miette::NamedSource;
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -113,6 +114,27 @@ impl SceneFile {
             let all = self.body_numbers.iter().chain(&self.section_numbers);
             let (message, help) = no_number(path, all);
             SceneError::without_labels(message, Some(help))
+        })
+    }
+}
+
+impl SceneFile {
+    /// The number at a path, tied to others by an expression.
+    ///
+    /// # Errors
+    /// Message and help if there is no such number, or the expression is none.
+    pub fn tied_number(&self, path: &str, text: &str) -> Result<TiedNumber, (String, String)> {
+        let numbers = self.body_numbers.iter().chain(&self.section_numbers);
+        if !numbers.clone().any(|number| number.path == path) {
+            return Err(no_number(path, numbers));
+        }
+        let variables = variables(numbers);
+        let expression = Expression::parse(text, &variables);
+        let expression = expression.map_err(|e| (e.message, e.help.unwrap_or_default()))?;
+        Ok(TiedNumber {
+            path: path.to_owned(),
+            text: text.to_owned(),
+            expression: expression.retain_used(),
         })
     }
 }

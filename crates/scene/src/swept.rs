@@ -1,11 +1,11 @@
 //! The section `[sweep]`: named parameters, numbers that are tied to others, and limits of results. It changes no other analysis.
 
 use crate::expression::expression;
-use crate::file::SceneFile;
 use crate::keys::table;
 use crate::number_paths::{SceneNumber, no_number};
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
+use crate::value::Value;
 use crate::wording::shorten;
 use dwell_laws::Expression;
 
@@ -86,29 +86,10 @@ impl std::fmt::Display for ResultLimit {
     }
 }
 
-impl SceneFile {
-    /// The number at a path, tied to others by an expression.
-    ///
-    /// # Errors
-    /// Message and help if there is no such number, or the expression is none.
-    pub fn tied_number(&self, path: &str, text: &str) -> Result<TiedNumber, (String, String)> {
-        let numbers = self.body_numbers.iter().chain(&self.section_numbers);
-        if !numbers.clone().any(|number| number.path == path) {
-            return Err(no_number(path, numbers));
-        }
-        let variables = variables(numbers);
-        let expression = Expression::parse(text, &variables);
-        let expression = expression.map_err(|e| (e.message, e.help.unwrap_or_default()))?;
-        Ok(TiedNumber {
-            path: path.to_owned(),
-            text: text.to_owned(),
-            expression: expression.retain_used(),
-        })
-    }
-}
-
 /// The names that expressions know: of all parameters, and the paths of all numbers.
-fn variables<'n>(numbers: impl Iterator<Item = &'n SceneNumber> + Clone) -> Vec<&'n str> {
+pub(crate) fn variables<'n>(
+    numbers: impl Iterator<Item = &'n SceneNumber> + Clone,
+) -> Vec<&'n str> {
     let names = numbers.map(|number| number.path.as_str());
     let parameters = names.clone().filter_map(|p| p.strip_prefix(PARAMETERS));
     parameters.chain(names).collect()
@@ -117,35 +98,54 @@ fn variables<'n>(numbers: impl Iterator<Item = &'n SceneNumber> + Clone) -> Vec<
 /// Reads `[sweep]` of a scene with these numbers.
 pub(crate) fn sweep_section(fields: &TableReader<'_>, numbers: &[&SceneNumber]) -> SweepSection {
     fields.reject_unknown_keys(table("sweep"));
-    let mut found = SweepSection::default();
-    let variables = variables(numbers.iter().copied());
-    let open = |key: &str| TableReader::open(fields.get(key)?, format!("`{key}` of [sweep]"));
-    for entry in open("parameters").iter().flat_map(|table| &table.entries) {
+    let entries = |key: &str| {
+        let table = TableReader::open(fields.get(key)?, format!("`{key}` of [sweep]"))?;
+        Some(table.entries)
+    };
+    for entry in entries("parameters").unwrap_or_default() {
         // It is one of the numbers, by its path.
-        entry
-            .value
-            .number(format_args!("parameter `{}`", shorten(entry.name)));
+        let what = format!("parameter `{}`", shorten(entry.name));
+        entry.value.number(what);
     }
-    for entry in open("tied").iter().flat_map(|table| &table.entries) {
+    let limits = fields.get("subject-to").and_then(|entry| {
+        let expected = "an array such as [\"m.max <= 2\"]";
+        entry.value.array(expected, "`subject-to` of [sweep]")
+    });
+    SweepSection {
+        tied: tied_numbers(&entries("tied").unwrap_or_default(), numbers),
+        limits: limits_of(&limits.unwrap_or_default()),
+        targets: targets(&entries("targets").unwrap_or_default()),
+    }
+}
+
+fn tied_numbers(entries: &[Entry<'_>], numbers: &[&SceneNumber]) -> Vec<TiedNumber> {
+    let variables = variables(numbers.iter().copied());
+    let mut found = Vec::new();
+    for entry in entries {
         if !numbers.iter().any(|number| number.path == entry.name) {
             let (message, help) = no_number(entry.name, numbers.iter().copied());
             entry.reject::<()>(message, "unknown number", help);
             continue;
         }
         let what = format!("tied number `{}`", shorten(entry.name));
-        let location = SceneLocation::Tied(found.tied.len());
         if let Some(expression) = expression(entry.value, &variables, &what)
             && let Some(text) = entry.value.string(&what)
         {
+            let location = SceneLocation::Tied(found.len());
             entry.log().place(location, &entry.span());
-            found.tied.push(TiedNumber {
+            found.push(TiedNumber {
                 path: entry.name.to_owned(),
                 text: text.to_owned(),
                 expression: expression.retain_used(),
             });
         }
     }
-    for entry in open("targets").iter().flat_map(|table| &table.entries) {
+    found
+}
+
+fn targets(entries: &[Entry<'_>]) -> Vec<SweepTarget> {
+    let mut found = Vec::new();
+    for entry in entries {
         let what = format!("target `{}`", shorten(entry.name));
         let Some(of) = TableReader::open(entry, what) else {
             continue;
@@ -154,27 +154,28 @@ pub(crate) fn sweep_section(fields: &TableReader<'_>, numbers: &[&SceneNumber]) 
         let help = "name its file: `table = \"curve.csv\"`";
         let text = |e: &Entry<'_>| e.value.string(of.name_of(e)).map(str::to_owned);
         if let Some(table) = of.require("table", help).and_then(text) {
-            entry.place(SceneLocation::Target(found.targets.len()));
-            found.targets.push(SweepTarget {
+            entry.place(SceneLocation::Target(found.len()));
+            found.push(SweepTarget {
                 name: entry.name.to_owned(),
                 table,
                 at: of.get("at").and_then(text),
             });
         }
     }
-    let limits = fields.get("subject-to").and_then(|entry| {
-        let expected = "an array such as [\"m.max <= 2\"]";
-        entry.value.array(expected, "`subject-to` of [sweep]")
-    });
-    for value in limits.into_iter().flatten() {
+    found
+}
+
+fn limits_of(values: &[Value<'_>]) -> Vec<ResultLimit> {
+    let mut found = Vec::new();
+    for value in values {
         let Some(text) = value.string("a limit in [sweep]") else {
             continue;
         };
         match ResultLimit::parse(text) {
             Ok(limit) => {
-                let location = SceneLocation::Limit(found.limits.len());
+                let location = SceneLocation::Limit(found.len());
                 value.log().place(location, &value.span());
-                found.limits.push(limit);
+                found.push(limit);
             }
             Err(message) => {
                 let help = "write it as `m.max <= 2`, in the unit of the result";

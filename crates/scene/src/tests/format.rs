@@ -276,6 +276,10 @@ fn every_example_of_a_key_is_read() {
                 "actuators.phi = {{ angle = [\"ground\", \"crank\"] }}\n\
                  actuators.psi = {{ angle = [\"crank\", \"rod\"] }}\nmotion = {inner}"
             ),
+            "parameters of [sweep]" => format!("sweep.parameters = {inner}"),
+            "tied of [sweep]" => format!("sweep.tied = {inner}"),
+            "targets of [sweep]" => format!("sweep.targets = {inner}"),
+            "a target of [sweep]" => format!("sweep.targets.foot = {inner}"),
             "[stops.<stop>]" => format!("stops.other = {inner}"),
             "[friction.<pin>]" => format!("friction.A = {inner}"),
             "[friction.<slide>]" => format!("friction.slide = {inner}"),

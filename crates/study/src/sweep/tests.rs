@@ -212,6 +212,17 @@ fn points_are_all_combinations_with_the_same_samples() {
 }
 
 #[test]
+fn the_page_has_every_statistic() {
+    let page = include_str!("../../../../docs/sweep.md");
+    for (_, name, meaning) in crate::trajectory::compute::STATISTICS {
+        assert!(
+            page.contains(&format!("| `.{name}` | {meaning} |")),
+            "{name}"
+        );
+    }
+}
+
+#[test]
 fn nonsense_is_refused() {
     let scene = case("single-dwell");
     let refused = |vary: &str, samples: Option<u64>| {
@@ -313,8 +324,14 @@ fn both_ways(
     let design = Design::new(scene, &words(vary), None, 0).expect("a design");
     let requested = RequestedQuantities::new(scene, &words(requests)).expect("results");
     let family = VariantFamily::new(scene, &design, &requested);
-    assert!(family.is_some(), "{vary:?}");
     let indices: Vec<u64> = (0..design.points).collect();
+    let numbers = indices.iter().map(|&k| design.numbers(&design.values(k)));
+    let (numbers, mut filled): (Vec<Vec<f64>>, usize) = (numbers.collect(), 0);
+    let of_family = family.as_ref().expect("a family");
+    of_family.evaluate(&numbers, &requested.quantities, &mut |_, found| {
+        filled += usize::from(found.is_some());
+    });
+    assert!(filled > 0, "{vary:?}");
     [family.as_ref(), None].map(|family| {
         let mut rows = Vec::new();
         requested.points(scene, &design, family, &indices, &mut |row| {
@@ -381,7 +398,13 @@ fn forces_of_a_family_under_loads_are_those_of_points_compiled_one_by_one() {
                 "link5.mass=0.5,2",
                 "loads.dashpot.damping=-1,0,60",
             ][..],
-            &["m", "phi.actuator_force", "G"][..],
+            &[
+                "m",
+                "phi.actuator_force",
+                "G",
+                "phi.actuator_force.rms",
+                "G.x.min",
+            ][..],
             // The search between 361 positions of two turns stops at most 1.3e-12 short of the peak.
             1e-10,
         ),
@@ -389,7 +412,7 @@ fn forces_of_a_family_under_loads_are_those_of_points_compiled_one_by_one() {
         (
             "slider-crank",
             &["crank.points.B[0]=60:100:5", "piston.mass=0.5,2"],
-            &["phi.actuator_force", "guide.normal", "B"],
+            &["phi.actuator_force", "guide.normal", "B", "B.x.rms"],
             // At most 6e-16.
             5e-14,
         ),
@@ -401,7 +424,7 @@ fn forces_of_a_family_under_loads_are_those_of_points_compiled_one_by_one() {
                 "ram.mass=10,14",
                 "ram.points.tool[1]=-80,-40",
             ],
-            &["phi.actuator_force", "guide"],
+            &["phi.actuator_force", "guide", "phi.actuator_force.mean"],
             5e-14,
         ),
     ] {

@@ -340,12 +340,14 @@ impl Results<'_> {
         kind: ResultKind,
         computed: Result<Vec<(String, f64)>, StudyError>,
     ) {
-        self.fill(|of| of == kind, computed, named);
+        let is_filled = |of| of == kind;
+        self.fill(is_filled, computed, |values, of| named(values, of));
     }
 
     /// The statistics along the trajectory, by the names of their quantities.
     pub(crate) fn set_along(&mut self, computed: Result<Vec<(String, f64)>, StudyError>) {
-        self.fill(|of| of.statistic().is_some(), computed, named);
+        let is_filled = |of: ResultKind| of.statistic().is_some();
+        self.fill(is_filled, computed, |values, of| named(values, of));
     }
 
     /// Values with their places.
@@ -364,7 +366,7 @@ impl Results<'_> {
 }
 
 /// The value of that name.
-fn named(values: &Vec<(String, f64)>, of: &SweepQuantity) -> Option<f64> {
+fn named(values: &[(String, f64)], of: &SweepQuantity) -> Option<f64> {
     let mut values = values.iter();
     values.find(|(name, _)| *name == of.name).map(|of| of.1)
 }

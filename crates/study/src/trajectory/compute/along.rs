@@ -84,6 +84,7 @@ pub(super) fn search_along<S: RowScene, R>(
             curves.push(Curve::new(signal.clone()));
         }
     }
+    // Without columns also of a model that computes the wanted reactions alone.
     let mut evaluator = scene.evaluator(rows, rows, analysis, &[])?;
     evaluator.limit_to(curves.iter().flat_map(|curve| curve.signal.quantities()));
     let mut times = Vec::with_capacity(trajectory.points);

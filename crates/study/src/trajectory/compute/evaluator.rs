@@ -19,7 +19,8 @@ use dwell_scene::PlaneScene;
 #[derive(Clone)]
 pub(crate) struct PositionForces<'a> {
     scene: &'a PlaneScene,
-    body_forces: FreeBodyForces,
+    /// None of a model that computes some reactions only.
+    body_forces: Option<FreeBodyForces>,
     wrenches: Vec<AppliedWrench>,
     /// By load: the place among the wrenches of that on its second body, if it acts between two.
     on_second_bodies: Vec<Option<usize>>,
@@ -35,9 +36,13 @@ pub(crate) struct PositionForces<'a> {
 }
 
 impl<'a> PositionForces<'a> {
-    fn new(scene: &'a PlaneScene, model: &Model) -> Result<Self, StudyError> {
+    fn new(scene: &'a PlaneScene, model: &Model, is_needed: bool) -> Result<Self, StudyError> {
+        let body_forces = match FreeBodyForces::new(model) {
+            Err(_) if !is_needed => None,
+            found => Some(found.map_err(|e| explain_model(scene, &e))?),
+        };
         Ok(Self {
-            body_forces: FreeBodyForces::new(model).map_err(|e| explain_model(scene, &e))?,
+            body_forces,
             scene,
             wrenches: Vec::new(),
             on_second_bodies: vec![None; scene.loads.len()],
@@ -52,7 +57,10 @@ impl<'a> PositionForces<'a> {
 
     /// Computes joint forces, shaking force, power balance and internal forces.
     fn compute(&mut self, state: &EvaluatedState<'_>) {
-        let (body_forces, wrenches) = (&self.body_forces, &mut self.wrenches);
+        let Some(body_forces) = &self.body_forces else {
+            return;
+        };
+        let wrenches = &mut self.wrenches;
         body_forces.wrenches(state, wrenches);
         self.joint_forces.fill(Vec2::ZERO);
         self.on_second_bodies.fill(None);
@@ -181,7 +189,7 @@ impl<'a> PositionEvaluator<'a> {
         let measured = scene.measured(model).into_iter();
         Ok(Self {
             measured: measured.map(|of| of.function).collect(),
-            position: PositionForces::new(scene, model)?,
+            position: PositionForces::new(scene, model, !columns.is_empty())?,
             scene,
             forces,
             has_forces_on_bodies: true,

@@ -248,3 +248,29 @@ pub(super) fn refine_maximum(
     }
     Some(c)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of three nearly equal peaks the narrow one is the highest, but between 64 positions its parabola is the lowest.
+    #[test]
+    fn the_highest_of_three_nearly_equal_peaks_is_found() {
+        let peaks = [(10.0, 3.0, 1.0), (30.0, 3.0, 1.0), (50.5, 1.5, 1.0005)];
+        let at = |u: f64| {
+            let bump = |&(top, width, height): &(f64, f64, f64)| {
+                height * (-0.5 * ((64.0 * u - top) / width).powi(2)).exp()
+            };
+            peaks.iter().map(bump).sum::<f64>()
+        };
+        let points: Vec<Point> = (0..=64)
+            .map(|k| f64::from(k) / 64.0)
+            .map(|u| [u, at(u)])
+            .collect();
+        let [place, value] = highest_between(&points, &mut |u| Some(at(u))).expect("a value");
+        assert!(
+            (64.0 * place - 50.5).abs() < 1e-3 && value > 1.0004,
+            "{place} {value}"
+        );
+    }
+}

@@ -92,7 +92,7 @@ pub trait RowScene: AskedScene {
         Vec::new()
     }
 
-    /// The evaluator of some columns by the model of a chart; the trajectory ends where the `whole` mechanism does.
+    /// The evaluator of some columns, or without any of actuator forces and reactions, by the model of a chart; the trajectory ends where the `whole` mechanism does.
     ///
     /// # Errors
     /// [`StudyError::Scene`] where a body has no determined forces.
