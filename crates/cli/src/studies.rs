@@ -84,10 +84,9 @@ fn request<'a>(command: &'a Command, out: &'a Path) -> Result<Option<Request<'a>
         },
         Command::Sweep(given) => Request::Sweep(given.sweep(out)),
         Command::WorkPrecision { .. } => return Ok(None),
-        Command::Check { .. } => Request::Check,
-        // Handled before, or no studies of a scene.
+        // The others were handled before, or are no studies of a scene.
         Command::Kinematics(_) | Command::Statics(_) | Command::Kinetostatics(_) => Request::Check,
-        Command::Validate { .. } | Command::View { .. } => Request::Check,
+        Command::Check { .. } | Command::Validate { .. } | Command::View { .. } => Request::Check,
         Command::Schema | Command::Init { .. } => Request::Check,
     }))
 }
