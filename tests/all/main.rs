@@ -25,6 +25,7 @@ mod events;
 mod extremes;
 mod findings;
 mod gradient;
+mod gradient_tolerance;
 mod invariance;
 mod joints;
 mod limits;

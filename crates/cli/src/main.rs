@@ -7,6 +7,7 @@ mod cases;
 mod export;
 mod exported_runs;
 mod former;
+mod gradient;
 mod init;
 mod instants;
 mod interface;
@@ -201,7 +202,7 @@ fn draw_validation(outcome: Outcome, format: PictureFormat) -> Result<Outcome, R
     drawn.map_err(|e| Report::new(SceneError::from(e)))
 }
 
-/// The paths of summary and page in the output folder, without extension. Each shard of a sweep has its own.
+/// The paths of summary and page in the output folder, without extension. Each shard of a sweep has its own, and so have tolerances.
 fn results_stem(command: &Command, name: &str, results: Option<&str>) -> String {
     let of_scene = results.map_or(String::new(), |results| format!("{results}-"));
     let part = match command {
@@ -209,6 +210,7 @@ fn results_stem(command: &Command, name: &str, results: Option<&str>) -> String 
             shard: Some(Shard { part, of }),
             ..
         }) => format!("-{part}-of-{of}"),
+        Command::Gradient(given) if given.is_of_tolerances() => "-tolerance".to_owned(),
         _ => String::new(),
     };
     format!("{of_scene}{name}{part}")

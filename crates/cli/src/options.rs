@@ -1,6 +1,7 @@
 //! The command-line options: the names of fields are the names of options.
 
 use crate::export::ExportArgs;
+use crate::gradient::GradientArgs;
 use crate::reduction::ReduceArgs;
 use crate::simulation::{METHODS, SimulateArgs};
 use crate::sweep::SweepArgs;
@@ -82,16 +83,7 @@ pub(crate) enum Command {
         about: OperatingPoint,
     },
     /// Derivatives of results of a sweep by all numbers of the scene: on which of them a peak, a mean or a period depends, and how much
-    Gradient {
-        /// The scene file, or `-` for standard input
-        scene: PathBuf,
-        /// The results, by their names in a sweep: `phi.actuator_force.rms,m.max`
-        #[arg(long, value_name = "RESULT,…", value_delimiter = ',', required = true)]
-        of: Vec<String>,
-        /// Compare each derivative with differences of results
-        #[arg(long)]
-        check: bool,
-    },
+    Gradient(GradientArgs),
     /// The two kinetostatic runs that give the reduced parameters (unit speed, unit acceleration), in time, and their combination
     Runs {
         /// The scene file
@@ -181,12 +173,12 @@ impl Command {
             Self::Reduce(arguments) => arguments.scene.as_deref(),
             Self::Simulate(arguments) => Some(&arguments.scene),
             Self::Sweep(arguments) => Some(&arguments.scene),
+            Self::Gradient(arguments) => Some(&arguments.scene),
             Self::Check { scene }
             | Self::Cycle { scene, .. }
             | Self::WorkPrecision { scene }
             | Self::Equilibria { scene }
             | Self::Linearise { scene, .. }
-            | Self::Gradient { scene, .. }
             | Self::Runs { scene, .. }
             | Self::Symbolic { scene, .. }
             | Self::Calibrate { scene, .. }

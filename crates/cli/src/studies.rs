@@ -59,10 +59,7 @@ fn request<'a>(command: &'a Command, out: &'a Path) -> Result<Option<Request<'a>
         },
         Command::Equilibria { .. } => Request::Equilibria,
         Command::Linearise { about, .. } => Request::Linearise { about: *about },
-        Command::Gradient { of, check, .. } => Request::Gradient {
-            results: of,
-            has_check: *check,
-        },
+        Command::Gradient(given) => given.request(),
         Command::Runs { points, .. } => Request::UnitRuns {
             points: points.map(|n| n as usize),
         },

@@ -11,6 +11,7 @@ use crate::export::ExportRequest;
 use crate::export::output::ExportTarget;
 use crate::free_motion::compute::MotionSolver;
 use crate::gradient::output::gradient;
+use crate::gradient::tolerance_output::tolerance;
 use crate::linearise::compute::OperatingPoint;
 use crate::linearise::output::linearise;
 use crate::models::SolverSettings;
@@ -18,6 +19,7 @@ use crate::output::Outcome;
 use crate::progress::Progress;
 use crate::reduce::compute::TableRequest;
 use crate::study_scene::{SceneTask, StudyScene, with_dimension};
+use crate::sweep::SweepRequest;
 use crate::sweep::output::{ParameterSweep, sweep};
 use crate::symbolic::output::FormulaFormat;
 use crate::trajectory::compute::Analysis;
@@ -105,6 +107,8 @@ pub enum Request<'a> {
         /// Whether each derivative is compared with differences.
         has_check: bool,
     },
+    /// The spread of results by random numbers: `vary` are their distributions, `requests` the results.
+    Tolerance(SweepRequest<'a>),
 }
 
 /// Studies a scene.
@@ -165,6 +169,7 @@ impl SceneTask for Study<'_> {
             Request::Gradient { results, has_check } => {
                 gradient(scene, results, *has_check, progress)?
             }
+            Request::Tolerance(asked) => tolerance(scene, asked, progress)?,
         };
         Ok(TrajectoryOutcome::from(outcome))
     }

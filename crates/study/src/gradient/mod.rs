@@ -1,10 +1,13 @@
-//! Gradients of results by all numbers of a scene.
+//! Gradients of results by all numbers of a scene, and tolerances.
 
 mod compute;
 
 pub use compute::{
-    Gradient, GradientScene, NumberSlope, ResultGradient, SlopeMethod, compute_gradient,
+    Gradient, GradientScene, LimitYield, NumberSlope, ResultGradient, ResultTolerance, SampleShare,
+    Sampled, SlopeMethod, Spread, Tolerance, TolerancedNumber, compute_gradient, compute_tolerance,
 };
 
 #[cfg(feature = "output")]
 pub(crate) mod output;
+#[cfg(feature = "output")]
+pub(crate) mod tolerance_output;

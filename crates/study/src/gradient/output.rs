@@ -76,13 +76,7 @@ fn summary(scene: &SceneFile, found: &Gradient, record: &mut Record) -> String {
             let numbers = result.undefined.join(", ");
             text += &format!("    no value where one of these changes: {numbers}\n");
         }
-        if !result.ties.is_empty() {
-            let places: Vec<String> = result.ties.iter().map(|q| number(*q)).collect();
-            text += &format!(
-                "    as large at {} rad or m, too: the derivative is that of one extremum, and has a kink here\n",
-                places.join(", ")
-            );
-        }
+        text += &kink(result);
         for of in &result.numbers {
             let by = format!("{name}.by.{}", of.path);
             let unit = ratio(unit, &of.unit);
@@ -95,6 +89,18 @@ fn summary(scene: &SceneFile, found: &Gradient, record: &mut Record) -> String {
     }
     text += &fixed(found);
     text
+}
+
+/// What is to be said of extrema that tie.
+pub(super) fn kink(result: &ResultGradient) -> String {
+    if result.ties.is_empty() {
+        return String::new();
+    }
+    let places: Vec<String> = result.ties.iter().map(|q| number(*q)).collect();
+    format!(
+        "    as large at {} rad or m, too: the derivative is that of one extremum, and has a kink here\n",
+        places.join(", ")
+    )
 }
 
 /// The numbers that cannot be changed by themselves, by the first line of the reason.
@@ -146,32 +152,29 @@ fn listed(result: &ResultGradient) -> String {
         let derivative = with_unit(of.slope, &result.unit, &of.unit);
         rows.push([of.path.clone(), value, derivative, percent + mark, note]);
     }
-    let widths: Vec<usize> = (0..4)
-        .map(|k| {
-            rows.iter()
-                .map(|row| row[k].chars().count())
-                .max()
-                .unwrap_or(0)
-        })
-        .collect();
-    let mut text = String::new();
-    for row in &rows {
-        let cells = row.iter().zip(&widths);
-        let cells: Vec<String> = cells
-            .map(|(cell, width)| format!("{cell:<width$}"))
-            .collect();
-        text += &format!(
-            "    {}",
-            format!("{}  {}", cells.join("  "), row[4]).trim_end()
-        );
-        text.push('\n');
-    }
+    let mut text = aligned(&rows);
     let left = result.numbers.len().saturating_sub(LISTED);
     if left > 0 {
         text += &format!("    {} more in the table\n", count(left, "number"));
     }
     if result.numbers.iter().take(LISTED).any(|of| of.value == 0.0) {
         text += "    * of a number that is zero: per 1 % of the size of the mechanism\n";
+    }
+    text
+}
+
+/// Rows in columns, indented.
+pub(super) fn aligned<const COLUMNS: usize>(rows: &[[String; COLUMNS]]) -> String {
+    let length = |k: usize| rows.iter().map(move |row| row[k].chars().count()).max();
+    let widths: Vec<usize> = (0..COLUMNS).map(|k| length(k).unwrap_or(0)).collect();
+    let mut text = String::new();
+    for row in rows {
+        let cells = row.iter().zip(&widths);
+        let cells: Vec<String> = cells
+            .map(|(cell, width)| format!("{cell:<width$}"))
+            .collect();
+        text += &format!("    {}", cells.join("  ").trim_end());
+        text.push('\n');
     }
     text
 }
@@ -225,12 +228,19 @@ fn figure(scene: &SceneFile, found: &Gradient) -> Option<Figure> {
 
 /// The bars of a result.
 fn bars(result: &ResultGradient) -> Drawing {
-    let percent = |of: &NumberSlope| result.percent(of).unwrap_or(0.0);
-    let listed = || result.numbers.iter().take(LISTED);
-    let longest = listed().map(|of| percent(of).abs()).fold(0.0, f64::max);
+    let percent = |of: &NumberSlope| (of.path.clone(), result.percent(of).unwrap_or(0.0));
+    let listed: Vec<(String, f64)> = result.numbers.iter().map(percent).collect();
+    let (value, unit) = (number(result.value), &result.unit);
+    bars_of(format!("{} = {value} {unit}", result.name), &listed)
+}
+
+/// Bars of the first of named values.
+pub(super) fn bars_of(title: String, named: &[(String, f64)]) -> Drawing {
+    let listed = || named.iter().take(LISTED);
+    let longest = listed().map(|(_, value)| value.abs()).fold(0.0, f64::max);
     let mut shapes = Vec::new();
-    for (k, of) in listed().enumerate() {
-        let (y, value) = (-DISTANCE * k as f64, percent(of));
+    for (k, (name, value)) in listed().enumerate() {
+        let (y, value) = (-DISTANCE * k as f64, *value);
         let end = value / longest;
         let color = Paint::Palette(if value < 0.0 { 1 } else { 0 });
         let corners = vec![
@@ -246,13 +256,13 @@ fn bars(result: &ResultGradient) -> Drawing {
             false => [TextPlacement::Right, TextPlacement::Left],
         };
         shapes.push(Shape::text([end, y], digits(value, 3), outside));
-        shapes.push(Shape::text([0.0, y], of.path.clone(), inside));
+        shapes.push(Shape::text([0.0, y], name.clone(), inside));
     }
     let bottom = -DISTANCE * (listed().count() as f64 - 0.5);
     let zero = vec![[0.0, 0.5 * DISTANCE], [0.0, bottom]];
     shapes.push(Shape::line(zero, Pen::new(Paint::Ink, 1.5)));
     Drawing {
-        title: format!("{} = {} {}", result.name, number(result.value), result.unit),
+        title,
         shapes,
         x: Axis {
             range: Some([-1.3, 1.3]),

@@ -52,7 +52,7 @@ pub(crate) fn figure(
     let sweep = SweptCurves { prepared, stored };
     let (charts, caption): (Vec<Chart>, _) = match (listed.as_slice(), design.is_random()) {
         ([], false) => return Ok(Drawn::Nothing("a single point has no curve")),
-        ([], true) => (of_each(&histogram)?, HISTOGRAM),
+        ([], true) => (of_each(&marked_histogram)?, HISTOGRAM),
         (&[abscissa], true) => {
             let (axis, places) = (&design.axes[abscissa], sweep.inputs(abscissa));
             let of = |values: &[f64], of: &SweepQuantity| band(axis, &places, values, of);
@@ -327,7 +327,26 @@ fn band(
 }
 
 /// The histogram of a result.
-fn histogram(values: &[f64], quantity: &SweepQuantity) -> Option<Chart> {
+fn marked_histogram(values: &[f64], quantity: &SweepQuantity) -> Option<Chart> {
+    let mut chart = histogram(values, &quantity.name, &quantity.unit)?;
+    let spread = Spread::of(values.iter().copied())?;
+    let ([from, to], mean) = (spread.quantiles, number(spread.mean).replace('-', "−"));
+    chart.marks = vec![
+        Mark::Band {
+            from,
+            to,
+            label: String::new(),
+        },
+        Mark::Vertical {
+            at: spread.mean,
+            label: format!("mean {mean}"),
+        },
+    ];
+    Some(chart)
+}
+
+/// The distribution of a result; `None` if it does not vary.
+pub(crate) fn histogram(values: &[f64], name: &str, unit: &str) -> Option<Chart> {
     let spread = Spread::of(values.iter().copied())?;
     let width = spread.max - spread.min;
     // A result that does not depend on the inputs varies by rounding only.
@@ -350,22 +369,10 @@ fn histogram(values: &[f64], quantity: &SweepQuantity) -> Option<Chart> {
         points.extend([[edge(k), share], [edge(k + 1), share]]);
     }
     points.push([edge(bins), 0.0]);
-    let ([from, to], mean) = (spread.quantiles, number(spread.mean).replace('-', "−"));
-    let (title, label) = title_and_label(&quantity.name);
-    let x = Axis::new(label, unit_text(&quantity.unit));
+    let (title, label) = title_and_label(name);
+    let x = Axis::new(label, unit_text(unit));
     let bars = Series::line("", points).stroke(Stroke::Filled);
-    let mut chart = output::chart(title, x, Axis::new("samples", "%"), vec![bars]);
-    chart.marks = vec![
-        Mark::Band {
-            from,
-            to,
-            label: String::new(),
-        },
-        Mark::Vertical {
-            at: spread.mean,
-            label: format!("mean {mean}"),
-        },
-    ];
+    let chart = output::chart(title, x, Axis::new("samples", "%"), vec![bars]);
     Some(chart)
 }
 

@@ -4,7 +4,7 @@ pub mod compute;
 #[cfg(feature = "output")]
 mod export;
 #[cfg(feature = "output")]
-mod figure;
+pub(crate) mod figure;
 #[cfg(feature = "output")]
 mod identity;
 #[cfg(feature = "output")]

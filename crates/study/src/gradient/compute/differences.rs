@@ -1,11 +1,8 @@
 //! Derivatives of results from results of varied scenes, extrapolated to vanishing steps by Neville's rule, from steps that are halved as
 //! long as the estimated error falls (C. J. F. Ridders, Advances in Engineering Software 4, 1982, 75).
 
-use super::changes::Varied;
-use crate::sweep::compute::{RequestedQuantities, SweptScene};
-
 /// The largest step, as a part of the number's scale, and how often it is halved at most.
-const STEP: f64 = 4e-3;
+pub(super) const STEP: f64 = 4e-3;
 const HALVINGS: usize = 10;
 /// Halving ends where the error of every result is this many times its least.
 const WORSE: f64 = 8.0;
@@ -45,11 +42,12 @@ impl Tableau {
     }
 }
 
-/// The derivative of each requested result by a number, in the unit of the scene; not a number where a result has none.
+/// The derivative of each of the results by a number, which has a value and a scale; not a number where a result has none.
 pub(super) fn difference(
-    scene: &impl SweptScene,
-    requested: &RequestedQuantities,
-    number: &Varied,
+    at: &dyn Fn(f64) -> Vec<f64>,
+    results: usize,
+    value: f64,
+    scale: f64,
 ) -> Vec<Difference> {
     let open = || Tableau {
         last: Vec::new(),
@@ -59,11 +57,10 @@ pub(super) fn difference(
         },
         is_done: false,
     };
-    let mut tableaus: Vec<Tableau> = requested.quantities.iter().map(|_| open()).collect();
-    let at = |value: f64| requested.evaluate(scene, &[(&number.path, value)]).values;
-    let mut step = STEP * number.scale;
+    let mut tableaus: Vec<Tableau> = (0..results).map(|_| open()).collect();
+    let mut step = STEP * scale;
     for _ in 0..=HALVINGS {
-        let (after, before) = (at(number.value + step), at(number.value - step));
+        let (after, before) = (at(value + step), at(value - step));
         let pairs = after.iter().zip(&before);
         for (tableau, (a, b)) in tableaus.iter_mut().zip(pairs) {
             let difference = (a - b) / (2.0 * step);

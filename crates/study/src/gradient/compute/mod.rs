@@ -10,6 +10,11 @@ mod machine_numbers;
 mod recorded_machine;
 mod routes;
 mod slopes;
+mod tolerance;
 
 pub use machine_numbers::GradientScene;
 pub use slopes::{Gradient, NumberSlope, ResultGradient, SlopeMethod, compute_gradient};
+pub use tolerance::{
+    LimitYield, ResultTolerance, SampleShare, Sampled, Spread, Tolerance, TolerancedNumber,
+    compute_tolerance,
+};

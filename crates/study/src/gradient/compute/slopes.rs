@@ -90,12 +90,26 @@ pub fn compute_gradient<S: GradientScene>(
         return Err(SweepError::Design(message.to_owned()).into());
     }
     let requested = RequestedQuantities::within(scene, results, &[])?;
+    gradient_by(scene, &requested, &|_| true, has_check, progress)
+}
+
+/// The gradients of requested results by those numbers of the scene whose paths are wanted.
+///
+/// # Errors
+/// [`StudyError`] where the scene cannot be evaluated.
+pub(super) fn gradient_by<S: GradientScene>(
+    scene: &S,
+    requested: &RequestedQuantities,
+    is_wanted: &dyn Fn(&str) -> bool,
+    has_check: bool,
+    progress: Progress<'_>,
+) -> Result<Gradient, StudyError> {
     let base = requested.evaluate(scene, &[]);
     if let Some(message) = base.message {
         return Err(scene.error(message, None, &[]).into());
     }
     let rows = scene.rows()?;
-    let routes = routes(scene, &rows, &requested, &base.values)?;
+    let routes = routes(scene, &rows, requested, &base.values)?;
     let signals = routes.iter().flatten().map(Route::signal);
     let signals: Vec<Signal> = signals.cloned().collect();
     let mut machine = RecordedMachine::new(scene, S::model_of(&rows), &signals);
@@ -103,8 +117,9 @@ pub fn compute_gradient<S: GradientScene>(
         .iter()
         .map(|route| route.as_ref()?.gradient(machine.as_mut()?));
     let exact: Vec<Option<Vec<f64>>> = exact.collect();
-    let mut found = Gradient::without_numbers(&requested, &base.values, &routes, &exact);
-    let numbers = varied_numbers(scene, &rows);
+    let mut found = Gradient::without_numbers(requested, &base.values, &routes, &exact);
+    let mut numbers = varied_numbers(scene, &rows);
+    numbers.retain(|number| is_wanted(&number.path));
     for number in &numbers {
         let change = match &machine {
             Some(machine) => change(scene, machine, number),
@@ -113,7 +128,10 @@ pub fn compute_gradient<S: GradientScene>(
         let is_open = |exact: &Option<Vec<f64>>| exact.is_none() || matches!(change, Change::More);
         let differences = match (&change, has_check || exact.iter().any(is_open)) {
             (Change::Fixed(_), _) | (_, false) => Vec::new(),
-            (_, true) => difference(scene, &requested, number),
+            (_, true) => {
+                let at = |value| requested.evaluate(scene, &[(&number.path, value)]).values;
+                difference(&at, exact.len(), number.value, number.scale)
+            }
         };
         found.add(scene, number, change, &exact, &differences);
         progress(Step {

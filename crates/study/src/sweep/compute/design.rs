@@ -88,6 +88,16 @@ impl Design {
         numbers
     }
 
+    /// The derivatives of these numbers by the value of an axis.
+    pub(crate) fn slopes(&self, numbers: &[f64], axis: usize) -> Vec<f64> {
+        let mut slopes = vec![0.0; self.axes.len()];
+        slopes[axis] = 1.0;
+        for tie in &self.ties {
+            slopes.push(tie.slope(numbers, &slopes));
+        }
+        slopes
+    }
+
     /// Numbers of a variant with their paths.
     pub(crate) fn assigned(&self, numbers: &[f64]) -> Vec<(&str, f64)> {
         let axes = self.axes.iter().map(|axis| axis.path.as_str());

@@ -18,7 +18,7 @@ mod targets;
 mod tied;
 
 pub(crate) use available::IndexedReaction;
-pub(crate) use axis::Axis;
+pub(crate) use axis::{Axis, Moments};
 pub use design::Design;
 pub use design::Shard;
 pub(crate) use extremes::{ExtremeValues, RangeCurves};
@@ -31,6 +31,7 @@ pub(crate) use signals::signal_of;
 pub use swept_scene::SweptScene;
 #[cfg(feature = "output")]
 pub(crate) use table::block_length;
+pub(crate) use table::compute_rows;
 pub use table::{ComputedSweep, SweepRequest, compute_request, compute_sweep};
 #[cfg(feature = "output")]
 pub(crate) use {axis::VariationKind, point::LEFT_OUT, point::PointResult, point::SweepQuantity};

@@ -109,7 +109,7 @@ pub struct RequestedQuantities {
     /// A line for each body far from its approximate angle.
     pub(crate) notes: String,
     /// The limits, each of the quantity at this index.
-    limits: Vec<(usize, ResultLimit)>,
+    pub(crate) limits: Vec<(usize, ResultLimit)>,
     /// The tables of wanted values.
     pub(super) targets: Vec<Target>,
 }

@@ -86,7 +86,25 @@ pub fn compute_request(
     progress: Progress<'_>,
 ) -> Result<ComputedSweep, StudyError> {
     let (design, requested) = request.prepare(scene)?;
-    let family = scene.family(&design, &requested);
+    let rows = compute_rows(scene, &design, &requested, progress)?;
+    Ok(ComputedSweep {
+        table: requested.table(&design, &rows),
+        messages: rows.into_iter().map(|row| row.result.message).collect(),
+        notes: requested.notes,
+    })
+}
+
+/// Computes all points of a design on all cores.
+///
+/// # Errors
+/// [`StudyError`] if the computation is interrupted.
+pub(crate) fn compute_rows(
+    scene: &impl SweptScene,
+    design: &Design,
+    requested: &RequestedQuantities,
+    progress: Progress<'_>,
+) -> Result<Vec<Row>, StudyError> {
+    let family = scene.family(design, requested);
     let indices: Vec<u64> = (0..design.points).collect();
     let length = block_length(family.as_ref());
     let total = indices.len().div_ceil(length);
@@ -96,7 +114,7 @@ pub fn compute_request(
             return rows;
         }
         let mut keep = |row| rows.push(row);
-        requested.points(scene, &design, family.as_ref(), block, &mut keep);
+        requested.points(scene, design, family.as_ref(), block, &mut keep);
         progress(Step {
             total,
             done: "points",
@@ -108,11 +126,7 @@ pub fn compute_request(
         let message = "the computation was interrupted".to_owned();
         return Err(scene.error(message, None, &[]).into());
     }
-    Ok(ComputedSweep {
-        table: requested.table(&design, &rows),
-        messages: rows.into_iter().map(|row| row.result.message).collect(),
-        notes: requested.notes,
-    })
+    Ok(rows)
 }
 
 /// Points that one thread computes in a row: of a family as many as make the copy of its model cheap.

@@ -88,12 +88,27 @@ impl Tie {
 
     /// Its value, from the numbers of the variant before it.
     pub(crate) fn value(&self, numbers: &[f64]) -> f64 {
+        self.number.expression.eval(&self.values(numbers))
+    }
+
+    /// Its derivative, from those of the numbers of the variant before it.
+    pub(crate) fn slope(&self, numbers: &[f64], slopes: &[f64]) -> f64 {
+        let inputs = self.values(numbers);
+        let each = self.inputs.iter().enumerate();
+        let terms = each.map(|(i, input)| match *input {
+            Input::Varied(k) => self.number.expression.derivatives_wrt(&inputs, i)[1] * slopes[k],
+            Input::Written(_) => 0.0,
+        });
+        terms.sum()
+    }
+
+    /// The values of the variables of its expression.
+    fn values(&self, numbers: &[f64]) -> Vec<f64> {
         let inputs = self.inputs.iter().map(|input| match *input {
             Input::Varied(k) => numbers[k],
             Input::Written(value) => value,
         });
-        let inputs: Vec<f64> = inputs.collect();
-        self.number.expression.eval(&inputs)
+        inputs.collect()
     }
 }
 
