@@ -39,9 +39,9 @@ fn tolerance<S: GradientScene>(scene: &S, samples: u64, options: &[&str]) -> Tol
 /// Asserts that mean and deviation by second order are within three standard errors of those of the samples.
 fn assert_samples_agree(of: &ResultTolerance) {
     let second = of.second.as_ref().expect("second derivatives");
-    let sampled = of.sampled;
-    let shift = (second.shift - sampled.shift) / sampled.shift_error;
-    let deviation = (second.deviation - sampled.deviation) / sampled.deviation_error;
+    let ([mean_error, deviation_error], sampled) = (of.sampling_errors, &of.sampled);
+    let shift = (second.shift - sampled.shift) / mean_error;
+    let deviation = (second.deviation - sampled.deviation) / deviation_error;
     let name = &of.nominal.name;
     assert!(
         shift.abs() < 3.0,
@@ -110,24 +110,20 @@ fn of_a_linear_result_first_order_is_exact() {
     assert!(!of.is_first_order_negligible());
     // Φ(1) and Φ(½), from tables.
     let known = [0.841_344_746_068_542_9, 0.691_462_461_274_013_1];
-    for (of, known) in found.limits.iter().zip(known) {
-        assert!(
-            (of.first - known).abs() < 1e-7,
-            "{}: {}",
-            of.limit,
-            of.first
-        );
+    for (of, known) in found.yields.iter().zip(known) {
+        let first = of.first.expect("a yield by first order");
+        assert!((first - known).abs() < 1e-7, "{first}");
         let error = (known * (1.0 - known) / count as f64).sqrt();
-        let share = of.sampled.share;
-        assert!((share - known).abs() < 3.0 * error, "{}: {share}", of.limit);
+        let share = of.share;
+        assert!((share - known).abs() < 3.0 * error, "{share}");
         // The ends of the interval are the shares from which the one seen is 1.96 standard errors away.
-        for end in of.sampled.interval {
+        for end in of.interval {
             let errors = (share - end).abs() / (end * (1.0 - end) / count as f64).sqrt();
             assert!((errors - 1.959_964).abs() < 1e-5, "{errors}");
         }
     }
     let inside = known[0] + known[1] - 1.0;
-    assert!((found.within_all.share - inside).abs() < 0.011);
+    assert!((found.yields[2].share - inside).abs() < 0.011);
 }
 
 /// The energy ½ m v² of a start at velocity v is quadratic in it: shift ½ m σ², variance (m v σ)² + ¼ m² (μ₄ − σ⁴).

@@ -3,8 +3,8 @@
 mod compute;
 
 pub use compute::{
-    Gradient, GradientScene, LimitYield, NumberSlope, ResultGradient, ResultTolerance, SampleShare,
-    Sampled, SlopeMethod, Spread, Tolerance, TolerancedNumber, compute_gradient, compute_tolerance,
+    Gradient, GradientScene, LimitYield, NumberSlope, ResultGradient, ResultTolerance, SlopeMethod,
+    Spread, Tolerance, TolerancedNumber, compute_gradient, compute_tolerance,
 };
 
 #[cfg(feature = "output")]

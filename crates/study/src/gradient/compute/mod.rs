@@ -15,6 +15,5 @@ mod tolerance;
 pub use machine_numbers::GradientScene;
 pub use slopes::{Gradient, NumberSlope, ResultGradient, SlopeMethod, compute_gradient};
 pub use tolerance::{
-    LimitYield, ResultTolerance, SampleShare, Sampled, Spread, Tolerance, TolerancedNumber,
-    compute_tolerance,
+    LimitYield, ResultTolerance, Spread, Tolerance, TolerancedNumber, compute_tolerance,
 };

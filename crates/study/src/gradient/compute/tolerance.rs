@@ -10,7 +10,7 @@ use super::slopes::{Gradient, ResultGradient, gradient_by};
 use crate::explain::{StudyError, SweepError};
 use crate::progress::{Progress, no_progress};
 use crate::sweep::compute::{
-    Axis, Design, Moments, RequestedQuantities, Row, SweepRequest, compute_rows,
+    Axis, Design, RequestedQuantities, SweepRequest, VariationKind, compute_rows,
 };
 use dwell_scene::ResultLimit;
 use rayon::prelude::*;
@@ -19,8 +19,6 @@ use rayon::prelude::*;
 const OF_95_PERCENT: f64 = 1.959_963_984_540_054;
 /// First order is negligible where its standard deviation is below this part of that by second order.
 const NEGLIGIBLE: f64 = 0.1;
-const FORMS: &str =
-    "write PATH±TOLERANCE, PATH±PERCENT%, PATH~normal(MEAN,SD) or PATH~uniform(FROM,TO)";
 
 /// A number that varies at random.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,6 +31,8 @@ pub struct TolerancedNumber {
     pub mean: f64,
     /// Its standard deviation.
     pub deviation: f64,
+    /// The mean fourth power of what it is from its mean, over that of the deviation.
+    pub kurtosis: f64,
 }
 
 /// The spread of a result by derivatives.
@@ -46,19 +46,6 @@ pub struct Spread {
     pub parts: Vec<f64>,
 }
 
-/// The spread of a result over the samples.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sampled {
-    /// Mean less the value at the means of the numbers.
-    pub shift: f64,
-    /// The standard deviation.
-    pub deviation: f64,
-    /// The standard error of the mean.
-    pub shift_error: f64,
-    /// The standard error of the standard deviation.
-    pub deviation_error: f64,
-}
-
 /// The tolerance of a result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResultTolerance {
@@ -66,32 +53,27 @@ pub struct ResultTolerance {
     pub nominal: ResultGradient,
     /// By the gradient.
     pub first: Spread,
-    /// By the gradient and the second derivatives, or why there is none.
-    pub second: Result<Spread, String>,
-    /// By the samples that have a value.
-    pub sampled: Sampled,
+    /// By the second derivatives, too; `None` where there are no derivatives one standard deviation from the means.
+    pub second: Option<Spread>,
+    /// By the samples.
+    pub sampled: Spread,
+    /// The standard errors of their mean and of their standard deviation.
+    pub sampling_errors: [f64; 2],
     /// The samples; not a number where there is none.
     pub values: Vec<f64>,
 }
 
-/// The share of the samples within a limit.
+/// The share of variants within a limit.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SampleShare {
-    /// The share.
+pub struct LimitYield {
+    /// The limit; `None` for all limits together.
+    pub limit: Option<ResultLimit>,
+    /// The share of the samples; one without a value is beyond the limit.
     pub share: f64,
     /// Its interval of confidence of 95 % (Wilson, 1927).
     pub interval: [f64; 2],
-}
-
-/// The yield of a limit.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LimitYield {
-    /// The limit.
-    pub limit: ResultLimit,
-    /// By the samples; one without a value is beyond the limit.
-    pub sampled: SampleShare,
-    /// By the normal distribution of first order.
-    pub first: f64,
+    /// By the normal distribution of first order, of a single limit.
+    pub first: Option<f64>,
 }
 
 /// The tolerances of results.
@@ -101,10 +83,8 @@ pub struct Tolerance {
     pub numbers: Vec<TolerancedNumber>,
     /// By result.
     pub results: Vec<ResultTolerance>,
-    /// By limit.
-    pub limits: Vec<LimitYield>,
-    /// The share of the samples within all limits.
-    pub within_all: SampleShare,
+    /// By limit; of several, then of all together.
+    pub yields: Vec<LimitYield>,
     /// By sample, the reason why not all of its results could be computed.
     pub messages: Vec<Option<String>>,
 }
@@ -113,7 +93,7 @@ impl ResultTolerance {
     /// Whether the second derivatives decide, as at an optimum.
     pub fn is_first_order_negligible(&self) -> bool {
         let negligible = |second: &Spread| self.first.deviation < NEGLIGIBLE * second.deviation;
-        self.second.as_ref().is_ok_and(negligible)
+        self.second.as_ref().is_some_and(negligible)
     }
 
     /// The parts of the variance by second order, or by first order where there is no other.
@@ -131,16 +111,12 @@ pub fn compute_tolerance<S: GradientScene>(
     request: &SweepRequest<'_>,
     progress: Progress<'_>,
 ) -> Result<Tolerance, StudyError> {
+    let given = request.vary.iter();
+    let numbers = given.map(|of| Axis::parse(scene, of).and_then(|axis| toleranced(&axis, of)));
+    let numbers: Vec<TolerancedNumber> = numbers.collect::<Result<_, _>>().map_err(of_option)?;
     if request.samples.is_some_and(|samples| samples < 2) {
         let message = "a standard deviation needs at least 2 samples: give more --samples";
         return Err(SweepError::Design(message.to_owned()).into());
-    }
-    for given in request.vary {
-        let axis = Axis::parse(scene, given).map_err(|error| of_option(error, given))?;
-        if axis.moments().is_none() {
-            let reason = "the number has no distribution".to_owned();
-            return Err(tolerance_error(given, reason, FORMS.to_owned()).into());
-        }
     }
     let (design, mut requested) = request.prepare(scene)?;
     // Samples beyond a limit count, too.
@@ -149,111 +125,103 @@ pub fn compute_tolerance<S: GradientScene>(
         scene,
         design: &design,
         requested: &requested,
-        moments: design.axes.iter().filter_map(Axis::moments).collect(),
+        numbers: &numbers,
     };
-    let center = study.slopes(&study.at(None))?;
+    let (gradient, slopes) = study.slopes(&study.away(None))?;
     let second = study.second_derivatives();
     let rows = compute_rows(scene, &design, &requested, progress)?;
-    let results = center.gradient.results.into_iter().enumerate();
-    let results: Vec<ResultTolerance> = results
-        .map(|(r, nominal)| {
-            let values: Vec<f64> = rows.iter().map(|row| row.result.values[r]).collect();
-            let second = second.as_ref().map_err(Clone::clone);
-            ResultTolerance {
-                first: spread(&study.moments, &center.slopes[r], None),
-                second: second
-                    .map(|of| spread(&study.moments, &center.slopes[r], Some(&of[r])))
-                    .and_then(finite),
-                sampled: sampled(&values, nominal.value),
-                values,
-                nominal,
-            }
-        })
-        .collect();
-    let each = limits
-        .iter()
-        .map(|(r, limit)| limit_yield(limit, &results[*r]));
-    let all = |row: &&Row| {
-        limits
-            .iter()
-            .all(|(r, of)| holds(of, row.result.values[*r]))
-    };
+    let mut results = Vec::new();
+    for (r, nominal) in gradient.results.into_iter().enumerate() {
+        let values: Vec<f64> = rows.iter().map(|row| row.result.values[r]).collect();
+        let (sampled, sampling_errors) = sampled(&values, nominal.value);
+        let second = second
+            .as_ref()
+            .map(|of| spread(&numbers, &slopes[r], Some(&of[r])));
+        results.push(ResultTolerance {
+            first: spread(&numbers, &slopes[r], None),
+            second: second.filter(|of| (of.shift + of.deviation).is_finite()),
+            sampled,
+            sampling_errors,
+            values,
+            nominal,
+        });
+    }
     Ok(Tolerance {
-        numbers: study.numbers(),
-        limits: each.collect(),
-        within_all: SampleShare::new(rows.iter().filter(all).count(), rows.len()),
+        yields: yields(&limits, &results),
+        numbers,
         results,
         messages: rows.into_iter().map(|row| row.result.message).collect(),
     })
 }
 
-/// An error of an option with one that names it.
-fn tolerance_error(given: &str, reason: String, help: String) -> SweepError {
-    SweepError::Axis {
-        option: "--tolerance",
-        given: given.to_owned(),
-        reason,
-        help,
-    }
-}
-
-/// The error of a variation as one of a tolerance, whose forms are fewer.
-fn of_option(error: SweepError, given: &str) -> SweepError {
+/// The error of a variation as one of a tolerance.
+fn of_option(error: SweepError) -> SweepError {
     match error {
-        SweepError::Axis { reason, help, .. } if help.contains("PATH=") => {
-            tolerance_error(given, reason, FORMS.to_owned())
-        }
-        SweepError::Axis { reason, help, .. } => tolerance_error(given, reason, help),
+        SweepError::Axis {
+            given,
+            reason,
+            help,
+            ..
+        } => SweepError::Axis {
+            option: "--tolerance",
+            given,
+            reason,
+            help,
+        },
         other => other,
     }
 }
 
-/// A spread that exists.
-fn finite(spread: Spread) -> Result<Spread, String> {
-    match spread.deviation.is_finite() && spread.shift.is_finite() {
-        true => Ok(spread),
-        false => Err("a derivative is missing one standard deviation away".to_owned()),
-    }
+/// The number of an axis that is random.
+fn toleranced(axis: &Axis, given: &str) -> Result<TolerancedNumber, SweepError> {
+    let (mean, deviation, kurtosis) = match &axis.kind {
+        VariationKind::Normal { mean, deviation } => (*mean, *deviation, 3.0),
+        VariationKind::Uniform { from, to } => {
+            (0.5 * (from + to), (to - from) / 12.0_f64.sqrt(), 1.8)
+        }
+        VariationKind::Grid { .. } | VariationKind::Listed(_) => {
+            let forms =
+                "PATH±TOLERANCE, PATH±PERCENT%, PATH~normal(MEAN,SD) or PATH~uniform(FROM,TO)";
+            return Err(SweepError::Axis {
+                option: "--tolerance",
+                given: given.to_owned(),
+                reason: "the number has no distribution".to_owned(),
+                help: format!("write {forms}"),
+            });
+        }
+    };
+    Ok(TolerancedNumber {
+        path: axis.path.clone(),
+        unit: axis.unit.clone(),
+        mean,
+        deviation,
+        kurtosis,
+    })
 }
 
-/// The means and deviations of the numbers of a scene.
+/// The derivatives of results by numbers.
 struct Study<'a, S> {
     scene: &'a S,
     design: &'a Design,
     requested: &'a RequestedQuantities,
-    moments: Vec<Moments>,
+    numbers: &'a [TolerancedNumber],
 }
 
-/// The gradient at some values of the numbers.
-struct Slopes {
-    gradient: Gradient,
-    /// By result and number, with all that follows from it.
-    slopes: Vec<Vec<f64>>,
-}
+/// By result and number.
+type Matrix = Vec<Vec<f64>>;
 
 impl<S: GradientScene> Study<'_, S> {
     /// The means, of which one number may be displaced by a multiple of its deviation.
-    fn at(&self, displaced: Option<(usize, f64)>) -> Vec<f64> {
-        let mut values: Vec<f64> = self.moments.iter().map(|of| of.mean).collect();
+    fn away(&self, displaced: Option<(usize, f64)>) -> Vec<f64> {
+        let mut values: Vec<f64> = self.numbers.iter().map(|of| of.mean).collect();
         if let Some((k, by)) = displaced {
-            values[k] += by * self.moments[k].deviation;
+            values[k] += by * self.numbers[k].deviation;
         }
         values
     }
 
-    fn numbers(&self) -> Vec<TolerancedNumber> {
-        let each = self.design.axes.iter().zip(&self.moments);
-        let number = |(axis, of): (&Axis, &Moments)| TolerancedNumber {
-            path: axis.path.clone(),
-            unit: axis.unit.clone(),
-            mean: of.mean,
-            deviation: of.deviation,
-        };
-        each.map(number).collect()
-    }
-
-    /// The derivatives of all results by the numbers, at some values of these.
-    fn slopes(&self, values: &[f64]) -> Result<Slopes, StudyError> {
+    /// The gradient at some values of the numbers, and the derivatives by these with all that follows from them.
+    fn slopes(&self, values: &[f64]) -> Result<(Gradient, Matrix), StudyError> {
         let numbers = self.design.numbers(values);
         let assigned = self.design.assigned(&numbers);
         let varied = self.scene.varied(&assigned)?;
@@ -273,7 +241,7 @@ impl<S: GradientScene> Study<'_, S> {
                 slopes[r].push(sum.unwrap_or_else(whole));
             }
         }
-        Ok(Slopes { gradient, slopes })
+        Ok((gradient, slopes))
     }
 
     /// The derivatives of all results by a number, from differences.
@@ -285,29 +253,29 @@ impl<S: GradientScene> Study<'_, S> {
             let assigned = self.design.assigned(&numbers);
             self.requested.evaluate(self.scene, &assigned).values
         };
-        let (count, scale) = (self.requested.quantities.len(), self.moments[k].deviation);
+        let (count, scale) = (self.requested.quantities.len(), self.numbers[k].deviation);
         let found = difference(&at, count, values[k], scale / STEP);
         found.iter().map(|of| of.slope).collect()
     }
 
-    /// The second derivatives by result, or why there are none.
-    fn second_derivatives(&self) -> Result<Vec<Vec<Vec<f64>>>, String> {
-        let count = self.moments.len();
+    /// The second derivatives by result; `None` if there are none.
+    fn second_derivatives(&self) -> Option<Vec<Matrix>> {
+        let count = self.numbers.len();
         let rows = (0..count).into_par_iter().map(|k| {
-            let away = |by: f64| self.slopes(&self.at(Some((k, by)))).map(|of| of.slopes);
-            let (after, before) = (away(1.0)?, away(-1.0)?);
-            let step = 2.0 * self.moments[k].deviation;
-            let row = |(a, b): (&Vec<f64>, &Vec<f64>)| -> Vec<f64> {
-                a.iter().zip(b).map(|(a, b)| (a - b) / step).collect()
+            let slopes = |by: f64| Some(self.slopes(&self.away(Some((k, by)))).ok()?.1);
+            let step = 2.0 * self.numbers[k].deviation;
+            let row = |(after, before): (Vec<f64>, Vec<f64>)| {
+                let pairs = after.iter().zip(&before);
+                pairs.map(|(a, b)| (a - b) / step).collect()
             };
-            Ok(after.iter().zip(&before).map(row).collect())
+            let pairs = slopes(1.0)?.into_iter().zip(slopes(-1.0)?);
+            Some(pairs.map(row).collect::<Matrix>())
         });
-        let rows: Result<Vec<Vec<Vec<f64>>>, StudyError> = rows.collect();
-        let rows = rows.map_err(|error| error.to_string())?;
+        let rows: Vec<Matrix> = rows.collect::<Option<_>>()?;
         let entry = |r: usize, k: usize, l: usize| 0.5 * (rows[k][r][l] + rows[l][r][k]);
         let row = |r, k| (0..count).map(|l| entry(r, k, l)).collect();
         let matrix = |r| (0..count).map(|k| row(r, k)).collect();
-        Ok((0..self.requested.quantities.len()).map(matrix).collect())
+        Some((0..self.requested.quantities.len()).map(matrix).collect())
     }
 }
 
@@ -322,83 +290,87 @@ fn partial(gradient: &Gradient, result: &ResultGradient, path: &str) -> Option<f
 }
 
 /// The spread by first order, or with second derivatives.
-fn spread(moments: &[Moments], slopes: &[f64], second: Option<&Vec<Vec<f64>>>) -> Spread {
-    let bend = |k: usize, l: usize| second.map_or(0.0, |second| second[k][l]);
-    let part = |k: usize| {
-        let squares = moments.iter().enumerate().map(|(l, other)| {
-            let moment = if k == l { other.kurtosis - 1.0 } else { 2.0 };
-            0.25 * moment * (bend(k, l) * moments[k].deviation * other.deviation).powi(2)
-        });
-        (slopes[k] * moments[k].deviation).powi(2) + squares.sum::<f64>()
+fn spread(numbers: &[TolerancedNumber], slopes: &[f64], second: Option<&Matrix>) -> Spread {
+    let bend = |k: usize, l: usize| {
+        second.map_or(0.0, |second| second[k][l]) * numbers[k].deviation * numbers[l].deviation
     };
-    let parts: Vec<f64> = (0..moments.len()).map(part).collect();
-    let each = moments.iter().enumerate();
+    let part = |k: usize| {
+        let squares = numbers.iter().enumerate().map(|(l, other)| {
+            let moment = if k == l { other.kurtosis - 1.0 } else { 2.0 };
+            0.25 * moment * bend(k, l).powi(2)
+        });
+        (slopes[k] * numbers[k].deviation).powi(2) + squares.sum::<f64>()
+    };
+    let parts: Vec<f64> = (0..numbers.len()).map(part).collect();
     Spread {
-        shift: each
-            .map(|(k, of)| 0.5 * bend(k, k) * of.deviation.powi(2))
-            .sum(),
+        shift: (0..numbers.len()).map(|k| 0.5 * bend(k, k)).sum(),
         deviation: parts.iter().sum::<f64>().sqrt(),
         parts,
     }
 }
 
 /// The spread of samples, with standard errors that do not suppose a normal distribution.
-fn sampled(values: &[f64], nominal: f64) -> Sampled {
-    let shifts = values.iter().map(|v| v - nominal).filter(|v| v.is_finite());
-    let shifts: Vec<f64> = shifts.collect();
+fn sampled(values: &[f64], nominal: f64) -> (Spread, [f64; 2]) {
+    let shifts = values.iter().map(|v| v - nominal);
+    let shifts: Vec<f64> = shifts.filter(|v| v.is_finite()).collect();
     let count = shifts.len() as f64;
     let shift = shifts.iter().sum::<f64>() / count;
     let moment = |power| shifts.iter().map(|v| (v - shift).powi(power)).sum::<f64>();
     let variance = moment(2) / (count - 1.0);
-    let of_variance = ((moment(4) / count - variance * variance) / count)
-        .max(0.0)
-        .sqrt();
+    let of_variance = ((moment(4) / count - variance * variance).max(0.0) / count).sqrt();
     let deviation = variance.sqrt();
-    Sampled {
+    let spread = Spread {
         shift,
         deviation,
-        shift_error: deviation / count.sqrt(),
-        deviation_error: if variance > 0.0 {
-            of_variance / (2.0 * deviation)
+        parts: Vec::new(),
+    };
+    let of_deviation = of_variance / (2.0 * deviation.max(f64::MIN_POSITIVE));
+    (spread, [deviation / count.sqrt(), of_deviation])
+}
+
+/// The yields of limits, each of the result at this index.
+fn yields(limits: &[(usize, ResultLimit)], results: &[ResultTolerance]) -> Vec<LimitYield> {
+    let holds = |(r, limit): &(usize, ResultLimit), k: usize| match limit.is_upper {
+        true => results[*r].values[k] <= limit.limit,
+        false => results[*r].values[k] >= limit.limit,
+    };
+    let samples = results.first().map_or(0, |of| of.values.len());
+    let mut yields = Vec::new();
+    for of in limits {
+        let (nominal, deviation) = (results[of.0].nominal.value, results[of.0].first.deviation);
+        let room = (of.1.limit - nominal) * if of.1.is_upper { 1.0 } else { -1.0 };
+        let first = if room == 0.0 {
+            0.5
         } else {
-            0.0
-        },
+            normal_share(room / deviation)
+        };
+        let within = (0..samples).filter(|k| holds(of, *k)).count();
+        yields.push(LimitYield::new(
+            Some(of.1.clone()),
+            within,
+            samples,
+            Some(first),
+        ));
     }
+    if limits.len() > 1 {
+        let within = (0..samples).filter(|k| limits.iter().all(|of| holds(of, *k)));
+        yields.push(LimitYield::new(None, within.count(), samples, None));
+    }
+    yields
 }
 
-/// Whether a value is within a limit.
-fn holds(limit: &ResultLimit, value: f64) -> bool {
-    match limit.is_upper {
-        true => value <= limit.limit,
-        false => value >= limit.limit,
-    }
-}
-
-/// The yield of a limit of a result.
-fn limit_yield(limit: &ResultLimit, of: &ResultTolerance) -> LimitYield {
-    let within = of.values.iter().filter(|value| holds(limit, **value));
-    let room = limit.limit - of.nominal.value;
-    let room = if limit.is_upper { room } else { -room };
-    LimitYield {
-        limit: limit.clone(),
-        sampled: SampleShare::new(within.count(), of.values.len()),
-        first: match of.first.deviation > 0.0 {
-            true => normal_share(room / of.first.deviation),
-            false => f64::from(u8::from(room >= 0.0)),
-        },
-    }
-}
-
-impl SampleShare {
-    fn new(within: usize, count: usize) -> Self {
-        let (count, share) = (count as f64, within as f64 / count as f64);
-        let z = OF_95_PERCENT;
-        let middle = (share + z * z / (2.0 * count)) / (1.0 + z * z / count);
+impl LimitYield {
+    fn new(limit: Option<ResultLimit>, within: usize, samples: usize, first: Option<f64>) -> Self {
+        let (count, share) = (samples as f64, within as f64 / samples as f64);
+        let (z, total) = (OF_95_PERCENT, 1.0 + OF_95_PERCENT.powi(2) / count);
+        let middle = (share + z * z / (2.0 * count)) / total;
         let root = (share * (1.0 - share) / count + (z / (2.0 * count)).powi(2)).sqrt();
-        let half = z * root / (1.0 + z * z / count);
+        let half = z * root / total;
         Self {
+            limit,
             share,
             interval: [(middle - half).max(0.0), (middle + half).min(1.0)],
+            first,
         }
     }
 }

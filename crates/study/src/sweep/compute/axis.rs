@@ -31,15 +31,6 @@ pub(crate) enum VariationKind {
     Uniform { from: f64, to: f64 },
 }
 
-/// The moments of a symmetric distribution.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Moments {
-    pub(crate) mean: f64,
-    pub(crate) deviation: f64,
-    /// The mean fourth power of the deviation from the mean, over that of the standard deviation.
-    pub(crate) kurtosis: f64,
-}
-
 impl Axis {
     /// Reads an axis: a path of the scene, and how its number varies.
     ///
@@ -93,22 +84,6 @@ impl Axis {
             VariationKind::Listed(values) => extent(values.iter().copied()),
             VariationKind::Normal { mean, deviation } => [mean - deviation, mean + deviation],
         }
-    }
-
-    /// The moments of its distribution; `None` unless it is random.
-    pub(crate) fn moments(&self) -> Option<Moments> {
-        let (mean, deviation, kurtosis) = match &self.kind {
-            VariationKind::Normal { mean, deviation } => (*mean, *deviation, 3.0),
-            VariationKind::Uniform { from, to } => {
-                (0.5 * (from + to), (to - from) / 12.0_f64.sqrt(), 1.8)
-            }
-            VariationKind::Grid { .. } | VariationKind::Listed(_) => return None,
-        };
-        Some(Moments {
-            mean,
-            deviation,
-            kurtosis,
-        })
     }
 
     /// Number of values; 1 if it is random.

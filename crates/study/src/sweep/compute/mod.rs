@@ -18,7 +18,7 @@ mod targets;
 mod tied;
 
 pub(crate) use available::IndexedReaction;
-pub(crate) use axis::{Axis, Moments};
+pub(crate) use axis::{Axis, VariationKind};
 pub use design::Design;
 pub use design::Shard;
 pub(crate) use extremes::{ExtremeValues, RangeCurves};
@@ -34,4 +34,4 @@ pub(crate) use table::block_length;
 pub(crate) use table::compute_rows;
 pub use table::{ComputedSweep, SweepRequest, compute_request, compute_sweep};
 #[cfg(feature = "output")]
-pub(crate) use {axis::VariationKind, point::LEFT_OUT, point::PointResult, point::SweepQuantity};
+pub(crate) use {point::LEFT_OUT, point::PointResult, point::SweepQuantity};
