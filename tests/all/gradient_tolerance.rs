@@ -174,6 +174,26 @@ fn tied_numbers_count() {
     assert!((found.results[0].first.deviation - whole.abs()).abs() < 1e-12 * whole.abs());
 }
 
+/// Equal links of a redundant parallelogram change together only: the derivative is that along all of them. The coupler moves as a point
+/// mass on the crank, and m = Σ I + mass × length².
+#[test]
+fn links_that_change_together_have_derivatives() {
+    let scene = fixtures::scene("parallelogram-three-cranks");
+    let given = "tolerance crank.points.B[0]±1%";
+    let tie = |link: &str| format!("tied {link}=`crank.points.B[0]`");
+    let ties = ["second.points.C[0]", "third.points.F[0]"].map(tie);
+    let found = tolerance(&scene, 50, &["of m.max", given, &ties[0], &ties[1]]);
+    let slope = 2.0 * value(&scene, "coupler.mass") * value(&scene, "crank.points.B[0]");
+    let expected = slope * found.numbers[0].deviation;
+    let first = found.results[0].first.deviation;
+    assert!(
+        (first - expected).abs() < 1e-8 * expected,
+        "{first} {expected}"
+    );
+    let error = study(&scene, 10, &["of m.max", given]).expect_err("no length changes alone");
+    assert!(error.to_string().contains("--tied"), "{error}");
+}
+
 #[test]
 fn in_space_second_order_agrees_with_samples() {
     let scene = fixtures::space_scene("rssr");

@@ -3,7 +3,7 @@
 use super::compute::{GradientScene, LimitYield, ResultTolerance, Tolerance, compute_tolerance};
 use super::output::{aligned, bars_of, kink};
 use crate::explain::StudyError;
-use crate::number_format::{count, digits, number};
+use crate::number_format::{count, digits, digits_within, number};
 use crate::output::{Outcome, add_results_page, scene_caption};
 use crate::progress::Progress;
 use crate::sweep::SweepRequest;
@@ -20,6 +20,8 @@ const CURVE_POINTS: i32 = 80;
 const CURVE_REACH: f64 = 4.0;
 /// Limits are drawn that are at most this many widths of a histogram from the value at the means.
 const REACH: f64 = 1.5;
+/// Mean shifts below this part of a deviation are printed as zero.
+const ROUNDING: f64 = 1e-9;
 
 /// The tolerances of results by random numbers of a scene.
 ///
@@ -140,7 +142,8 @@ fn result_text(result: &ResultTolerance, found: &Tolerance) -> String {
     for (order, of) in [("first order", &result.first)].into_iter().chain(second) {
         rows.push([
             order.to_owned(),
-            digits(of.shift, 4),
+            // Without what rounding leaves of a difference of derivatives.
+            digits_within(of.shift, ROUNDING * of.deviation, 4),
             digits(of.deviation, 4),
         ]);
     }
@@ -244,9 +247,7 @@ fn chart(result: &ResultTolerance, yields: &[LimitYield]) -> Option<Chart> {
             .series
             .push(Series::line("first order", curve.collect()));
     } else {
-        chart
-            .marks
-            .push(vertical(nominal.value, "first order: no spread".to_owned()));
+        chart.title += ", first order: no spread";
     }
     let limits = yields.iter().filter_map(|of| of.limit.as_ref());
     for limit in limits.filter(|limit| limit.result == nominal.name) {

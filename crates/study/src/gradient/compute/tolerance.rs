@@ -130,6 +130,13 @@ pub fn compute_tolerance<S: GradientScene>(
     let (gradient, slopes) = study.slopes(&study.away(None))?;
     let second = study.second_derivatives();
     let rows = compute_rows(scene, &design, &requested, progress)?;
+    let failures = rows.iter().filter_map(|row| row.result.message.as_ref());
+    if failures.clone().count() + 2 > rows.len() {
+        let reason = failures.clone().next().map_or("", String::as_str);
+        let help = "give smaller tolerances, or tie numbers that change together, as with --tied";
+        let message = format!("the samples have no results ({reason}): {help}");
+        return Err(SweepError::Design(message).into());
+    }
     let mut results = Vec::new();
     for (r, nominal) in gradient.results.into_iter().enumerate() {
         let values: Vec<f64> = rows.iter().map(|row| row.result.values[r]).collect();
