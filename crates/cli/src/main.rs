@@ -7,6 +7,7 @@ mod cases;
 mod export;
 mod exported_runs;
 mod former;
+mod import;
 mod init;
 mod instants;
 mod interface;
@@ -65,6 +66,7 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
     let mut times = Times::new();
     match command {
         Command::Schema => return print(&dwell_scene::schema()).map(|()| true),
+        Command::Import(arguments) => return import::write(arguments, options).map(|()| true),
         Command::Init { scene } => return init::write(scene).map(|()| true),
         _ => {}
     }

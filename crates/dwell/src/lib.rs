@@ -44,6 +44,7 @@
 //! | where does it rest, how does it vibrate? | [`Mechanism::equilibria`], [`Mechanism::linearise`] |
 //! | how steadily does it run, which flywheel does it need? | [`Mechanism::cycle`] |
 //! | what if its dimensions vary? | [`Sweep`] |
+//! | models of MuJoCo, ROS, Gazebo, FreeCAD, PMKS+ | [`import`] |
 //! | code for a controller, or formulas | [`Scene::export`], [`Scene::closed_form`] |
 //!
 //! # Your own loads
@@ -78,6 +79,7 @@ mod column_table;
 mod equation;
 mod error;
 mod export;
+mod import;
 mod machine;
 mod mechanism;
 mod motion;
@@ -87,6 +89,17 @@ mod table;
 mod value;
 
 pub use batch::CoefficientBatch;
+/// What became of the parts of an imported model, and what it means; see [`import`].
+///
+/// ```
+/// use dwell::{Effect, Finding};
+/// fn lost(findings: &[Finding]) -> Vec<String> {
+///     let changes = findings.iter().filter(|one| one.effect == Effect::Changes);
+///     changes.map(|one| one.to_string()).collect()
+/// }
+/// # assert!(lost(&[]).is_empty());
+/// ```
+pub use dwell_door::{Closing, Effect, Finding, Format, Import, ImportOptions};
 /// An integration method; see [`Solver::method`].
 ///
 /// ```
@@ -131,6 +144,7 @@ pub use dwell_study::Language;
 pub use equation::EquationOfMotion;
 pub use error::Error;
 pub use export::ExportTarget;
+pub use import::import;
 pub use machine::{Cycle, Equilibrium, StateSpace};
 pub use mechanism::Mechanism;
 pub use mechanism::builder::{BodyBuilder, MechanismBuilder};

@@ -1,0 +1,328 @@
+//! Links of PMKS+: a query in which numbers are digits of base 64, thousandths of their unit.
+
+use crate::error::DoorError;
+use crate::finding::{Effect, Findings, Place};
+use crate::model::{Along, Body, End, GROUND, Joint, Kind, Load, Model, Motion};
+use crate::pose::{Matrix, Pose, sub, unit};
+use crate::settle::{Read, span};
+use crate::xml::{Coverage, TextFile};
+use std::f64::consts::TAU;
+
+const DIGITS: &str = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_-";
+/// Bits of the settings.
+const CLOCKWISE: u64 = 1;
+const NO_GRAVITY: u64 = 1 << 8;
+/// Bits of a joint.
+const PRISMATIC: u64 = 1;
+const INPUT: u64 = 2;
+const GROUNDED: u64 = 4;
+const WELDED: u64 = 8;
+/// Bits of a force.
+const LOCAL: u64 = 1;
+const OUTWARD: u64 = 2;
+
+struct Reader<'t> {
+    file: &'t TextFile,
+    place: Place,
+    model: Model,
+    coverage: Coverage,
+}
+
+/// Length, mass, and force in SI.
+struct Units {
+    length: f64,
+    mass: f64,
+    force: f64,
+}
+
+/// A joint of the link, with the bodies that it connects.
+struct Pin {
+    flags: u64,
+    id: String,
+    name: String,
+    at: [f64; 3],
+    angle: f64,
+    bodies: Vec<usize>,
+}
+
+pub(crate) fn read(file: &TextFile, findings: Findings) -> Result<Read, DoorError> {
+    let text = file.text.trim();
+    let query = text.split_once('?').map_or(text, |(_, query)| query);
+    let place = file.place(1);
+    let mut reader = Reader {
+        file,
+        model: Model::new("PMKS+ mechanism", &place, findings),
+        place,
+        coverage: Coverage::default(),
+    };
+    let last = query
+        .chars()
+        .next_back()
+        .map(|c| c.to_string())
+        .unwrap_or_default();
+    if reader.whole(&last)? != (query.len().saturating_sub(1) % 62) as u64 {
+        return Err(
+            reader.error("the check digit at the end of the link is wrong: a part is missing")
+        );
+    }
+    let fields: Vec<&str> = query.split('.').collect();
+    let [settings, decimals, integers, enums, rest @ ..] = fields.as_slice() else {
+        return Err(reader.error("the link has too few fields"));
+    };
+    let flags = reader.whole(settings)?;
+    let units = reader.units(enums)?;
+    let mut lists = rest.split(|field| field.is_empty());
+    let [joints, links, forces] = [(); 3].map(|()| lists.next().unwrap_or_default());
+    let mut pins = joints
+        .iter()
+        .map(|joint| reader.pin(joint, &units))
+        .collect::<Result<Vec<_>, _>>()?;
+    for link in links {
+        reader.link(link, &units, &mut pins)?;
+    }
+    if flags & NO_GRAVITY != 0 {
+        reader.model.gravity = [0.0; 3];
+    } else {
+        reader.model.gravity = [0.0, -9.81, 0.0];
+    }
+    for force in forces {
+        reader.force(force, &units)?;
+    }
+    let turn = if flags & CLOCKWISE != 0 { -1.0 } else { 1.0 };
+    let speed = reader.whole(integers.split(',').next().unwrap_or_default())? as f64;
+    let linear = decimals
+        .split(',')
+        .nth(1)
+        .map(|text| reader.decimal(text))
+        .transpose()?;
+    let linear = linear.filter(|speed| *speed != 0.0).unwrap_or(1.0) * units.length;
+    for pin in &pins {
+        reader.joints(pin, [turn * speed * TAU / 60.0, turn * linear])?;
+    }
+    reader.coverage.all = query
+        .split(['.', ','])
+        .filter(|token| !token.is_empty())
+        .count();
+    // Colours, the scale of the picture, the time step, the active object and the check digit.
+    reader.coverage.named =
+        links.len() + decimals.split(',').take(1).count() + integers.split(',').skip(1).count() + 1;
+    reader.coverage.read = reader.coverage.all - reader.coverage.named;
+    let text = "colours, scale, time step, grid and active object: left out, nothing lost";
+    reader
+        .model
+        .findings
+        .add(&reader.place, Effect::Nothing, text);
+    span(&mut reader.model);
+    Ok(Read {
+        model: reader.model,
+        moves: Vec::new(),
+        coverage: reader.coverage,
+    })
+}
+
+impl Reader<'_> {
+    fn error(&self, message: &str) -> DoorError {
+        self.file
+            .error((0, self.file.text.trim_end().len()), message.to_owned(), "")
+    }
+
+    /// A whole number of 0 or more.
+    fn whole(&self, text: &str) -> Result<u64, DoorError> {
+        let mut digits = text.chars().map(|c| DIGITS.find(c));
+        let step = |value: u64, digit: usize| value.checked_mul(64)?.checked_add(digit as u64);
+        let value = digits.try_fold(0u64, |value, digit| step(value, digit?));
+        value.ok_or_else(|| self.error(&format!("`{text}` is no number of PMKS+")))
+    }
+
+    /// Thousandths; a leading zero means that the number is negative.
+    fn decimal(&self, text: &str) -> Result<f64, DoorError> {
+        let (sign, digits) = match text.strip_prefix('0') {
+            Some(digits) if !digits.is_empty() => (-1.0, digits),
+            _ => (1.0, text),
+        };
+        Ok(sign * self.whole(digits)? as f64 / 1000.0)
+    }
+
+    fn units(&self, enums: &str) -> Result<Units, DoorError> {
+        // Length, angle, force; a fourth digit is cut off by its encoder.
+        let digit = |k: usize| enums.get(k..=k).map_or(Ok(9), |digit| self.whole(digit));
+        let (length, mass) = match digit(0)? {
+            0 => (0.0254, 0.453_592_37),
+            1 => (0.01, 1.0),
+            2 => (1.0, 1.0),
+            _ => return Err(self.error("the link has an unknown unit of length")),
+        };
+        let force = if digit(2)? == 0 {
+            4.448_221_615_260_5
+        } else {
+            1.0
+        };
+        if length != 1.0 {
+            let text = "masses are read in kg or lb, moments of inertia in kg cm2 or lb in2";
+            self.model.findings.add(&self.place, Effect::Kept, text);
+        }
+        Ok(Units {
+            length,
+            mass,
+            force,
+        })
+    }
+
+    fn fields<'f, const N: usize>(
+        &self,
+        what: &str,
+        text: &'f str,
+    ) -> Result<([&'f str; N], Vec<&'f str>), DoorError> {
+        let all: Vec<&str> = text.split(',').collect();
+        let first = all
+            .get(..N)
+            .and_then(|first| <[&str; N]>::try_from(first).ok());
+        let first =
+            first.ok_or_else(|| self.error(&format!("the {what} `{text}` has too few fields")))?;
+        Ok((first, all[N..].to_vec()))
+    }
+
+    fn pin(&self, text: &str, units: &Units) -> Result<Pin, DoorError> {
+        let ([id, name, x, y, angle], _) = self.fields("joint", text)?;
+        let (flags, id) = split_first(id);
+        let flags = self.whole(flags)?;
+        Ok(Pin {
+            flags,
+            id: id.to_owned(),
+            name: if name.is_empty() { id } else { name }.to_owned(),
+            at: [
+                self.decimal(x)? * units.length,
+                self.decimal(y)? * units.length,
+                0.0,
+            ],
+            angle: self.decimal(angle)?,
+            bodies: if flags & GROUNDED != 0 {
+                vec![GROUND]
+            } else {
+                Vec::new()
+            },
+        })
+    }
+
+    fn link(&mut self, text: &str, units: &Units, pins: &mut [Pin]) -> Result<(), DoorError> {
+        let ([id, name, mass, moment, x, y, _colour], joints) = self.fields("link", text)?;
+        let (root, kind_and_id) = split_first(id);
+        let (_kind, id) = split_first(kind_and_id);
+        if root != "Y" {
+            let text = format!("link {id}: a part of a compound link, which has the mass");
+            self.model.findings.add(&self.place, Effect::Kept, text);
+            return Ok(());
+        }
+        let number = self.model.bodies.len();
+        let name = if name.is_empty() { id } else { name };
+        let mut body = Body::new(name, self.place.clone(), Pose::IDENTITY);
+        let mass = self.decimal(mass)? * units.mass;
+        let moment = self.decimal(moment)? * units.mass * units.length * units.length;
+        if mass < 0.0 {
+            return Err(self.error(&format!("the mass of link {name} is negative")));
+        }
+        let center = [
+            self.decimal(x)? * units.length,
+            self.decimal(y)? * units.length,
+            0.0,
+        ];
+        body.add_mass(mass, center, Matrix::diagonal([moment; 3]));
+        for joint in joints.into_iter().take_while(|joint| !joint.is_empty()) {
+            let pin = pins.iter_mut().find(|pin| pin.id == joint);
+            let pin = pin.ok_or_else(|| {
+                self.error(&format!("link {name} has an unknown joint `{joint}`"))
+            })?;
+            pin.bodies.push(number);
+            if pin.bodies.len() == 1 {
+                body.points.push((pin.name.clone(), pin.at));
+            }
+        }
+        self.model
+            .frames
+            .push((name.to_owned(), number, Pose::IDENTITY));
+        self.model.bodies.push(body);
+        Ok(())
+    }
+
+    /// The joints of a pin: its first body with each of the others.
+    fn joints(&mut self, pin: &Pin, speeds: [f64; 2]) -> Result<(), DoorError> {
+        let Some((first, others)) = pin.bodies.split_first() else {
+            return Ok(());
+        };
+        let kind = match pin.flags {
+            flags if flags & PRISMATIC != 0 => Kind::Slide,
+            flags if flags & WELDED != 0 => Kind::Fixed,
+            _ => Kind::Hinge,
+        };
+        let axis = match kind {
+            Kind::Slide => [pin.angle.cos(), pin.angle.sin(), 0.0],
+            _ => [0.0, 0.0, 1.0],
+        };
+        let frame = Pose {
+            origin: pin.at,
+            turn: Matrix::z_along(axis),
+        };
+        for (k, other) in others.iter().enumerate() {
+            let name = match others.len() {
+                1 => pin.name.clone(),
+                _ => format!("{}-{}", pin.name, self.model.bodies[*other].name),
+            };
+            let end = |body| End { body, frame };
+            self.model.joints.push(Joint {
+                name,
+                place: self.place.clone(),
+                kind,
+                first: end(*first),
+                second: end(*other),
+                in_tree: false,
+                drawn: 0.0,
+                along: Along::default(),
+            });
+            let joint = self.model.joints.len() - 1;
+            if pin.flags & INPUT != 0 && k == 0 && kind != Kind::Fixed {
+                if let Some(drive) = self.model.drive(joint) {
+                    drive.motion = Motion::Speed(speeds[usize::from(kind == Kind::Slide)]);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn force(&mut self, text: &str, units: &Units) -> Result<(), DoorError> {
+        let ([id, link, name, sx, sy, ex, ey, size], _) = self.fields("force", text)?;
+        let flags = self.whole(split_first(id).0)?;
+        let body = self
+            .model
+            .frames
+            .iter()
+            .find(|(one, ..)| one == link)
+            .map(|(_, body, _)| *body);
+        let body = body
+            .ok_or_else(|| self.error(&format!("force {name} acts on an unknown link `{link}`")))?;
+        let point = |x, y| {
+            Ok::<_, DoorError>([
+                self.decimal(x)? * units.length,
+                self.decimal(y)? * units.length,
+                0.0,
+            ])
+        };
+        let (start, end) = (point(sx, sy)?, point(ex, ey)?);
+        let outward = unit(sub(end, start))
+            .ok_or_else(|| self.error(&format!("force {name} has no direction")))?;
+        let sign = if flags & OUTWARD != 0 { 1.0 } else { -1.0 };
+        let size = self.decimal(size)? * units.force * sign;
+        self.model.loads.push(Load::Force {
+            name: name.to_owned(),
+            place: self.place.clone(),
+            at: (body, start),
+            force: outward.map(|x| x * size),
+            turns: flags & LOCAL != 0,
+        });
+        Ok(())
+    }
+}
+
+/// The first character of a text, and the rest.
+fn split_first(text: &str) -> (&str, &str) {
+    text.split_at(text.chars().next().map_or(0, char::len_utf8))
+}

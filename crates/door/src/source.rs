@@ -1,0 +1,181 @@
+//! Which files are read, and by which reader.
+
+use crate::error::DoorError;
+use crate::finding::Findings;
+use crate::model::Model;
+use crate::options::{Format, ImportOptions};
+use crate::plane;
+use crate::scene;
+use crate::settle::{Read, settle};
+use crate::xml::{TextFile, Xml};
+use crate::{Import, asmt, head, mjcf, pmks, sdf, urdf};
+use std::io::Read as _;
+use std::path::{Component, Path};
+
+/// Larger files are refused, in bytes.
+const LARGEST: u64 = 64 << 20;
+
+/// Reads a file of text.
+pub(crate) fn read(path: &Path, name: &str) -> Result<String, DoorError> {
+    let failed = |reason: String| DoorError::File {
+        file: name.to_owned(),
+        reason,
+    };
+    let data = std::fs::metadata(path).map_err(|e| failed(e.to_string()))?;
+    if !data.is_file() || data.len() > LARGEST {
+        return Err(failed(format!(
+            "it is no file, or larger than {} MB",
+            LARGEST >> 20
+        )));
+    }
+    let file = std::fs::File::open(path).map_err(|e| failed(e.to_string()))?;
+    let mut text = String::new();
+    let read = file.take(LARGEST).read_to_string(&mut text);
+    read.map_err(|e| failed(e.to_string()))?;
+    Ok(text)
+}
+
+pub(crate) fn import(
+    name: &str,
+    text: &str,
+    options: &ImportOptions,
+    folder: Option<&Path>,
+) -> Result<Import, DoorError> {
+    let format = options
+        .from
+        .or_else(|| format(name, text))
+        .ok_or_else(|| DoorError::Format {
+            file: name.to_owned(),
+        })?;
+    let findings = Findings::default();
+    let read = match format {
+        Format::Mjcf => of_xml(
+            format,
+            with_includes(name, text, folder)?,
+            findings.clone(),
+            options,
+        )?,
+        Format::Urdf | Format::Sdf => of_xml(
+            format,
+            vec![TextFile::new(name, text)],
+            findings.clone(),
+            options,
+        )?,
+        Format::Asmt => asmt::read(&TextFile::new(name, text), findings)?,
+        Format::Pmks => pmks::read(&TextFile::new(name, text), findings)?,
+    };
+    let coverage = read.coverage;
+    let model = settle(read.model, read.moves, options)?;
+    written(name, text, &model, options, coverage)
+}
+
+fn written(
+    name: &str,
+    text: &str,
+    model: &Model,
+    options: &ImportOptions,
+    coverage: crate::Coverage,
+) -> Result<Import, DoorError> {
+    let plane = plane::find(model, options);
+    let mut import = Import {
+        scene: String::new(),
+        findings: Vec::new(),
+        plane: plane.map(|plane| [plane.x, plane.y, plane.normal]),
+        coverage,
+    };
+    import.scene = scene::write(model, plane, &|names| {
+        let import = Import {
+            findings: model.findings.sorted(),
+            ..import.clone()
+        };
+        head(name, text, &import, names, model)
+    })?;
+    import.findings = model.findings.sorted();
+    Ok(import)
+}
+
+/// The format that the ending of a file shows, or its root element.
+fn format(name: &str, text: &str) -> Option<Format> {
+    let begins = |what: &str| text.trim_start().starts_with(what);
+    let has = |what: &str| text.contains(what);
+    match Path::new(name)
+        .extension()
+        .and_then(|ending| ending.to_str())
+    {
+        Some("mjcf") => Some(Format::Mjcf),
+        Some("urdf") => Some(Format::Urdf),
+        Some("sdf" | "world") => Some(Format::Sdf),
+        Some("asmt") => Some(Format::Asmt),
+        _ if begins("<") && has("<mujoco") => Some(Format::Mjcf),
+        _ if begins("<") && has("<sdf") => Some(Format::Sdf),
+        _ if begins("<") && has("<robot") => Some(Format::Urdf),
+        _ if begins("OndselSolver") => Some(Format::Asmt),
+        _ if has(".") && !text.trim().contains(char::is_whitespace) => Some(Format::Pmks),
+        _ => None,
+    }
+}
+
+/// The file and those that it includes, each once.
+fn with_includes(
+    name: &str,
+    text: &str,
+    folder: Option<&Path>,
+) -> Result<Vec<TextFile>, DoorError> {
+    let mut files = vec![TextFile::new(name, text)];
+    let mut next = 0;
+    while next < files.len() {
+        let tree = files[next].parse()?;
+        let mut wanted = Vec::new();
+        for include in tree
+            .descendants()
+            .filter(|node| node.has_tag_name("include"))
+        {
+            let file = include.attribute("file").unwrap_or_default();
+            let known = files.iter().any(|one| &*one.file == file)
+                || wanted.iter().any(|one: &TextFile| &*one.file == file);
+            if known {
+                continue;
+            }
+            let refuse = |message: String| {
+                files[next].error((include.range().start, include.range().len()), message, "")
+            };
+            let Some(folder) = folder else {
+                return Err(refuse(format!(
+                    "`{file}` is not read: only the text is given"
+                )));
+            };
+            let inside = Path::new(file)
+                .components()
+                .all(|part| matches!(part, Component::Normal(_)));
+            if !inside || wanted.len() + files.len() > 200 {
+                return Err(refuse(format!(
+                    "`{file}` is not read: it is not below the folder of the model"
+                )));
+            }
+            let text = read(&folder.join(file), file).map_err(|e| refuse(e.to_string()))?;
+            wanted.push(TextFile::new(file, &text));
+        }
+        drop(tree);
+        files.extend(wanted);
+        next += 1;
+    }
+    Ok(files)
+}
+
+fn of_xml(
+    format: Format,
+    files: Vec<TextFile>,
+    findings: Findings,
+    options: &ImportOptions,
+) -> Result<Read, DoorError> {
+    let trees = files
+        .iter()
+        .map(TextFile::parse)
+        .collect::<Result<Vec<_>, _>>()?;
+    let xml = Xml::new(&files, &trees, findings);
+    match format {
+        Format::Urdf => urdf::read(&xml, options),
+        Format::Sdf => sdf::read(&xml),
+        Format::Mjcf | Format::Asmt | Format::Pmks => mjcf::read(&xml, options),
+    }
+}
