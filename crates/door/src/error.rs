@@ -67,6 +67,16 @@ pub struct Part {
 }
 
 impl DoorError {
+    pub(crate) fn unknown<'n>(
+        what: &'static str,
+        name: &str,
+        known: impl Iterator<Item = &'n str>,
+    ) -> Self {
+        let known = known.collect::<Vec<_>>().join(", ");
+        let name = name.to_owned();
+        Self::Unknown { what, name, known }
+    }
+
     /// The part of a file that the error is about.
     pub fn part(&self) -> Option<&Part> {
         match self {

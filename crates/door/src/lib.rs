@@ -39,7 +39,6 @@ pub use finding::{Effect, Finding};
 pub use options::{Closing, Format, ImportOptions};
 pub use xml::Coverage;
 
-use names::Names;
 use sha2::{Digest as _, Sha256};
 use std::path::Path;
 
@@ -85,35 +84,28 @@ pub fn import_text(name: &str, text: &str, options: &ImportOptions) -> Result<Im
 }
 
 /// The comments at the head of a scene.
-fn head(
-    name: &str,
-    text: &str,
-    import: &Import,
-    names: &Names,
-    model: &model::Model,
-) -> Vec<String> {
-    let hash: String = Sha256::digest(text.as_bytes())
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect();
+fn head(name: &str, text: &str, import: &Import, model: &model::Model) -> String {
+    let hash = Sha256::digest(text.as_bytes());
+    let hash: String = hash.iter().map(|byte| format!("{byte:02x}")).collect();
     let mut lines = vec![
         format!("Imported from {name}"),
         format!("SHA-256 {hash}"),
-        "Drawn in the frame of the ground, in m, kg and rad. A coordinate is zero where the file draws its joint.".to_owned(),
+        "Drawn in the frame of the ground, in m, kg and rad. A coordinate is 0 as drawn."
+            .to_owned(),
     ];
     if let Some([x, y, normal]) = import.plane {
         lines.push(format!(
-            "Planar: x is {x:?} of the file, y is {y:?}, and the normal {normal:?}."
+            "Planar: x is {x:?} of the file, y is {y:?}, the normal {normal:?}."
         ));
     }
+    let names = names::Names::new(model);
     let renamed = names.changed(model);
-    if !renamed.is_empty() {
-        lines.push("Names, as they are in the file and here:".to_owned());
-        lines.extend(renamed.iter().map(|(old, new)| format!("  {old} -> {new}")));
-    }
-    if !import.findings.is_empty() {
-        lines.push("What became of its parts:".to_owned());
-        lines.extend(import.findings.iter().map(|one| format!("  {one}")));
-    }
-    lines
+    lines.extend(
+        renamed
+            .iter()
+            .map(|(old, new)| format!("renamed: {old} is {new}")),
+    );
+    lines.extend(import.findings.iter().map(ToString::to_string));
+    let lines = lines.iter().map(|line| scene::comment(line));
+    lines.collect::<Vec<_>>().join("\n")
 }

@@ -1,6 +1,6 @@
 //! A mechanism between a file and a scene: every reader makes one, and the writer of scenes reads it.
 
-use crate::finding::{Findings, Place};
+use crate::finding::{Effect, Findings, Place};
 use crate::pose::{Matrix, Pose, Vector, add, dot, scaled, sub};
 
 /// The index of the ground among the bodies.
@@ -69,10 +69,6 @@ pub(crate) enum Kind {
     Ball,
     /// The second point stays in the plane across the axis, the axes stay parallel.
     Planar,
-    /// The second point stays on the axis of the first.
-    OnLine,
-    /// The second point stays in the plane across the axis of the first.
-    InPlane,
     /// With the distance of the points.
     Distance(f64),
 }
@@ -86,11 +82,8 @@ pub(crate) struct End {
 }
 
 impl End {
-    pub(crate) fn moved(self, body: usize, pose: Pose) -> Self {
-        Self {
-            body,
-            frame: pose.then(self.frame),
-        }
+    pub(crate) fn new(body: usize, frame: Pose) -> Self {
+        Self { body, frame }
     }
 }
 
@@ -120,12 +113,33 @@ pub(crate) struct Joint {
 }
 
 impl Joint {
+    /// A joint that is not in the tree, drawn where its coordinate is zero.
+    pub(crate) fn new(name: impl Into<String>, place: Place, kind: Kind, ends: [End; 2]) -> Self {
+        let [first, second] = ends;
+        Self {
+            name: name.into(),
+            place,
+            kind,
+            first,
+            second,
+            in_tree: false,
+            drawn: 0.0,
+            along: Along::default(),
+        }
+    }
+
+    pub(crate) fn ends(&self) -> [&End; 2] {
+        [&self.first, &self.second]
+    }
+
+    pub(crate) fn touches(&self, body: usize) -> bool {
+        self.first.body == body || self.second.body == body
+    }
+
     /// Whether it has one coordinate.
     pub(crate) fn is_driveable(&self) -> bool {
-        matches!(
-            self.kind,
-            Kind::Hinge | Kind::Slide | Kind::Cylinder | Kind::Screw(_)
-        )
+        use Kind::{Cylinder, Hinge, Screw, Slide};
+        matches!(self.kind, Hinge | Slide | Cylinder | Screw(_))
     }
 
     /// Whether this coordinate is an angle.
@@ -162,7 +176,6 @@ pub(crate) enum Load {
     /// A spring with a damper between two points, each of a body and in its frame.
     Spring {
         name: String,
-        place: Place,
         ends: [(usize, Vector); 2],
         stiffness: f64,
         damping: f64,
@@ -171,7 +184,6 @@ pub(crate) enum Load {
     /// A force at a point of a body; its direction is that of the ground, or turns with the body.
     Force {
         name: String,
-        place: Place,
         at: (usize, Vector),
         force: Vector,
         turns: bool,
@@ -196,6 +208,17 @@ pub(crate) struct Drive {
     pub(crate) servo: Option<[f64; 2]>,
 }
 
+impl Drive {
+    pub(crate) fn new(joint: usize) -> Self {
+        let (motion, servo) = (Motion::Unknown, None);
+        Self {
+            joint,
+            motion,
+            servo,
+        }
+    }
+}
+
 /// How the file moves a drive.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Motion {
@@ -216,8 +239,7 @@ pub(crate) struct Model {
     pub(crate) drives: Vec<Drive>,
     /// Named frames of bodies, which `--close` may name.
     pub(crate) frames: Vec<(String, usize, Pose)>,
-    /// Bodies that nothing holds, and bodies that are left out.
-    pub(crate) floating: Vec<usize>,
+    /// Bodies that are left out, and named.
     pub(crate) left_out: Vec<usize>,
     /// The file's words for friction and limits of a joint.
     pub(crate) terms: [&'static str; 2],
@@ -236,7 +258,6 @@ impl Model {
             loads: Vec::new(),
             drives: Vec::new(),
             frames: Vec::new(),
-            floating: Vec::new(),
             left_out: Vec::new(),
             terms: ["friction", "limit"],
             findings,
@@ -248,24 +269,48 @@ impl Model {
         self.bodies[end.body].pose.then(end.frame)
     }
 
+    /// The end on a body that is drawn at a place of the world.
+    pub(crate) fn end_at(&self, body: usize, world: Pose) -> End {
+        End::new(body, self.bodies[body].pose.inverse().then(world))
+    }
+
     /// The same place as seen from another body, as drawn.
     pub(crate) fn seen_from(&self, body: usize, end: &End) -> End {
-        let frame = self.bodies[body].pose.inverse().then(self.drawn(end));
-        End { body, frame }
+        self.end_at(body, self.drawn(end))
+    }
+
+    /// Fixes a body to the ground where it is.
+    pub(crate) fn hold(&mut self, body: usize) {
+        let second = End::new(body, Pose::IDENTITY);
+        let ends = [self.seen_from(GROUND, &second), second];
+        let (name, place) = (&self.bodies[body].name, self.bodies[body].place.clone());
+        let mut joint = Joint::new(format!("{name}_ground"), place, Kind::Fixed, ends);
+        joint.in_tree = true;
+        self.joints.push(joint);
+    }
+
+    pub(crate) fn note(&self, place: &Place, effect: Effect, text: impl Into<String>) {
+        self.findings.add(place, effect, text);
+    }
+
+    /// A name for the next joint that closes a loop.
+    pub(crate) fn loop_name(&self, given: Option<&str>) -> String {
+        let loops = self.joints.iter().filter(|joint| !joint.in_tree);
+        let count = 1 + loops.count() + self.couplings.len();
+        given.map_or_else(|| format!("loop{count}"), str::to_owned)
     }
 
     pub(crate) fn joint_named(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint.name == name)
     }
 
-    pub(crate) fn drive(&mut self, joint: usize) -> Option<&mut Drive> {
-        if !self.drives.iter().any(|drive| drive.joint == joint) {
-            self.drives.push(Drive {
-                joint,
-                motion: Motion::Unknown,
-                servo: None,
-            });
+    /// The drive of a joint, a new one if it has none.
+    pub(crate) fn drive(&mut self, joint: usize) -> &mut Drive {
+        let known = self.drives.iter().position(|drive| drive.joint == joint);
+        let at = known.unwrap_or(self.drives.len());
+        if known.is_none() {
+            self.drives.push(Drive::new(joint));
         }
-        self.drives.iter_mut().find(|drive| drive.joint == joint)
+        &mut self.drives[at]
     }
 }

@@ -1,9 +1,9 @@
 //! Mechanisms that move in a plane.
 
 use crate::finding::Effect;
-use crate::model::{End, GROUND, Joint, Kind, Load, Model};
+use crate::model::{GROUND, Joint, Kind, Load, Model};
 use crate::options::ImportOptions;
-use crate::pose::{Matrix, Vector, cross, dot, length, perpendicular, scaled, sub, unit};
+use crate::pose::{Pose, Vector, cross, dot, length, perpendicular, scaled, sub, unit};
 use crate::settle::components;
 
 /// What differs by less is rounding, in rad, or relative to the size.
@@ -65,11 +65,10 @@ fn snapped(axis: Vector) -> Vector {
     }
 }
 
-/// A deviation from the plane: of which joint, what, how much, and relative to what is allowed.
+/// A deviation from the plane: the part, how much in its unit, and relative to the size, or in rad.
 struct Deviation<'m> {
     joint: &'m Joint,
-    what: &'static str,
-    amount: f64,
+    amount: String,
     relative: f64,
 }
 
@@ -80,42 +79,30 @@ pub(crate) fn find(model: &Model, options: &ImportOptions) -> Option<Plane> {
     }
     let plane = Plane::new(normal(model)?);
     let size = size(model);
-    let tolerance = options.tolerance.unwrap_or(TOLERANCE * size) / size;
+    let tolerance = options.tolerance.map_or(TOLERANCE, |length| length / size);
     let deviations = deviations(model, &plane, size)?;
     let largest = deviations
         .iter()
         .map(|one| one.relative)
         .fold(0.0, f64::max);
-    let place = &model.bodies[GROUND].place;
     if largest > tolerance {
         if largest < NEARLY {
             let needed = largest * size;
             let text = format!("nearly planar: `--tolerance {needed:.1e}` (m) makes it planar");
-            model.findings.add(place, Effect::Kept, text);
+            model.note(&model.bodies[GROUND].place, Effect::Kept, text);
         }
         return None;
     }
     for one in deviations.iter().filter(|one| one.relative > ROUNDING) {
-        let text = format!(
-            "snapped: {} `{}` by {:.1e} {}",
-            if one.what == "rad" { "axis of" } else { "" },
-            one.joint.name,
-            one.amount,
-            one.what
-        );
-        model
-            .findings
-            .add(&one.joint.place, Effect::Kept, text.replace("  ", " "));
+        let text = format!("snapped: `{}` by {}", one.joint.name, one.amount);
+        model.note(&one.joint.place, Effect::Kept, text);
     }
     Some(plane)
 }
 
 /// The largest distance of joints along an axis of the ground.
 pub(crate) fn size(model: &Model) -> f64 {
-    let ends = model
-        .joints
-        .iter()
-        .flat_map(|joint| [&joint.first, &joint.second]);
+    let ends = model.joints.iter().flat_map(Joint::ends);
     let points: Vec<Vector> = ends.map(|end| model.drawn(end).origin).collect();
     let extent = |k: usize| {
         let most = points.iter().map(|p| p[k]).fold(f64::MIN, f64::max);
@@ -127,13 +114,15 @@ pub(crate) fn size(model: &Model) -> f64 {
 
 /// The direction that hinges turn about, or across two slides.
 fn normal(model: &Model) -> Option<Vector> {
-    let axis = |end: &End| model.drawn(end).turn.column(2);
-    let of = |kind: Kind| model.joints.iter().filter(move |joint| joint.kind == kind);
-    if let Some(hinge) = of(Kind::Hinge).next() {
-        return Some(axis(&hinge.second));
+    let of = |kind: Kind| {
+        let joints = model.joints.iter().filter(move |joint| joint.kind == kind);
+        joints.map(|joint| model.drawn(&joint.second).turn.column(2))
+    };
+    if let Some(axis) = of(Kind::Hinge).next() {
+        return Some(axis);
     }
-    let first = axis(&of(Kind::Slide).next()?.second);
-    let across = of(Kind::Slide).map(|slide| cross(first, axis(&slide.second)));
+    let first = of(Kind::Slide).next()?;
+    let across = of(Kind::Slide).map(|axis| cross(first, axis));
     let across = across.max_by(|a, b| length(*a).total_cmp(&length(*b)))?;
     if length(across) > NEARLY {
         unit(across)
@@ -151,66 +140,45 @@ fn deviations<'m>(model: &'m Model, plane: &Plane, size: f64) -> Option<Vec<Devi
     let keeping: Vec<Joint> = model.joints.iter().filter(keeps).cloned().collect();
     let component = components(model, &keeping);
     for joint in &model.joints {
-        if [joint.first.body, joint.second.body]
-            .iter()
-            .any(|body| component[*body] != GROUND)
-        {
+        if joint.ends().iter().any(|end| component[end.body] != GROUND) {
             return None;
         }
-        let ends = [&joint.first, &joint.second].map(|end| model.drawn(end));
+        let ends = joint.ends().map(|end| model.drawn(end));
         let depth = (dot(n, ends[1].origin) - dot(n, ends[0].origin)).abs();
-        let axes = ends.map(|end| end.turn.column(2));
-        let tilt = match joint.kind {
-            Kind::Hinge | Kind::Cylinder => axes.map(|axis| length(cross(axis, n))),
-            Kind::Slide => axes.map(|axis| dot(axis, n).abs()),
-            Kind::OnLine => [dot(axes[0], n).abs(), 0.0],
-            Kind::Ball => [0.0; 2],
-            Kind::Fixed => [
-                length(cross(
-                    ends[0].turn.transposed().apply(n),
-                    ends[1].turn.transposed().apply(n),
-                )),
-                0.0,
-            ],
-            Kind::Distance(_) if depth <= ROUNDING * size => [0.0; 2],
-            Kind::Distance(_) | Kind::Universal | Kind::Screw(_) | Kind::Planar | Kind::InPlane => {
-                return None;
-            }
+        let across = |end: Pose| length(cross(end.turn.column(2), n));
+        let along = |end: Pose| dot(end.turn.column(2), n).abs();
+        let inside = |end: Pose| end.turn.transposed().apply(n);
+        let tilts = match joint.kind {
+            Kind::Hinge | Kind::Cylinder => ends.map(across),
+            Kind::Slide => ends.map(along),
+            Kind::Fixed => [length(cross(inside(ends[0]), inside(ends[1]))), 0.0],
+            Kind::Distance(_) if depth > ROUNDING * size => return None,
+            Kind::Ball | Kind::Distance(_) => [0.0; 2],
+            Kind::Universal | Kind::Screw(_) | Kind::Planar => return None,
         };
-        let tilt = tilt[0].max(tilt[1]);
+        let tilt = tilts[0].max(tilts[1]);
+        let amount = format!("{tilt:.1e} rad of its axis");
         all.push(Deviation {
             joint,
-            what: "rad",
-            amount: tilt,
+            amount,
             relative: tilt,
         });
-        if !joint.in_tree
-            && matches!(
-                joint.kind,
-                Kind::Hinge | Kind::Ball | Kind::Fixed | Kind::OnLine
-            )
-        {
+        if !joint.in_tree && matches!(joint.kind, Kind::Hinge | Kind::Ball | Kind::Fixed) {
+            let (amount, relative) = (format!("{depth:.1e} m along the normal"), depth / size);
             all.push(Deviation {
                 joint,
-                what: "m along the normal",
-                amount: depth,
-                relative: depth / size,
+                amount,
+                relative,
             });
         }
     }
     for load in &model.loads {
-        if let Load::Spring { ends: [a, b], .. } = load {
-            let depth =
-                |(body, point): &(usize, Vector)| dot(n, model.bodies[*body].pose.point(*point));
-            if (depth(a) - depth(b)).abs() > ROUNDING * size {
+        if let Load::Spring { ends, .. } = load {
+            let [a, b] = ends.map(|(body, point)| dot(n, model.bodies[body].pose.point(point)));
+            if (a - b).abs() > ROUNDING * size {
                 return None;
             }
         }
     }
     Some(all)
-}
-
-/// The moment of inertia about the normal of a tensor in the axes of the ground.
-pub(crate) fn about_normal(plane: &Plane, inertia: Matrix) -> f64 {
-    dot(plane.normal, inertia.apply(plane.normal))
 }

@@ -2,7 +2,7 @@
 
 use crate::error::DoorError;
 use crate::finding::{Effect, Findings, Place};
-use crate::model::{Along, Body, End, GROUND, Joint, Kind, Load, Model, Motion};
+use crate::model::{Body, End, GROUND, Joint, Kind, Load, Model, Motion};
 use crate::pose::{Matrix, Pose, sub, unit};
 use crate::settle::{Read, span};
 use crate::xml::{Coverage, TextFile};
@@ -97,7 +97,7 @@ pub(crate) fn read(file: &TextFile, findings: Findings) -> Result<Read, DoorErro
         .transpose()?;
     let linear = linear.filter(|speed| *speed != 0.0).unwrap_or(1.0) * units.length;
     for pin in &pins {
-        reader.joints(pin, [turn * speed * TAU / 60.0, turn * linear])?;
+        reader.joints(pin, [turn * speed * TAU / 60.0, turn * linear]);
     }
     reader.coverage.all = query
         .split(['.', ','])
@@ -245,10 +245,7 @@ impl Reader<'_> {
     }
 
     /// The joints of a pin: its first body with each of the others.
-    fn joints(&mut self, pin: &Pin, speeds: [f64; 2]) -> Result<(), DoorError> {
-        let Some((first, others)) = pin.bodies.split_first() else {
-            return Ok(());
-        };
+    fn joints(&mut self, pin: &Pin, speeds: [f64; 2]) {
         let kind = match pin.flags {
             flags if flags & PRISMATIC != 0 => Kind::Slide,
             flags if flags & WELDED != 0 => Kind::Fixed,
@@ -258,34 +255,24 @@ impl Reader<'_> {
             Kind::Slide => [pin.angle.cos(), pin.angle.sin(), 0.0],
             _ => [0.0, 0.0, 1.0],
         };
-        let frame = Pose {
-            origin: pin.at,
-            turn: Matrix::z_along(axis),
-        };
-        for (k, other) in others.iter().enumerate() {
-            let name = match others.len() {
-                1 => pin.name.clone(),
-                _ => format!("{}-{}", pin.name, self.model.bodies[*other].name),
+        let ends = pin
+            .bodies
+            .iter()
+            .map(|body| End::new(*body, Pose::along(pin.at, axis)));
+        let ends: Vec<End> = ends.collect();
+        for other in ends.iter().skip(1) {
+            let name = match ends.len() {
+                2 => pin.name.clone(),
+                _ => format!("{}-{}", pin.name, self.model.bodies[other.body].name),
             };
-            let end = |body| End { body, frame };
-            self.model.joints.push(Joint {
-                name,
-                place: self.place.clone(),
-                kind,
-                first: end(*first),
-                second: end(*other),
-                in_tree: false,
-                drawn: 0.0,
-                along: Along::default(),
-            });
-            let joint = self.model.joints.len() - 1;
-            if pin.flags & INPUT != 0 && k == 0 && kind != Kind::Fixed {
-                if let Some(drive) = self.model.drive(joint) {
-                    drive.motion = Motion::Speed(speeds[usize::from(kind == Kind::Slide)]);
-                }
-            }
+            let joint = Joint::new(name, self.place.clone(), kind, [ends[0], *other]);
+            self.model.joints.push(joint);
         }
-        Ok(())
+        if pin.flags & INPUT != 0 && ends.len() > 1 && kind != Kind::Fixed {
+            let first = self.model.joints.len() + 1 - ends.len();
+            let speed = speeds[usize::from(kind == Kind::Slide)];
+            self.model.drive(first).motion = Motion::Speed(speed);
+        }
     }
 
     fn force(&mut self, text: &str, units: &Units) -> Result<(), DoorError> {
@@ -313,7 +300,6 @@ impl Reader<'_> {
         let size = self.decimal(size)? * units.force * sign;
         self.model.loads.push(Load::Force {
             name: name.to_owned(),
-            place: self.place.clone(),
             at: (body, start),
             force: outward.map(|x| x * size),
             turns: flags & LOCAL != 0,

@@ -41,14 +41,14 @@ pub(crate) fn unit(a: Vector) -> Option<Vector> {
 }
 
 /// A unit vector perpendicular to the unit vector `a`.
-pub(crate) fn perpendicular(a: Vector) -> Vector {
-    let mut least = 0;
-    for k in 1..3 {
-        if a[k].abs() < a[least].abs() {
-            least = k;
-        }
-    }
-    let across = cross(Matrix::IDENTITY.column(least), a);
+pub(crate) fn perpendicular([x, y, z]: Vector) -> Vector {
+    let across = if x.abs() <= y.abs().min(z.abs()) {
+        [0.0, -z, y]
+    } else if y.abs() <= z.abs() {
+        [z, 0.0, -x]
+    } else {
+        [-y, x, 0.0]
+    };
     unit(across).unwrap_or([1.0, 0.0, 0.0])
 }
 
@@ -72,11 +72,9 @@ impl Matrix {
     /// The rotation about a unit axis.
     pub(crate) fn about(axis: Vector, angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();
-        let mut matrix = Self::outer(axis, axis).scaled(1.0 - cos);
         let [x, y, z] = scaled(axis, sin);
-        let skew = [[cos, -z, y], [z, cos, -x], [-y, x, cos]];
-        matrix = matrix.plus(Self(skew));
-        matrix
+        let skew = Self([[cos, -z, y], [z, cos, -x], [-y, x, cos]]);
+        Self::outer(axis, axis).scaled(1.0 - cos).plus(skew)
     }
 
     /// The rotation of a quaternion w, x, y, z, which need not have the norm 1.
@@ -86,23 +84,9 @@ impl Matrix {
             return None;
         }
         let [w, x, y, z] = [w, x, y, z].map(|v| v / norm);
-        Some(Self([
-            [
-                1.0 - 2.0 * (y * y + z * z),
-                2.0 * (x * y - w * z),
-                2.0 * (x * z + w * y),
-            ],
-            [
-                2.0 * (x * y + w * z),
-                1.0 - 2.0 * (x * x + z * z),
-                2.0 * (y * z - w * x),
-            ],
-            [
-                2.0 * (x * z - w * y),
-                2.0 * (y * z + w * x),
-                1.0 - 2.0 * (x * x + y * y),
-            ],
-        ]))
+        let skew = Self([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]);
+        let twice = skew.scaled(w).plus(skew.times(skew)).scaled(2.0);
+        Some(Self::IDENTITY.plus(twice))
     }
 
     /// Turns about the fixed axes x, y and z in this order.
@@ -176,19 +160,22 @@ impl Pose {
         turn: Matrix::IDENTITY,
     };
 
+    pub(crate) fn new(origin: Vector, turn: Matrix) -> Self {
+        Self { origin, turn }
+    }
+
     pub(crate) fn at(origin: Vector) -> Self {
-        Self {
-            origin,
-            ..Self::IDENTITY
-        }
+        Self::new(origin, Matrix::IDENTITY)
+    }
+
+    /// A frame whose z is along the unit vector `axis`.
+    pub(crate) fn along(origin: Vector, axis: Vector) -> Self {
+        Self::new(origin, Matrix::z_along(axis))
     }
 
     /// A pose in this frame, seen from outside.
     pub(crate) fn then(self, inner: Self) -> Self {
-        Self {
-            origin: self.point(inner.origin),
-            turn: self.turn.times(inner.turn),
-        }
+        Self::new(self.point(inner.origin), self.turn.times(inner.turn))
     }
 
     pub(crate) fn point(self, local: Vector) -> Vector {
@@ -197,17 +184,11 @@ impl Pose {
 
     pub(crate) fn inverse(self) -> Self {
         let turn = self.turn.transposed();
-        Self {
-            origin: scaled(turn.apply(self.origin), -1.0),
-            turn,
-        }
+        Self::new(scaled(turn.apply(self.origin), -1.0), turn)
     }
 
     /// A turn about an axis through a point of the same frame.
     pub(crate) fn turn_about(point: Vector, turn: Matrix) -> Self {
-        Self {
-            origin: sub(point, turn.apply(point)),
-            turn,
-        }
+        Self::new(sub(point, turn.apply(point)), turn)
     }
 }

@@ -5,12 +5,13 @@ mod text;
 
 use crate::error::DoorError;
 use crate::finding::Effect;
-use crate::model::{End, GROUND, Joint, Kind, Model, Motion};
+use crate::model::{GROUND, Joint, Kind, Model, Motion};
 use crate::names::{Names, allowed, free_name};
-use crate::plane::{Plane, about_normal, size};
-use crate::pose::{Pose, Vector, dot, length, sub};
+use crate::plane::{Plane, size};
+use crate::pose::{Matrix, Pose, Vector, add, cross, dot, length, scaled, sub, unit};
 use std::collections::HashSet;
 use std::f64::consts::TAU;
+pub(crate) use text::comment;
 use text::{Text, key, quoted};
 
 /// Ends closer than this, relative to the size, are one point; axes closer are one axis.
@@ -24,19 +25,14 @@ pub(crate) struct Writer<'m> {
     text: Text,
 }
 
-/// The scene of a model; the lines of `head` begin it as comments.
-pub(crate) fn write(
-    model: &Model,
-    plane: Option<Plane>,
-    head: &dyn Fn(&Names) -> Vec<String>,
-) -> Result<String, DoorError> {
-    let names = Names::new(model);
+/// The scene of a model.
+pub(crate) fn write(model: &Model, plane: Option<Plane>) -> Result<String, DoorError> {
     let mut writer = Writer {
         model,
         plane,
         size: size(model),
         text: Text::default(),
-        names,
+        names: Names::new(model),
     };
     writer
         .text
@@ -47,12 +43,7 @@ pub(crate) fn write(
     writer.assembly();
     writer.loads();
     writer.motion();
-    let body = writer.text.finish()?;
-    let head: Vec<String> = head(&writer.names)
-        .iter()
-        .map(|line| text::comment(line))
-        .collect();
-    Ok(format!("{}\n{body}", head.join("\n")))
+    writer.text.finish()
 }
 
 impl Writer<'_> {
@@ -77,29 +68,38 @@ impl Writer<'_> {
         self.vector(axis)
     }
 
-    fn drawn(&self, end: &End) -> Pose {
-        self.model.drawn(end)
-    }
-
-    /// Where the ends of a joint are drawn: one place, unless the loop is open there.
+    /// Where the ends of a joint are drawn: in one place, unless the loop is open there. The coordinate is zero as drawn.
     fn ends(&self, joint: &Joint) -> [Pose; 2] {
-        let [first, second] = [&joint.first, &joint.second].map(|end| self.drawn(end));
-        let one_point = length(sub(first.origin, second.origin)) <= ONE * self.size;
-        let apart = |k: usize| length(sub(first.turn.column(k), second.turn.column(k)));
-        let origin = if one_point {
-            second.origin
-        } else {
-            first.origin
-        };
-        let one_axis = joint.kind != Kind::Universal && apart(2) <= ONE && apart(0) <= ONE;
-        let turn = if one_axis { second.turn } else { first.turn };
-        [Pose { origin, turn }, second]
+        use Kind::{Cylinder, Fixed, Hinge, Screw, Slide, Universal};
+        let [mut first, second] = joint.ends().map(|end| self.model.drawn(end));
+        let axis = first.turn.column(2);
+        if matches!(joint.kind, Slide | Cylinder | Screw(_)) {
+            let travel = dot(axis, sub(second.origin, first.origin));
+            first.origin = add(first.origin, scaled(axis, travel));
+        }
+        if length(sub(first.origin, second.origin)) <= ONE * self.size {
+            first.origin = second.origin;
+        }
+        let apart = |k: usize| length(sub(first.turn.column(k), second.turn.column(k))) > ONE;
+        let turns = apart(0) && matches!(joint.kind, Slide | Fixed);
+        if joint.kind != Universal && !apart(2) && !turns {
+            first.turn = second.turn;
+        } else if matches!(joint.kind, Hinge | Cylinder | Screw(_)) {
+            // The angle counts from the normals as drawn.
+            let x = sub(
+                second.turn.column(0),
+                scaled(axis, dot(axis, second.turn.column(0))),
+            );
+            first.turn = unit(x).map_or(first.turn, |x| {
+                Matrix([x, cross(axis, x), axis]).transposed()
+            });
+        }
+        [first, second]
     }
 
     /// Whether a body is in the scene.
     fn has(&self, body: usize) -> bool {
-        let of_joint = |joint: &Joint| joint.first.body == body || joint.second.body == body;
-        body == GROUND || self.model.joints.iter().any(of_joint)
+        body == GROUND || self.model.joints.iter().any(|joint| joint.touches(body))
     }
 
     fn bodies(&mut self) {
@@ -116,7 +116,7 @@ impl Writer<'_> {
         let mut points: Vec<(String, Vector)> = Vec::new();
         for (k, joint) in self.model.joints.iter().enumerate() {
             let ends = self.ends(joint);
-            for (end, drawn) in [&joint.first, &joint.second].into_iter().zip(ends) {
+            for (end, drawn) in joint.ends().into_iter().zip(ends) {
                 if end.body == number {
                     points.push((self.names.joints[k].clone(), drawn.origin));
                 }
@@ -149,7 +149,7 @@ impl Writer<'_> {
         }
         let inertia = body.inertia.turned(body.pose.turn);
         if let Some(plane) = &self.plane {
-            let about = about_normal(plane, inertia);
+            let about = dot(plane.normal, inertia.apply(plane.normal));
             if about != 0.0 {
                 self.text.pair("inertia", about);
             }
@@ -175,21 +175,20 @@ impl Writer<'_> {
     fn joints(&mut self) {
         self.text.table(&["joints"]);
         for (number, joint) in self.model.joints.iter().enumerate() {
-            let bodies =
-                [&joint.first, &joint.second].map(|end| self.names.bodies[end.body].clone());
+            let bodies = joint.ends().map(|end| self.names.bodies[end.body].clone());
             let name = self.names.joints[number].clone();
             let ends = bodies
                 .map(|body| quoted(&format!("{body}.{name}")))
                 .join(", ");
             let [first, second] = self.ends(joint);
-            let key = self.kind_key(joint);
+            let kind = self.kind_key(joint);
             let rest = match self.plane {
                 Some(plane) => self.planar_keys(joint, &plane, [first, second]),
                 None => self.spatial_keys(joint, [first, second]),
             };
-            let name = text::key(&name);
+            let name = key(&name);
             self.text
-                .line(&format!("{name} = {{ {key} = [{ends}]{rest} }}"));
+                .line(&format!("{name} = {{ {kind} = [{ends}]{rest} }}"));
         }
         for coupling in &self.model.couplings {
             self.coupling(coupling);
@@ -199,7 +198,6 @@ impl Writer<'_> {
     fn kind_key(&self, joint: &Joint) -> &'static str {
         match joint.kind {
             Kind::Ball | Kind::Cylinder if self.plane.is_some() => "revolute",
-            Kind::OnLine if self.plane.is_some() => "slot",
             Kind::Fixed => "weld",
             Kind::Hinge => "revolute",
             Kind::Slide => "prismatic",
@@ -208,8 +206,6 @@ impl Writer<'_> {
             Kind::Universal => "universal",
             Kind::Ball => "spherical",
             Kind::Planar => "planar",
-            Kind::OnLine => "point-on-line",
-            Kind::InPlane => "point-in-plane",
             Kind::Distance(_) => "distance",
         }
     }
@@ -225,7 +221,6 @@ impl Writer<'_> {
                 self.direction(axes[0]),
                 self.direction(axes[1])
             ),
-            Kind::OnLine => format!(", axis = {}", self.direction(axes[0])),
             Kind::Fixed if first.turn != second.turn => {
                 // The direction that lies most in the plane shows the angle between the frames.
                 let flat = |k: usize| dot(first.turn.column(k), plane.normal).abs();
@@ -252,9 +247,6 @@ impl Writer<'_> {
             Kind::Ball | Kind::Distance(_) => String::new(),
             Kind::Fixed if aligned => String::new(),
             Kind::Universal => format!(", axes = {}", both(self, 2)),
-            Kind::OnLine | Kind::InPlane => {
-                format!(", axis = {}", self.direction(first.turn.column(2)))
-            }
             _ if aligned => format!(", axis = {}", self.direction(second.turn.column(2))),
             Kind::Planar => format!(", axes = {}", both(self, 2)),
             _ => format!(", axes = {}, normals = {}", both(self, 2), both(self, 0)),
@@ -269,9 +261,8 @@ impl Writer<'_> {
     /// The bodies of an angle in the plane, in the order in which it is positive.
     fn turning_pair(&self, joint: usize, plane: &Plane) -> String {
         let joint = &self.model.joints[joint];
-        let mut bodies =
-            [&joint.first, &joint.second].map(|end| quoted(&self.names.bodies[end.body]));
-        if dot(self.drawn(&joint.second).turn.column(2), plane.normal) < 0.0 {
+        let mut bodies = joint.ends().map(|end| quoted(&self.names.bodies[end.body]));
+        if dot(self.model.drawn(&joint.second).turn.column(2), plane.normal) < 0.0 {
             bodies.reverse();
         }
         format!("[{}]", bodies.join(", "))
@@ -320,7 +311,7 @@ impl Writer<'_> {
             let drawn = self.model.joints[drive.joint].drawn;
             let name = &self.names.coordinates[drive.joint];
             if drawn != 0.0 {
-                self.text.line(&text::comment(&format!(
+                self.text.line(&comment(&format!(
                     "{name} is the file's coordinate minus {drawn}."
                 )));
             }
@@ -387,7 +378,7 @@ impl Writer<'_> {
                 "kinetostatics needs [prescribed] with the duration and a law of each of {}",
                 names.join(", ")
             );
-            self.text.line(&text::comment(&text));
+            self.text.line(&comment(&text));
         }
     }
 

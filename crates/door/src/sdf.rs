@@ -4,123 +4,62 @@ mod joints;
 
 use crate::error::DoorError;
 use crate::finding::Effect;
-use crate::model::{Body, End, GROUND, Load, Model};
+use crate::model::{Body, GROUND, Load, Model};
 use crate::pose::{Matrix, Pose, scaled};
 use crate::settle::{Read, span};
-use crate::xml::{Element, Xml};
+use crate::xml::{AT_LIMITS, Element, LOST, Rules, Xml};
 use std::collections::HashMap;
 
-/// Parts that no motion depends on.
-const IDLE: &[&str] = &[
-    "visual",
-    "sensor",
-    "light",
-    "self_collide",
-    "physics",
-    "scene",
-    "gui",
-    "material",
-    "audio",
-    "allow_auto_disable",
-    "must_be_base_link",
-    "name",
-    "version",
-    "canonical_link",
-    "spherical_coordinates",
-    "atmosphere",
-    "magnetic_field",
-    "wind",
-    "enable_wind",
-    "camera",
-    "default",
-    "author",
-    "description",
-    "license",
-    "max_step_size",
-    "real_time_factor",
-    "real_time_update_rate",
-    "audio_source",
-    "projector",
-    "particle_emitter",
-    "battery",
-    "xmlns",
-    "sdf",
-    "provide_feedback",
-    "sensors",
-    "type",
-];
-/// Parts that act only at a limit, or where bodies touch.
-const LIMITS: &[&str] = &[
-    "collision",
-    "effort",
-    "velocity",
-    "stiffness",
-    "dissipation",
-    "limit",
-];
-
-fn judge(element: &Element<'_>, attribute: Option<&str>) -> Effect {
-    let name = attribute.unwrap_or(element.tag());
-    if IDLE.contains(&name) {
-        Effect::Nothing
-    } else if LIMITS.contains(&name) {
-        Effect::AtLimits
-    } else {
-        Effect::Changes
-    }
-}
+const RULES: Rules = Rules {
+    idle: "visual sensor light self_collide physics scene gui material audio allow_auto_disable must_be_base_link name version \
+        canonical_link spherical_coordinates atmosphere magnetic_field wind enable_wind camera default author description license \
+        max_step_size real_time_factor real_time_update_rate audio_source projector particle_emitter battery xmlns provide_feedback type",
+    limits: "collision effort velocity stiffness dissipation limit",
+};
 
 pub(crate) fn read(xml: &Xml<'_>) -> Result<Read, DoorError> {
     let root = xml.root(0);
     let _ = root.attribute("version");
-    let mut parts = root.children();
+    let mut top = root;
     let mut gravity = [0.0, 0.0, -9.8];
-    if let Some(world) = parts.iter().copied().find(|one| one.tag() == "world") {
-        parts = world.children();
-        if let Some(text) = world.child_text("gravity") {
-            gravity = world.exactly("gravity", text)?;
-        }
+    if let Some(world) = root.child("world") {
+        let _ = world.attribute("name");
+        gravity = world.child_vector("gravity")?.unwrap_or(gravity);
+        top = world;
     }
-    let models: Vec<_> = parts
+    let (still, moving): (Vec<_>, Vec<_>) = top
+        .called("model")
         .into_iter()
-        .filter(|one| one.tag() == "model")
-        .collect();
-    let is_still = |model: &&Element<'_>| {
-        model
-            .child_text("static")
-            .is_some_and(|word| word == "true" || word == "1")
+        .partition(|one| one.says("static"));
+    let Some((element, others)) = moving.split_first() else {
+        return Err(root.error("the file has no model that moves"));
     };
-    let moving = models.iter().find(|model| !is_still(model));
-    let element = *moving.ok_or_else(|| root.error("the file has no model that moves", ""))?;
-    for other in models
-        .iter()
-        .filter(|one| !std::ptr::eq(*one, moving.unwrap_or(one)))
-    {
-        let effect = if is_still(&other) {
-            Effect::AtLimits
-        } else {
-            Effect::Changes
-        };
+    for other in others {
         other.leave(
-            effect,
-            format!("{}: left out, one model is imported", other.label()),
+            Effect::Changes,
+            format!("{}: {LOST}; one model is imported", other.label()),
+        );
+    }
+    for other in still {
+        other.leave(
+            Effect::AtLimits,
+            format!("{}, static: {AT_LIMITS}", other.label()),
         );
     }
     let title = element.attribute("name").unwrap_or("SDF model");
+    let mut model = Model::new(title, &root.place(), xml.findings.clone());
+    model.gravity = gravity;
     let mut reader = Reader {
-        model: Model {
-            gravity,
-            ..Model::new(title, &root.place(), xml.findings.clone())
-        },
+        model,
         frames: HashMap::new(),
         names: Vec::new(),
         links: HashMap::new(),
         model_pose: Pose::IDENTITY,
     };
-    reader.model(element)?;
+    reader.model(*element)?;
     span(&mut reader.model);
     Ok(Read {
-        coverage: xml.name_the_rest(judge),
+        coverage: xml.name_the_rest(&RULES),
         model: reader.model,
         moves: Vec::new(),
     })
@@ -162,129 +101,120 @@ fn pose<'d>(element: Element<'d>) -> Result<(Pose, Option<&'d str>), DoorError> 
         1.0
     };
     let text = pose.text();
-    let (origin, turn) = if pose.attribute("rotation_format") == Some("quat_xyzw") {
+    let pose = if pose.attribute("rotation_format") == Some("quat_xyzw") {
         let [x, y, z, qx, qy, qz, qw] = pose.exactly("pose", text)?;
         let turn = Matrix::quaternion([qw, qx, qy, qz]);
-        (
+        Pose::new(
             [x, y, z],
-            turn.ok_or_else(|| pose.error("the quaternion is zero", ""))?,
+            turn.ok_or_else(|| pose.error("the quaternion is zero"))?,
         )
     } else if text.is_empty() {
-        ([0.0; 3], Matrix::IDENTITY)
+        Pose::IDENTITY
     } else {
-        let [x, y, z, roll, pitch, yaw] = pose.exactly("pose", text)?;
-        (
+        let [x, y, z, angles @ ..] = pose.exactly::<6>("pose", text)?;
+        Pose::new(
             [x, y, z],
-            Matrix::roll_pitch_yaw([roll, pitch, yaw].map(|angle| angle * unit)),
+            Matrix::roll_pitch_yaw(angles.map(|angle| angle * unit)),
         )
     };
-    Ok((Pose { origin, turn }, relative_to))
+    Ok((pose, relative_to))
 }
 
 impl<'d> Reader<'d> {
     fn model(&mut self, element: Element<'d>) -> Result<(), DoorError> {
-        let parts = element.children();
-        for part in &parts {
-            if !["link", "frame", "joint"].contains(&part.tag()) {
-                continue;
-            }
-            let name = part
-                .attribute("name")
-                .ok_or_else(|| part.error(format!("a {} needs a name", part.tag()), ""))?;
-            let (pose, relative_to) = pose(*part)?;
-            let attached_to = match part.tag() {
-                "frame" => part
-                    .attribute("attached_to")
-                    .filter(|to| !to.is_empty())
-                    .unwrap_or(MODEL),
-                "joint" => part.child_text("child").unwrap_or(MODEL),
-                _ => name,
-            };
-            let from = if part.tag() == "link" {
-                MODEL
-            } else {
-                attached_to
-            };
-            let frame = Frame {
-                element: *part,
-                pose,
-                relative_to: relative_to.unwrap_or(from),
-                attached_to,
-            };
-            if self.frames.insert(name, frame).is_some() {
-                return Err(part.error(format!("the name `{name}` is given twice"), ""));
-            }
-            self.names.push(name);
-            if part.tag() == "link" {
-                self.links.insert(name, self.model.bodies.len());
-                self.model
-                    .bodies
-                    .push(Body::new(name, part.place(), Pose::IDENTITY));
+        for part in element.children() {
+            if ["link", "frame", "joint"].contains(&part.tag()) {
+                self.frame_of(part)?;
             }
         }
         let (own, _) = pose(element)?;
         self.model_pose = own;
         if let Some(name) = element.attribute("placement_frame") {
-            let of_frame = self.in_model(name, &element, 0)?;
-            self.model_pose = own.then(of_frame.inverse());
+            self.model_pose = own.then(self.in_model(name, &element, 0)?.inverse());
+        }
+        for (name, body) in self.links.clone() {
+            let link = self.frames[name].element;
+            self.model.bodies[body].pose = self.in_world(name, &link)?;
+            self.inertial(link, body)?;
         }
         for name in self.names.clone() {
-            let frame = self.frames[name];
-            let world = self
-                .model_pose
-                .then(self.in_model(name, &frame.element, 0)?);
-            let body = self.body_of(name, &frame.element)?;
-            if frame.element.tag() == "link" {
-                self.model.bodies[body].pose = world;
-                self.inertial(frame.element, body)?;
-            }
-        }
-        for name in self.names.clone() {
-            let frame = self.frames[name];
-            let world = self
-                .model_pose
-                .then(self.in_model(name, &frame.element, 0)?);
-            let body = self.body_of(name, &frame.element)?;
-            let local = self.model.bodies[body].pose.inverse().then(world);
-            self.model.frames.push((name.to_owned(), body, local));
-            if frame.element.tag() == "joint" {
-                self.joint(name, frame.element, world)?;
+            let element = self.frames[name].element;
+            let world = self.in_world(name, &element)?;
+            let end = self.model.end_at(self.body_of(name, &element)?, world);
+            self.model
+                .frames
+                .push((name.to_owned(), end.body, end.frame));
+            if element.tag() == "joint" {
+                self.joint(name, element, world)?;
             }
         }
         self.mimics()
     }
 
+    /// The frame of a link, a frame or a joint.
+    fn frame_of(&mut self, element: Element<'d>) -> Result<(), DoorError> {
+        let tag = element.tag();
+        let name = element.attribute("name");
+        let name = name.ok_or_else(|| element.error(format!("a {tag} needs a name")))?;
+        let (pose, relative_to) = pose(element)?;
+        let attached_to = match tag {
+            "frame" => element.attribute("attached_to").filter(|to| !to.is_empty()),
+            "joint" => element.child_text("child"),
+            _ => None,
+        };
+        let attached_to = attached_to.unwrap_or(MODEL);
+        let frame = Frame {
+            element,
+            pose,
+            relative_to: relative_to.unwrap_or(attached_to),
+            attached_to,
+        };
+        if self.frames.insert(name, frame).is_some() {
+            return Err(element.error(format!("the name `{name}` is given twice")));
+        }
+        self.names.push(name);
+        if tag == "link" {
+            self.links.insert(name, self.model.bodies.len());
+            self.model
+                .bodies
+                .push(Body::new(name, element.place(), Pose::IDENTITY));
+        }
+        Ok(())
+    }
+
+    fn in_world(&self, name: &str, at: &Element<'d>) -> Result<Pose, DoorError> {
+        Ok(self.model_pose.then(self.in_model(name, at, 0)?))
+    }
+
     /// Where a frame is in that of the model.
     fn in_model(&self, name: &str, at: &Element<'d>, depth: usize) -> Result<Pose, DoorError> {
-        if name == MODEL {
-            return Ok(Pose::IDENTITY);
+        match name {
+            MODEL => Ok(Pose::IDENTITY),
+            WORLD => Ok(self.model_pose.inverse()),
+            _ => {
+                let frame = self.frame(name, at, depth)?;
+                Ok(self
+                    .in_model(frame.relative_to, at, depth + 1)?
+                    .then(frame.pose))
+            }
         }
-        if name == WORLD {
-            return Ok(self.model_pose.inverse());
-        }
-        let frame = self.frame(name, at, depth)?;
-        let outer = self.in_model(frame.relative_to, at, depth + 1)?;
-        Ok(outer.then(frame.pose))
     }
 
     fn frame(&self, name: &str, at: &Element<'d>, depth: usize) -> Result<Frame<'d>, DoorError> {
         if depth > self.names.len().min(300) {
-            return Err(at.error(format!("the frame `{name}` refers to itself"), ""));
+            return Err(at.error(format!("the frame `{name}` refers to itself")));
         }
-        let frame = self.frames.get(name).copied();
-        frame.ok_or_else(|| at.error(format!("there is no frame `{name}`"), ""))
+        at.known(self.frames.get(name).copied(), "frame", name)
     }
 
     /// The link that a frame moves with.
     fn body_of(&self, name: &str, at: &Element<'d>) -> Result<usize, DoorError> {
         let mut name = name;
         for depth in 0.. {
-            if let Some(body) = self.links.get(name) {
-                return Ok(*body);
-            }
-            match name {
-                WORLD => return Ok(GROUND),
-                MODEL if self.model.bodies.len() > 1 => return Ok(1),
+            match (name, self.links.get(name)) {
+                (_, Some(body)) => return Ok(*body),
+                (WORLD, None) => break,
+                (MODEL, None) => return Ok(self.model.bodies.len().min(2) - 1),
                 _ => name = self.frame(name, at, depth)?.attached_to,
             }
         }
@@ -294,66 +224,42 @@ impl<'d> Reader<'d> {
     fn inertial(&mut self, link: Element<'d>, body: usize) -> Result<(), DoorError> {
         let mut tensor = [1.0, 1.0, 1.0, 0.0, 0.0, 0.0];
         let (mut mass, mut frame) = (1.0, Pose::IDENTITY);
-        match link.child("inertial") {
-            None => link.note(
-                Effect::Kept,
-                format!(
-                    "{}: no inertial, 1 kg and 1 kg m2 as in Gazebo",
-                    link.label()
-                ),
-            ),
-            Some(inertial) => {
-                frame = pose(inertial)?.0;
-                mass = inertial.child_number("mass")?.unwrap_or(1.0);
-                if let Some(inertia) = inertial.child("inertia") {
-                    for (entry, name) in tensor
-                        .iter_mut()
-                        .zip(["ixx", "iyy", "izz", "ixy", "ixz", "iyz"])
-                    {
-                        *entry = inertia.child_number(name)?.unwrap_or(*entry);
-                    }
-                }
-                if mass < 0.0 {
-                    return Err(inertial.error("the mass has to be 0 or more", ""));
+        let label = link.label();
+        if let Some(inertial) = link.child("inertial") {
+            frame = pose(inertial)?.0;
+            mass = inertial.mass(inertial.child_value("mass", 1.0)?)?;
+            if let Some(inertia) = inertial.child("inertia") {
+                for (k, name) in ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"]
+                    .iter()
+                    .enumerate()
+                {
+                    tensor[k] = inertia.child_value(name, tensor[k])?;
                 }
             }
+        } else {
+            link.kept(format!(
+                "{label}: no inertial, so 1 kg and 1 kg m2, as in Gazebo"
+            ));
         }
         let inertia = Matrix::symmetric(tensor).turned(frame.turn);
         self.model.bodies[body].add_mass(mass, frame.origin, inertia);
-        let weightless = link
-            .child_text("gravity")
-            .is_some_and(|word| word == "false" || word == "0");
-        let held = link
-            .child_text("kinematic")
-            .is_some_and(|word| word == "true" || word == "1");
-        if held {
-            link.note(
-                Effect::Changes,
-                format!("{} kinematic: left out (changes the motion)", link.label()),
-            );
+        if link.says("kinematic") {
+            link.lost(format!("{label} kinematic"));
         }
-        if weightless && mass > 0.0 {
-            link.note(
-                Effect::Kept,
-                format!(
-                    "{} without gravity: kept as a force against its weight",
-                    link.label()
-                ),
-            );
+        if link
+            .child_text("gravity")
+            .is_some_and(|word| word == "false" || word == "0")
+        {
+            link.kept(format!(
+                "{label} without gravity: kept as a force against its weight"
+            ));
             self.model.loads.push(Load::Force {
                 name: format!("no_weight_{}", self.model.bodies[body].name),
-                place: link.place(),
                 at: (body, frame.origin),
                 force: scaled(self.model.gravity, -mass),
                 turns: false,
             });
         }
         Ok(())
-    }
-
-    /// An end of a joint on a body, from its place in the world.
-    fn end(&self, body: usize, world: Pose) -> End {
-        let frame = self.model.bodies[body].pose.inverse().then(world);
-        End { body, frame }
     }
 }

@@ -3,10 +3,11 @@
 use crate::error::DoorError;
 use crate::finding::Effect;
 use crate::mobility::freedoms;
-use crate::model::{Drive, End, GROUND, Joint, Kind, Load, Model, Motion};
+use crate::model::{Drive, End, GROUND, Joint, Kind, Load, Model};
 use crate::options::{Closing, ImportOptions};
-use crate::pose::{Matrix, Pose, scaled};
+use crate::pose::{Matrix, Pose, Vector, scaled};
 use crate::xml::Coverage;
+use std::f64::consts::TAU;
 
 /// A joint is moved before it is drawn: to a value of the file's coordinate, or by a turn of its second body in that body's axes.
 #[derive(Debug, Clone, Copy)]
@@ -23,11 +24,12 @@ pub(crate) struct Read {
 }
 
 /// Moves, closes, holds and merges as the options ask, and selects the drives.
-pub(crate) fn settle(
-    mut model: Model,
-    mut moves: Vec<(usize, Move)>,
-    options: &ImportOptions,
-) -> Result<Model, DoorError> {
+pub(crate) fn settle(read: Read, options: &ImportOptions) -> Result<Model, DoorError> {
+    let Read {
+        mut model,
+        mut moves,
+        ..
+    } = read;
     for closing in &options.close {
         close(&mut model, closing)?;
     }
@@ -49,13 +51,17 @@ pub(crate) fn settle(
     merge_fixed(&mut model);
     keep_armatures(&mut model);
     if model.drives.is_empty() {
-        let joints = model.joints.iter().filter(|joint| joint.is_driveable());
         return Err(DoorError::NoDrive {
             needed: freedoms(&model),
-            joints: joints.map(|joint| joint.name.clone()).collect(),
+            joints: driveable_names(&model).map(str::to_owned).collect(),
         });
     }
     Ok(model)
+}
+
+fn driveable_names(model: &Model) -> impl Iterator<Item = &str> {
+    let joints = model.joints.iter().filter(|joint| joint.is_driveable());
+    joints.map(|joint| joint.name.as_str())
 }
 
 /// A joint with one coordinate by its name.
@@ -63,21 +69,12 @@ fn driveable(model: &Model, name: &str) -> Result<usize, DoorError> {
     let joint = model
         .joint_named(name)
         .filter(|joint| model.joints[*joint].is_driveable());
-    joint.ok_or_else(|| {
-        let known = model.joints.iter().filter(|joint| joint.is_driveable());
-        DoorError::Unknown {
-            what: "joint with one coordinate",
-            name: name.to_owned(),
-            known: known
-                .map(|joint| joint.name.as_str())
-                .collect::<Vec<_>>()
-                .join(", "),
-        }
-    })
+    let what = "joint with one coordinate";
+    joint.ok_or_else(|| DoorError::unknown(what, name, driveable_names(model)))
 }
 
 fn close(model: &mut Model, closing: &Closing) -> Result<(), DoorError> {
-    let [first, second] = [
+    let ends = [
         frame(model, &closing.frames[0])?,
         frame(model, &closing.frames[1])?,
     ];
@@ -86,71 +83,33 @@ fn close(model: &mut Model, closing: &Closing) -> Result<(), DoorError> {
         "spherical" => Kind::Ball,
         _ => Kind::Fixed,
     };
-    let count = model.joints.iter().filter(|joint| !joint.in_tree).count();
-    model.joints.push(Joint {
-        name: format!("loop{}", count + 1),
-        place: model.bodies[first.body].place.clone(),
-        kind,
-        first,
-        second,
-        in_tree: false,
-        drawn: 0.0,
-        along: crate::model::Along::default(),
-    });
+    let place = model.bodies[ends[0].body].place.clone();
+    let name = model.loop_name(None);
+    model.joints.push(Joint::new(name, place, kind, ends));
     Ok(())
 }
 
 /// A frame of the file by its name.
 pub(crate) fn frame(model: &Model, name: &str) -> Result<End, DoorError> {
     let found = model.frames.iter().find(|(one, ..)| one == name);
-    let end = found.map(|(_, body, frame)| End {
-        body: *body,
-        frame: *frame,
-    });
-    end.ok_or_else(|| DoorError::Unknown {
-        what: "frame",
-        name: name.to_owned(),
-        known: model
-            .frames
-            .iter()
-            .map(|(one, ..)| one.as_str())
-            .collect::<Vec<_>>()
-            .join(", "),
-    })
+    let end = found.map(|(_, body, frame)| End::new(*body, *frame));
+    let names = model.frames.iter().map(|(one, ..)| one.as_str());
+    end.ok_or_else(|| DoorError::unknown("frame", name, names))
 }
 
 /// Holds a floating body where it is.
 fn fix(model: &mut Model, name: &str) -> Result<(), DoorError> {
-    let body = model.bodies.iter().position(|body| body.name == name);
-    let Some(body) = body.filter(|body| *body != GROUND) else {
-        let names = model.bodies.iter().skip(1).map(|body| body.name.as_str());
-        return Err(DoorError::Unknown {
-            what: "body",
-            name: name.to_owned(),
-            known: names.collect::<Vec<_>>().join(", "),
-        });
+    let names = model.bodies.iter().skip(1).map(|body| body.name.as_str());
+    let Some(body) = names.clone().position(|one| one == name) else {
+        return Err(DoorError::unknown("body", name, names));
     };
-    model.floating.retain(|one| *one != body);
-    let second = End {
-        body,
-        frame: Pose::IDENTITY,
-    };
-    let place = model.bodies[body].place.clone();
-    model.findings.add(
+    let place = model.bodies[body + 1].place.clone();
+    model.note(
         &place,
         Effect::Kept,
         format!("body {name}: held where it is drawn"),
     );
-    model.joints.push(Joint {
-        name: format!("{name}_held"),
-        place,
-        kind: Kind::Fixed,
-        first: model.seen_from(GROUND, &second),
-        second,
-        in_tree: true,
-        drawn: 0.0,
-        along: crate::model::Along::default(),
-    });
+    model.hold(body + 1);
     Ok(())
 }
 
@@ -164,7 +123,7 @@ pub(crate) fn components(model: &Model, joints: &[Joint]) -> Vec<usize> {
         body
     };
     for joint in joints {
-        let [a, b] = [joint.first.body, joint.second.body].map(|body| root(&least, body));
+        let [a, b] = joint.ends().map(|end| root(&least, end.body));
         least[a.max(b)] = a.min(b);
     }
     (0..model.bodies.len())
@@ -174,11 +133,8 @@ pub(crate) fn components(model: &Model, joints: &[Joint]) -> Vec<usize> {
 
 /// Selects the joints of the tree: first those that fix, then those with a coordinate. The others close loops.
 pub(crate) fn span(model: &mut Model) {
-    let rank = |joint: &Joint| match joint.kind {
-        Kind::Fixed => 0,
-        _ if joint.is_driveable() => 1,
-        _ => 2,
-    };
+    let rank =
+        |joint: &Joint| u8::from(joint.kind != Kind::Fixed) + u8::from(!joint.is_driveable());
     let mut order: Vec<usize> = (0..model.joints.len()).collect();
     order.sort_by_key(|joint| rank(&model.joints[*joint]));
     let mut tree: Vec<Joint> = Vec::new();
@@ -197,25 +153,24 @@ fn check_floating(model: &mut Model) -> Result<(), DoorError> {
     let component = components(model, &model.joints);
     let mut floating: Vec<String> = Vec::new();
     for body in 1..model.bodies.len() {
-        let joined = |joint: &Joint| joint.first.body == body || joint.second.body == body;
-        let loaded = |load: &Load| load.bodies().contains(&body);
-        if component[body] == GROUND || model.left_out.contains(&body) {
+        if component[body] != body || model.left_out.contains(&body) {
             continue;
         }
-        let of = &model.bodies[body];
-        if component[body] == body
-            && (model.joints.iter().any(joined) || model.loads.iter().any(loaded))
-        {
-            floating.push(of.name.clone());
-        } else if component[body] == body {
-            let text = format!("body {}, joined to nothing: left out", of.name);
-            model.findings.add(&of.place.clone(), Effect::Changes, text);
+        let name = model.bodies[body].name.clone();
+        let loaded = model.loads.iter().any(|load| load.bodies().contains(&body));
+        if loaded || model.joints.iter().any(|joint| joint.touches(body)) {
+            floating.push(name);
+        } else {
+            let place = model.bodies[body].place.clone();
+            let text = format!("body {name}, joined to nothing: left out");
+            model.note(&place, Effect::Changes, text);
             model.left_out.push(body);
         }
     }
-    match floating.is_empty() {
-        true => Ok(()),
-        false => Err(DoorError::Floating(floating)),
+    if floating.is_empty() {
+        Ok(())
+    } else {
+        Err(DoorError::Floating(floating))
     }
 }
 
@@ -224,15 +179,13 @@ fn move_joint(model: &mut Model, joint: usize, by: Move) {
     let of = &model.joints[joint];
     let here = model.drawn(&of.second);
     let axis = here.turn.column(2);
+    let turn = |angle| Pose::turn_about(here.origin, Matrix::about(axis, angle));
     let motion = match (by, of.kind) {
-        (Move::To(value), Kind::Hinge | Kind::Cylinder) => {
-            Pose::turn_about(here.origin, Matrix::about(axis, value - of.drawn))
-        }
+        (Move::To(value), Kind::Hinge | Kind::Cylinder) => turn(value - of.drawn),
         (Move::To(value), Kind::Slide) => Pose::at(scaled(axis, value - of.drawn)),
         (Move::To(value), Kind::Screw(pitch)) => {
             let angle = value - of.drawn;
-            let along = scaled(axis, pitch * angle / std::f64::consts::TAU);
-            Pose::at(along).then(Pose::turn_about(here.origin, Matrix::about(axis, angle)))
+            Pose::at(scaled(axis, pitch * angle / TAU)).then(turn(angle))
         }
         (Move::Turn(turn), Kind::Ball) => {
             let body = model.bodies[of.second.body].pose.turn;
@@ -248,17 +201,15 @@ fn move_joint(model: &mut Model, joint: usize, by: Move) {
         .filter(|(k, one)| *k != joint && one.in_tree);
     let others: Vec<Joint> = others.map(|(_, one)| one.clone()).collect();
     let component = components(model, &others);
-    let (side, motion) = if component[of.second.body] == GROUND {
-        (component[of.first.body], motion.inverse())
-    } else {
-        (component[of.second.body], motion)
+    let [first, second] = of.ends().map(|end| component[end.body]);
+    let (side, motion) = match second {
+        GROUND => (first, motion.inverse()),
+        side => (side, motion),
     };
-    for (body, _) in component
-        .iter()
-        .enumerate()
-        .filter(|(_, one)| **one == side && side != GROUND)
-    {
-        model.bodies[body].pose = motion.then(model.bodies[body].pose);
+    for (body, root) in component.iter().enumerate() {
+        if *root == side && side != GROUND {
+            model.bodies[body].pose = motion.then(model.bodies[body].pose);
+        }
     }
     if let Move::To(value) = by {
         model.joints[joint].drawn = value;
@@ -269,151 +220,113 @@ fn select_drives(model: &mut Model, options: &ImportOptions) -> Result<(), DoorE
     let asked = options.drives.iter().map(|name| driveable(model, name));
     let asked = asked.collect::<Result<Vec<_>, _>>()?;
     if !asked.is_empty() {
-        let known = std::mem::take(&mut model.drives);
-        model.drives = asked
-            .into_iter()
-            .map(|joint| {
-                let of_file = known.iter().find(|drive| drive.joint == joint).cloned();
-                of_file.unwrap_or(Drive {
-                    joint,
-                    motion: Motion::Unknown,
-                    servo: None,
-                })
-            })
-            .collect();
+        asked.iter().for_each(|joint| {
+            model.drive(*joint);
+        });
+        model.drives.retain(|drive| asked.contains(&drive.joint));
+        let place = |drive: &Drive| asked.iter().position(|joint| *joint == drive.joint);
+        model.drives.sort_by_key(place);
     }
-    let dependent = |joint: usize| {
-        model
-            .couplings
-            .iter()
-            .any(|coupling| coupling.dependent == joint)
-    };
-    let joints = &model.joints;
+    let (joints, couplings) = (&model.joints, &model.couplings);
+    let dependent = |joint: usize| couplings.iter().any(|one| one.dependent == joint);
     model
         .drives
-        .retain(|drive| joints[drive.joint].is_driveable() && !dependent(drive.joint));
+        .retain(|one| joints[one.joint].is_driveable() && !dependent(one.joint));
     Ok(())
 }
 
 /// One body in place of bodies that are fixed to each other.
 fn merge_fixed(model: &mut Model) {
     let is_merged = |joint: &Joint| joint.in_tree && joint.kind == Kind::Fixed;
-    let fixed: Vec<Joint> = model
-        .joints
-        .iter()
-        .filter(|joint| is_merged(joint))
-        .cloned()
-        .collect();
+    let fixed = model.joints.iter().filter(|joint| is_merged(joint));
+    let fixed: Vec<Joint> = fixed.cloned().collect();
     let component = components(model, &fixed);
-    let place = |body: usize| {
-        model.bodies[component[body]]
-            .pose
-            .inverse()
-            .then(model.bodies[body].pose)
-    };
-    let places: Vec<Pose> = (0..model.bodies.len()).map(place).collect();
+    let pose = |body: usize| model.bodies[body].pose;
+    let bodies = 0..model.bodies.len();
+    let place = |body: usize| pose(component[body]).inverse().then(pose(body));
+    let places: Vec<Pose> = bodies.clone().map(place).collect();
     for joint in fixed
         .iter()
         .filter(|joint| joint.place != model.bodies[joint.second.body].place)
     {
-        let [a, b] = [&joint.first, &joint.second].map(|end| model.bodies[end.body].name.clone());
-        model.findings.add(
+        let [a, b] = joint.ends().map(|end| &model.bodies[end.body].name);
+        model.note(
             &joint.place,
             Effect::Kept,
             format!("{b} is fixed to {a}: one body"),
         );
     }
-    for body in 0..model.bodies.len() {
-        let (root, pose) = (component[body], places[body]);
-        if root == body {
-            continue;
-        }
-        let part = model.bodies[body].clone();
-        let inertia = part.inertia.turned(pose.turn);
-        model.bodies[root].add_mass(part.mass, pose.point(part.center), inertia);
+    for body in bodies.filter(|body| component[*body] != *body) {
+        let (part, pose) = (model.bodies[body].clone(), places[body]);
+        let root = &mut model.bodies[component[body]];
+        root.add_mass(
+            part.mass,
+            pose.point(part.center),
+            part.inertia.turned(pose.turn),
+        );
         let points = part
             .points
             .into_iter()
             .map(|(name, point)| (name, pose.point(point)));
-        model.bodies[root].points.extend(points);
+        root.points.extend(points);
     }
+    let moved = |(body, point): (usize, Vector)| (component[body], places[body].point(point));
     for joint in &mut model.joints {
         for end in [&mut joint.first, &mut joint.second] {
-            *end = end.moved(component[end.body], places[end.body]);
+            *end = End::new(component[end.body], places[end.body].then(end.frame));
         }
     }
     for load in &mut model.loads {
         match load {
-            Load::Spring { ends, .. } => {
-                for (body, point) in ends {
-                    (*point, *body) = (places[*body].point(*point), component[*body]);
-                }
-            }
+            Load::Spring { ends, .. } => *ends = ends.map(moved),
             Load::Force {
                 at, force, turns, ..
             } => {
-                if *turns {
-                    *force = places[at.0].turn.apply(*force);
-                }
-                *at = (component[at.0], places[at.0].point(at.1));
+                let turn = if *turns {
+                    places[at.0].turn
+                } else {
+                    Matrix::IDENTITY
+                };
+                (*force, *at) = (turn.apply(*force), moved(*at));
             }
         }
     }
-    // The other joints keep their numbers for drives and couplings: they follow what is left.
-    let kept: Vec<usize> = (0..model.joints.len())
-        .filter(|k| !is_merged(&model.joints[*k]))
-        .collect();
+    // Drives and couplings follow the joints that are left.
+    let joints = 0..model.joints.len();
+    let kept: Vec<usize> = joints.filter(|k| !is_merged(&model.joints[*k])).collect();
     let number = |joint: usize| kept.iter().position(|k| *k == joint);
     model
         .drives
-        .retain_mut(|drive| number(drive.joint).map(|k| drive.joint = k).is_some());
+        .retain_mut(|one| number(one.joint).map(|k| one.joint = k).is_some());
     model.couplings.retain_mut(|one| {
         let both = number(one.dependent).zip(number(one.independent));
-        both.map(|pair| (one.dependent, one.independent) = pair)
+        both.map(|both| (one.dependent, one.independent) = both)
             .is_some()
     });
-    model.joints = kept.iter().map(|k| model.joints[*k].clone()).collect();
+    model.joints.retain(|joint| !is_merged(joint));
 }
 
 /// The armature of a hinge of the ground is inertia of its body about the axis; elsewhere it has no counterpart.
 fn keep_armatures(model: &mut Model) {
     for joint in model.joints.clone() {
         let armature = joint.along.armature;
+        let [first, second] = joint.ends();
+        let on_ground = joint.kind == Kind::Hinge && joint.touches(GROUND);
+        let label = format!("joint {} armature {armature}", joint.name);
         if armature == 0.0 {
             continue;
         }
-        let label = format!("joint {} armature {armature}", joint.name);
-        let end = match [joint.first.body, joint.second.body] {
-            [GROUND, _] => Some(joint.second),
-            [_, GROUND] => Some(joint.first),
-            _ => None,
-        };
-        let (effect, text) = match (end, joint.kind) {
-            (Some(end), Kind::Hinge) => {
-                let axis = end.frame.turn.column(2);
-                let rotor = Matrix::outer(axis, axis).scaled(armature);
-                let body = &mut model.bodies[end.body];
-                body.inertia = body.inertia.plus(rotor);
-                (
-                    Effect::Kept,
-                    format!(
-                        "{label} on a joint of the ground: kept (in the inertia about the axis)"
-                    ),
-                )
-            }
-            (Some(_), _) => (
-                Effect::Changes,
-                format!(
-                    "{label}: no exact counterpart: left out (changes the force by {armature} × its acceleration)"
-                ),
-            ),
-            (None, _) => (
-                Effect::Changes,
-                format!(
-                    "{label}, not on the ground: no exact counterpart: left out (changes the torque by {armature} × its acceleration)"
-                ),
-            ),
-        };
-        model.findings.add(&joint.place, effect, text);
+        if on_ground {
+            let end = if second.body == GROUND { first } else { second };
+            let axis = end.frame.turn.column(2);
+            model.bodies[end.body].add_mass(0.0, axis, Matrix::outer(axis, axis).scaled(armature));
+            let text =
+                format!("{label} on a joint of the ground: kept (in the inertia about the axis)");
+            model.note(&joint.place, Effect::Kept, text);
+        } else {
+            let what = format!("{label}, not on the ground: no exact counterpart: left out");
+            let text = format!("{what} (changes the torque by {armature} × its acceleration)");
+            model.note(&joint.place, Effect::Changes, text);
+        }
     }
 }

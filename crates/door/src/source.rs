@@ -2,7 +2,6 @@
 
 use crate::error::DoorError;
 use crate::finding::Findings;
-use crate::model::Model;
 use crate::options::{Format, ImportOptions};
 use crate::plane;
 use crate::scene;
@@ -51,46 +50,31 @@ pub(crate) fn import(
     let read = match format {
         Format::Mjcf => of_xml(
             format,
-            with_includes(name, text, folder)?,
-            findings.clone(),
+            &with_includes(name, text, folder)?,
+            findings,
             options,
         )?,
-        Format::Urdf | Format::Sdf => of_xml(
-            format,
-            vec![TextFile::new(name, text)],
-            findings.clone(),
-            options,
-        )?,
-        Format::Asmt => asmt::read(&TextFile::new(name, text), findings)?,
+        Format::Urdf | Format::Sdf => {
+            of_xml(format, &[TextFile::new(name, text)], findings, options)?
+        }
+        Format::Asmt => {
+            let mut file = TextFile::new(name, &asmt::as_xml(text));
+            file.shown = Some(text.into());
+            of_xml(format, &[file], findings, options)?
+        }
         Format::Pmks => pmks::read(&TextFile::new(name, text), findings)?,
     };
     let coverage = read.coverage;
-    let model = settle(read.model, read.moves, options)?;
-    written(name, text, &model, options, coverage)
-}
-
-fn written(
-    name: &str,
-    text: &str,
-    model: &Model,
-    options: &ImportOptions,
-    coverage: crate::Coverage,
-) -> Result<Import, DoorError> {
-    let plane = plane::find(model, options);
+    let model = settle(read, options)?;
+    let plane = plane::find(&model, options);
     let mut import = Import {
-        scene: String::new(),
-        findings: Vec::new(),
+        scene: scene::write(&model, plane)?,
+        findings: model.findings.sorted(),
         plane: plane.map(|plane| [plane.x, plane.y, plane.normal]),
         coverage,
     };
-    import.scene = scene::write(model, plane, &|names| {
-        let import = Import {
-            findings: model.findings.sorted(),
-            ..import.clone()
-        };
-        head(name, text, &import, names, model)
-    })?;
-    import.findings = model.findings.sorted();
+    // The scene begins with all findings, among them those of its writer.
+    import.scene = format!("{}\n{}", head(name, text, &import, &model), import.scene);
     Ok(import)
 }
 
@@ -164,18 +148,28 @@ fn with_includes(
 
 fn of_xml(
     format: Format,
-    files: Vec<TextFile>,
+    files: &[TextFile],
     findings: Findings,
     options: &ImportOptions,
 ) -> Result<Read, DoorError> {
+    for file in files {
+        if let Some(at) = file.text.find("<xacro:") {
+            return Err(file.error(
+                (at, 7),
+                "the file has macros of xacro".to_owned(),
+                "run xacro first",
+            ));
+        }
+    }
     let trees = files
         .iter()
         .map(TextFile::parse)
         .collect::<Result<Vec<_>, _>>()?;
-    let xml = Xml::new(&files, &trees, findings);
+    let xml = Xml::new(files, &trees, findings);
     match format {
         Format::Urdf => urdf::read(&xml, options),
         Format::Sdf => sdf::read(&xml),
-        Format::Mjcf | Format::Asmt | Format::Pmks => mjcf::read(&xml, options),
+        Format::Asmt => asmt::read(&xml),
+        Format::Mjcf | Format::Pmks => mjcf::read(&xml, options),
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::error::{DoorError, Part};
 use crate::finding::{Effect, Findings, Place};
+use crate::pose::{Vector, unit};
 use roxmltree::{Document, Node, NodeId, ParsingOptions};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -17,6 +18,8 @@ pub(crate) struct TextFile {
     pub(crate) text: Arc<str>,
     /// The last bytes of its lines.
     ends: Vec<usize>,
+    /// The text that errors show in place of `text`, with the same lines.
+    pub(crate) shown: Option<Arc<str>>,
 }
 
 impl TextFile {
@@ -25,6 +28,7 @@ impl TextFile {
             file: file.into(),
             text: text.into(),
             ends: text.match_indices('\n').map(|(byte, _)| byte).collect(),
+            shown: None,
         }
     }
 
@@ -41,11 +45,28 @@ impl TextFile {
     }
 
     pub(crate) fn error(&self, span: (usize, usize), message: String, help: &str) -> DoorError {
+        let mut text = Arc::clone(&self.text);
+        let mut span = span;
+        if let Some(shown) = &self.shown {
+            // The line, without its indentation.
+            let lines = shown.split_inclusive('\n');
+            let start = lines
+                .clone()
+                .take(self.line(span.0) - 1)
+                .map(str::len)
+                .sum::<usize>();
+            let line = lines.clone().nth(self.line(span.0) - 1).unwrap_or_default();
+            span = (
+                start + line.len() - line.trim_start().len(),
+                line.trim().len(),
+            );
+            text = Arc::clone(shown);
+        }
         DoorError::Part(Box::new(Part {
             message,
             help: help.to_owned(),
             file: Arc::clone(&self.file),
-            text: Arc::clone(&self.text),
+            text,
             span,
         }))
     }
@@ -96,16 +117,6 @@ pub struct Coverage {
     pub named: usize,
 }
 
-/// The sentence for parts without effect.
-pub(crate) fn left_out(what: &str, count: usize) -> String {
-    let times = if count > 1 {
-        format!(" ({count} times)")
-    } else {
-        String::new()
-    };
-    format!("{what}{times}: left out, nothing lost")
-}
-
 /// All XML files of a model.
 pub(crate) struct Xml<'t> {
     files: &'t [TextFile],
@@ -114,8 +125,24 @@ pub(crate) struct Xml<'t> {
     pub(crate) findings: Findings,
 }
 
-/// The reason why something that was not read is left out: what it means, and a word for the reader.
-pub(crate) type Judge = fn(&Element<'_>, Option<&str>) -> Effect;
+/// What parts that are not read mean, by the names of elements and attributes.
+pub(crate) struct Rules {
+    /// No motion depends on them.
+    pub(crate) idle: &'static str,
+    /// They act only at a limit, or where bodies touch.
+    pub(crate) limits: &'static str,
+}
+
+impl Rules {
+    pub(crate) fn effect(&self, name: &str) -> Effect {
+        let has = |list: &str| list.split_whitespace().any(|word| word == name);
+        match (has(self.idle), has(self.limits)) {
+            (true, _) => Effect::Nothing,
+            (_, true) => Effect::AtLimits,
+            _ => Effect::Changes,
+        }
+    }
+}
 
 impl<'t> Xml<'t> {
     pub(crate) fn new(
@@ -146,101 +173,66 @@ impl<'t> Xml<'t> {
     }
 
     /// Names what was not read, and counts.
-    pub(crate) fn name_the_rest(&self, judge: Judge) -> Coverage {
+    pub(crate) fn name_the_rest(&self, rules: &Rules) -> Coverage {
         let mut coverage = Coverage::default();
-        for source in 0..self.trees.len() {
-            self.name_in(source, judge, &mut coverage);
+        for (source, tree) in self.trees.iter().enumerate() {
+            let mut idle = Idle::new();
+            for node in tree.root().descendants().filter(Node::is_element) {
+                let xml = self;
+                self.name(
+                    Element { xml, source, node },
+                    rules,
+                    &mut coverage,
+                    &mut idle,
+                );
+            }
+            for (what, (line, count)) in idle {
+                let times = if count > 1 {
+                    format!(" ({count} times)")
+                } else {
+                    String::new()
+                };
+                let text = format!("{what}{times}: left out, nothing lost");
+                self.findings
+                    .add(&self.files[source].place(line), Effect::Nothing, text);
+            }
         }
         coverage
     }
 
-    fn name_in(&self, source: usize, judge: Judge, coverage: &mut Coverage) {
-        // Parts without effect share a finding: their first line, and how often they occur.
-        let mut idle: BTreeMap<String, (usize, usize)> = BTreeMap::new();
-        let nodes = self.trees[source].root().descendants();
-        for node in nodes.filter(Node::is_element) {
-            let element = Element {
-                xml: self,
-                source,
-                node,
-            };
-            let attributes: Vec<_> = node
-                .attributes()
-                .map(|one| (one.name(), one.range().start))
-                .collect();
-            coverage.all += 1 + attributes.len();
-            let is = |set: &HashSet<(usize, usize)>, byte| set.contains(&(source, byte));
-            let ledger = self.ledger.borrow();
-            if is(&ledger.named, node.range().start) {
-                coverage.named += 1 + attributes.len();
-                continue;
-            }
-            if !is(&ledger.read, node.range().start) {
-                drop(ledger);
-                let effect = judge(&element, None);
-                let what = element.label();
-                element.name_all();
-                coverage.named += 1 + attributes.len();
-                self.report(&element, effect, what, &mut idle);
-                continue;
-            }
-            coverage.read += 1;
-            let (read, rest): (Vec<_>, Vec<_>) = attributes
-                .into_iter()
-                .partition(|(_, byte)| is(&ledger.read, *byte));
-            drop(ledger);
-            coverage.read += read.len();
-            coverage.named += rest.len();
-            for effect in [Effect::Nothing, Effect::AtLimits, Effect::Changes] {
-                let those = rest
-                    .iter()
-                    .filter(|(name, _)| judge(&element, Some(name)) == effect);
-                let names: Vec<_> = those.map(|(name, _)| *name).collect();
-                if !names.is_empty() {
-                    let of = if effect == Effect::Nothing {
-                        element.tag().to_owned()
-                    } else {
-                        element.label()
-                    };
-                    self.report(
-                        &element,
-                        effect,
-                        format!("{of} {}", names.join(", ")),
-                        &mut idle,
-                    );
-                }
+    fn name(&self, element: Element<'_>, rules: &Rules, coverage: &mut Coverage, idle: &mut Idle) {
+        let attributes: Vec<_> = element.node.attributes().collect();
+        coverage.all += 1 + attributes.len();
+        if self.ledger.borrow().named.contains(&element.key()) {
+            coverage.named += 1 + attributes.len();
+            return;
+        }
+        if !element.is_read() {
+            coverage.named += 1 + attributes.len();
+            element.name_all();
+            return element.left_out(rules.effect(element.tag()), "", idle);
+        }
+        let is_read = |byte| self.ledger.borrow().read.contains(&(element.source, byte));
+        let rest = attributes.iter().filter(|one| !is_read(one.range().start));
+        let rest: Vec<&str> = rest.map(|one| one.name()).collect();
+        coverage.read += 1 + attributes.len() - rest.len();
+        coverage.named += rest.len();
+        for effect in [Effect::Nothing, Effect::AtLimits, Effect::Changes] {
+            let those = rest.iter().filter(|name| rules.effect(name) == effect);
+            let names: Vec<_> = those.copied().collect();
+            if !names.is_empty() {
+                element.left_out(effect, &format!(" {}", names.join(", ")), idle);
             }
         }
-        for (what, (line, count)) in idle {
-            let text = left_out(&what, count);
-            self.findings
-                .add(&self.files[source].place(line), Effect::Nothing, text);
-        }
-    }
-
-    fn report(
-        &self,
-        element: &Element<'_>,
-        effect: Effect,
-        what: String,
-        idle: &mut BTreeMap<String, (usize, usize)>,
-    ) {
-        let text = match effect {
-            Effect::Nothing => {
-                let what = if what == element.label() {
-                    element.tag().to_owned()
-                } else {
-                    what
-                };
-                idle.entry(what).or_insert((element.line(), 0)).1 += 1;
-                return;
-            }
-            Effect::AtLimits => format!("{what}: left out (acts only at a limit)"),
-            Effect::Kept | Effect::Changes => format!("{what}: left out (may change the motion)"),
-        };
-        self.findings.add(&element.place(), effect, text);
     }
 }
+
+/// Parts without effect share a finding: the line of the first, and how many there are.
+type Idle = BTreeMap<String, (usize, usize)>;
+
+/// What becomes of parts that act only at a limit, and of parts that change the motion.
+pub(crate) const AT_LIMITS: &str = "left out (acts only at a limit)";
+pub(crate) const LOST: &str = "left out (changes the motion)";
 
 /// An element of one of the files.
 #[derive(Clone, Copy)]
@@ -253,11 +245,6 @@ pub(crate) struct Element<'d> {
 impl<'d> Element<'d> {
     pub(crate) fn tag(&self) -> &'d str {
         self.node.tag_name().name()
-    }
-
-    pub(crate) fn parent(&self) -> Option<Self> {
-        let node = self.node.parent_element()?;
-        Some(Self { node, ..*self })
     }
 
     pub(crate) fn line(&self) -> usize {
@@ -276,50 +263,69 @@ impl<'d> Element<'d> {
         }
     }
 
+    /// Its file and its first byte there.
+    fn key(&self) -> (usize, usize) {
+        (self.source, self.node.range().start)
+    }
+
     /// The element counts as read.
     pub(crate) fn read(self) -> Self {
-        let byte = (self.source, self.node.range().start);
-        self.xml.ledger.borrow_mut().read.insert(byte);
+        self.xml.ledger.borrow_mut().read.insert(self.key());
         self
+    }
+
+    fn left_out(&self, effect: Effect, attributes: &str, idle: &mut Idle) {
+        let (tag, label) = (self.tag(), self.label());
+        match effect {
+            Effect::Nothing => {
+                idle.entry(format!("{tag}{attributes}"))
+                    .or_insert((self.line(), 0))
+                    .1 += 1;
+            }
+            Effect::AtLimits => self.note(effect, format!("{label}{attributes}: {AT_LIMITS}")),
+            Effect::Kept | Effect::Changes => {
+                self.note(
+                    effect,
+                    format!("{label}{attributes}: left out (may change the motion)"),
+                );
+            }
+        }
     }
 
     /// Its child elements; includes are replaced by what they include. It counts as read.
     pub(crate) fn children(self) -> Vec<Self> {
-        self.read();
         let mut children = Vec::new();
-        for node in self.node.children().filter(Node::is_element) {
+        for node in self.read().node.children().filter(Node::is_element) {
             let child = Self { node, ..self };
-            match child
-                .node
-                .attribute("file")
-                .filter(|_| child.tag() == "include")
-            {
-                Some(file) if self.xml.included(file).is_some() => {
-                    let _ = child.attribute("file");
-                    let source = self.xml.included(file).unwrap_or_default();
-                    let root = self.xml.root(source);
-                    // Each file is included once.
-                    if !root.is_read() {
-                        children.extend(root.children());
-                    }
-                }
-                _ => children.push(child),
+            let file = node.attribute("file").filter(|_| child.tag() == "include");
+            let Some(source) = file.and_then(|file| self.xml.included(file)) else {
+                children.push(child);
+                continue;
+            };
+            let _ = child.attribute("file");
+            let root = self.xml.root(source);
+            // Each file is included once.
+            if !root.is_read() {
+                children.extend(root.children());
             }
         }
         children
     }
 
+    /// The children of this name, which count as read.
+    pub(crate) fn called(self, tag: &str) -> Vec<Self> {
+        let children = self.children().into_iter().filter(|one| one.tag() == tag);
+        children.map(Self::read).collect()
+    }
+
     fn is_read(self) -> bool {
-        let byte = (self.source, self.node.range().start);
-        self.xml.ledger.borrow().read.contains(&byte)
+        self.xml.ledger.borrow().read.contains(&self.key())
     }
 
     /// The first child of this name, which counts as read.
     pub(crate) fn child(self, tag: &str) -> Option<Self> {
-        let children = self.node.children();
-        let node = children
-            .into_iter()
-            .find(|one| one.is_element() && one.tag_name().name() == tag)?;
+        let is = |one: &Node<'_, '_>| one.is_element() && one.tag_name().name() == tag;
+        let node = self.node.children().find(is)?;
         Some(Self { node, ..self }.read())
     }
 
@@ -370,6 +376,15 @@ impl<'d> Element<'d> {
         self.xml.findings.add(&self.place(), effect, text);
     }
 
+    pub(crate) fn kept(&self, text: impl Into<String>) {
+        self.note(Effect::Kept, text);
+    }
+
+    /// Something of the element that changes the motion is left out.
+    pub(crate) fn lost(&self, what: impl std::fmt::Display) {
+        self.note(Effect::Changes, format!("{what}: {LOST}"));
+    }
+
     fn name_all(&self) {
         let mut ledger = self.xml.ledger.borrow_mut();
         for node in self.node.descendants().filter(Node::is_element) {
@@ -377,26 +392,35 @@ impl<'d> Element<'d> {
         }
     }
 
-    pub(crate) fn error(&self, message: impl Into<String>, help: &str) -> DoorError {
+    pub(crate) fn error(&self, message: impl Into<String>) -> DoorError {
+        self.error_with(message, "")
+    }
+
+    /// An error at the tag, with what may help.
+    pub(crate) fn error_with(&self, message: impl Into<String>, help: &str) -> DoorError {
         let range = self.node.range();
         let file = &self.xml.files[self.source];
-        // The tag, not all that it holds.
         let tag = file.text.get(range.clone()).and_then(|text| text.find('>'));
         let span = (range.start, tag.map_or(1, |end| end + 1));
         file.error(span, message.into(), help)
     }
 
+    /// The part that a name of the element refers to.
+    pub(crate) fn known<T>(&self, part: Option<T>, what: &str, name: &str) -> Result<T, DoorError> {
+        part.ok_or_else(|| self.error(format!("there is no {what} `{name}`")))
+    }
+
+    pub(crate) fn unit(&self, axis: Vector) -> Result<Vector, DoorError> {
+        unit(axis).ok_or_else(|| self.error("the axis is zero"))
+    }
+
     /// The numbers of a text that belongs to this element.
     pub(crate) fn numbers(&self, what: &str, text: &str) -> Result<Vec<f64>, DoorError> {
         let words = text.split(|c: char| c.is_whitespace() || c == ',');
-        let number = |word: &str| word.parse::<f64>().ok().filter(|x| x.is_finite());
-        let numbers: Option<Vec<f64>> = words.filter(|word| !word.is_empty()).map(number).collect();
-        numbers.ok_or_else(|| {
-            self.error(
-                format!("`{what}` of {} has to be numbers: `{text}`", self.label()),
-                "",
-            )
-        })
+        let number = |word: &str| word.parse().ok().filter(|x: &f64| x.is_finite());
+        let numbers = words.filter(|word| !word.is_empty()).map(number).collect();
+        let wrong = || format!("`{what}` of {} has to be numbers: `{text}`", self.label());
+        Option::ok_or_else(numbers, || self.error(wrong()))
     }
 
     /// Exactly `N` numbers.
@@ -406,35 +430,45 @@ impl<'d> Element<'d> {
         text: &str,
     ) -> Result<[f64; N], DoorError> {
         let numbers = self.numbers(what, text)?;
-        let count = numbers.len();
-        let wrong = |_| {
-            self.error(
-                format!(
-                    "`{what}` of {} has {count} numbers in place of {N}",
-                    self.label()
-                ),
-                "",
-            )
-        };
-        numbers.try_into().map_err(wrong)
+        let (label, count) = (self.label(), numbers.len());
+        let wrong = format!("`{what}` of {label} has {count} numbers in place of {N}");
+        numbers.try_into().map_err(|_| self.error(wrong))
     }
 
     /// An attribute of `N` numbers.
     pub(crate) fn vector<const N: usize>(&self, name: &str) -> Result<Option<[f64; N]>, DoorError> {
-        self.attribute(name)
-            .map(|text| self.exactly(name, text))
-            .transpose()
+        let text = self.attribute(name);
+        text.map(|text| self.exactly(name, text)).transpose()
     }
 
-    pub(crate) fn number(&self, name: &str) -> Result<Option<f64>, DoorError> {
-        Ok(self.vector::<1>(name)?.map(|[x]| x))
+    /// An attribute of a number, or its default.
+    pub(crate) fn value(&self, name: &str, default: f64) -> Result<f64, DoorError> {
+        Ok(self.vector::<1>(name)?.map_or(default, |[x]| x))
     }
 
-    /// The number in a child.
-    pub(crate) fn child_number(self, tag: &str) -> Result<Option<f64>, DoorError> {
+    /// `N` numbers in a child.
+    pub(crate) fn child_vector<const N: usize>(
+        self,
+        tag: &str,
+    ) -> Result<Option<[f64; N]>, DoorError> {
         let child = self.child(tag);
-        child
-            .map(|one| Ok(one.exactly::<1>(tag, one.text())?[0]))
-            .transpose()
+        child.map(|one| one.exactly(tag, one.text())).transpose()
+    }
+
+    /// The number in a child, or its default.
+    pub(crate) fn child_value(self, tag: &str, default: f64) -> Result<f64, DoorError> {
+        Ok(self.child_vector::<1>(tag)?.map_or(default, |[x]| x))
+    }
+
+    /// Whether a child says that something is so.
+    pub(crate) fn says(self, tag: &str) -> bool {
+        self.child_text(tag)
+            .is_some_and(|word| word == "true" || word == "1")
+    }
+
+    /// A mass of 0 or more.
+    pub(crate) fn mass(&self, mass: f64) -> Result<f64, DoorError> {
+        let valid = (mass >= 0.0).then_some(mass);
+        valid.ok_or_else(|| self.error("the mass has to be 0 or more"))
     }
 }

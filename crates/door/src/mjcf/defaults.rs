@@ -1,8 +1,7 @@
 //! Classes of defaults, and elements with the attributes that their classes give.
 
 use crate::error::DoorError;
-use crate::finding::Effect;
-use crate::pose::{Matrix, Pose, cross, unit};
+use crate::pose::{Matrix, Pose, cross, length, unit};
 use crate::xml::Element;
 use std::collections::HashMap;
 
@@ -10,11 +9,18 @@ use std::collections::HashMap;
 const MAIN: &str = "main";
 
 /// Angles and their order, from `compiler`.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(super) struct Angles {
     /// What an angle of the file is in rad.
     pub(super) unit: f64,
     pub(super) sequence: [char; 3],
+}
+
+impl Default for Angles {
+    fn default() -> Self {
+        let (unit, sequence) = (1f64.to_radians(), ['x', 'y', 'z']);
+        Self { unit, sequence }
+    }
 }
 
 #[derive(Default)]
@@ -52,9 +58,12 @@ impl<'d> Defaults<'d> {
     ) -> Result<Item<'d>, DoorError> {
         let own = element.attribute("class");
         let mut class = own.or(inherited).unwrap_or(MAIN);
-        if own.is_some() && !self.classes.contains_key(class) && class != MAIN {
-            return Err(element.error(format!("there is no class `{class}` of defaults"), ""));
-        }
+        let is_known = class == MAIN || self.classes.contains_key(class);
+        element.known(
+            (is_known || own.is_none()).then_some(()),
+            "class of defaults",
+            class,
+        )?;
         let mut chain = Vec::new();
         // A class is its own ancestor only in a file that no program reads.
         for _ in 0..=self.classes.len() {
@@ -108,19 +117,15 @@ impl<'d> Item<'d> {
             .transpose()
     }
 
-    /// A number; of several the first, if the others are zero.
-    pub(super) fn number(&self, name: &str) -> Result<Option<f64>, DoorError> {
-        let Some(numbers) = self.numbers(name)? else {
-            return Ok(None);
-        };
+    /// A number, or its default; of several the first, if the others are zero.
+    pub(super) fn value(&self, name: &str, default: f64) -> Result<f64, DoorError> {
+        let numbers = self.numbers(name)?.unwrap_or_default();
         if numbers.iter().skip(1).any(|x| *x != 0.0) {
-            let what = format!(
-                "{} {name}: only its first number is read",
-                self.element.label()
-            );
-            self.element.note(Effect::Changes, what);
+            let label = self.element.label();
+            self.element
+                .lost(format!("{label} {name}: all but the first number"));
         }
-        Ok(numbers.first().copied())
+        Ok(numbers.first().copied().unwrap_or(default))
     }
 
     pub(super) fn is(&self, name: &str, value: &str) -> bool {
@@ -129,10 +134,8 @@ impl<'d> Item<'d> {
 
     /// The frame of the element in that around it.
     pub(super) fn pose(&self, angles: Angles) -> Result<Pose, DoorError> {
-        Ok(Pose {
-            origin: self.vector("pos")?.unwrap_or_default(),
-            turn: self.turn(angles)?,
-        })
+        let origin = self.vector("pos")?.unwrap_or_default();
+        Ok(Pose::new(origin, self.turn(angles)?))
     }
 
     fn turn(&self, angles: Angles) -> Result<Matrix, DoorError> {
@@ -155,10 +158,8 @@ impl<'d> Item<'d> {
         } else {
             Some(Matrix::IDENTITY)
         };
-        turn.ok_or_else(|| {
-            let message = format!("the orientation of {} is zero", self.element.label());
-            self.element.error(message, "")
-        })
+        let zero = || self.element.error("the orientation is zero");
+        turn.ok_or_else(zero)
     }
 }
 
@@ -172,10 +173,9 @@ fn turns(angles: [f64; 3], sequence: [char; 3]) -> Matrix {
             _ => 2,
         };
         let one = Matrix::about(Matrix::IDENTITY.column(k), angle);
-        turn = if axis.is_lowercase() {
-            turn.times(one)
-        } else {
-            one.times(turn)
+        turn = match axis.is_lowercase() {
+            true => turn.times(one),
+            false => one.times(turn),
         };
     }
     turn
@@ -183,10 +183,9 @@ fn turns(angles: [f64; 3], sequence: [char; 3]) -> Matrix {
 
 /// The rotation by the least angle that turns z along `axis`.
 pub(super) fn shortest_to(axis: [f64; 3]) -> Matrix {
-    let z = [0.0, 0.0, 1.0];
-    let across = cross(z, axis);
+    let across = cross([0.0, 0.0, 1.0], axis);
     match unit(across) {
-        Some(about) => Matrix::about(about, crate::pose::length(across).atan2(axis[2])),
+        Some(about) => Matrix::about(about, length(across).atan2(axis[2])),
         None if axis[2] < 0.0 => Matrix::diagonal([1.0, -1.0, -1.0]),
         None => Matrix::IDENTITY,
     }

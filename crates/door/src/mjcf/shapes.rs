@@ -2,87 +2,66 @@
 
 use super::defaults::{Angles, Item, shortest_to};
 use crate::error::DoorError;
-use crate::finding::Effect;
-use crate::pose::{Matrix, Pose, Vector, add, length, scaled, sub, unit};
+use crate::pose::{Matrix, Vector, add, length, scaled, sub};
 use std::f64::consts::PI;
 
 /// kg/m³, where neither mass nor density is given.
 const DENSITY: f64 = 1000.0;
 
-/// Mass, frame and tensor of a geom, in the frame around it.
-pub(super) struct Mass {
-    pub(super) mass: f64,
-    pub(super) center: Vector,
-    pub(super) inertia: Matrix,
-}
-
-/// The mass of a geom; none of a plane, a height field, or a mesh.
-pub(super) fn mass(item: &Item<'_>, angles: Angles) -> Result<Option<Mass>, DoorError> {
+/// Mass, centre and tensor of a geom in the frame around it; none of a plane, a height field, or a mesh.
+pub(super) fn mass(
+    item: &Item<'_>,
+    angles: Angles,
+    takes: bool,
+) -> Result<Option<Mass>, DoorError> {
     let element = item.element;
     let kind = item.text("type").unwrap_or("sphere");
     let mut pose = item.pose(angles)?;
     let mut size = item.numbers("size")?.unwrap_or_default();
+    size.resize(3, 0.0);
     if let Some([a, b, c, d, e, f]) = item.vector("fromto")? {
-        let (from, to) = ([a, b, c], [d, e, f]);
-        // From the first end to the second, as MuJoCo turns it: z points back.
-        let back = unit(sub(from, to));
-        let back = back.ok_or_else(|| {
-            element.error(format!("the ends of {} coincide", element.label()), "")
-        })?;
-        let half = length(sub(to, from)) / 2.0;
-        pose = Pose {
-            origin: scaled(add(from, to), 0.5),
-            turn: shortest_to(back),
-        };
-        let first = size.first().copied().unwrap_or_default();
+        // As MuJoCo turns it: z points from the second end to the first.
+        let along = sub([a, b, c], [d, e, f]);
+        pose.turn = shortest_to(element.unit(along)?);
+        pose.origin = scaled(add([a, b, c], [d, e, f]), 0.5);
+        let half = length(along) / 2.0;
         size = match kind {
-            "capsule" | "cylinder" => vec![first, half],
-            _ => vec![first, first, half],
+            "capsule" | "cylinder" => vec![size[0], half, 0.0],
+            _ => vec![size[0], size[0], half],
         };
     }
-    let size: [f64; 3] = [0, 1, 2].map(|k| size.get(k).copied().unwrap_or_default());
-    let shell = item.is("shellinertia", "true");
-    let (needs, unit_mass) = match kind {
+    let [a, b, c] = [size[0], size[1], size[2]];
+    let (needs, (volume, gyration)) = match kind {
         "plane" | "hfield" => return Ok(None),
-        "sphere" => (1, sphere(size[0])),
-        "capsule" => (2, capsule(size[0], size[1])),
-        "cylinder" => (2, cylinder(size[0], size[1])),
-        "box" => (3, cuboid(size)),
-        "ellipsoid" => (3, ellipsoid(size)),
+        "sphere" => (1, sphere(a)),
+        "capsule" => (2, capsule(a, b)),
+        "cylinder" => (2, cylinder(a, b)),
+        "box" => (3, cuboid([a, b, c])),
+        "ellipsoid" => (3, ellipsoid([a, b, c])),
         _ => {
             let of = item
                 .text("mesh")
                 .map_or(String::new(), |mesh| format!(" {mesh}"));
-            let text = format!(
-                "geom {kind}{of}: inertia of a mesh: not computed, left out (changes the motion)"
-            );
-            element.note(Effect::Changes, text);
+            if takes {
+                element.lost(format!("geom {kind}{of}: inertia of a mesh"));
+            }
             return Ok(None);
         }
     };
-    if size[..needs].iter().any(|x| !(*x > 0.0)) {
-        let message = format!(
-            "a {kind} needs {needs} sizes above zero: {}",
-            element.label()
-        );
-        return Err(element.error(message, ""));
+    if size[..needs].iter().any(|x| *x <= 0.0) {
+        return Err(element.error(format!("a {kind} needs {needs} sizes above zero")));
     }
-    let density = item.number("density")?.unwrap_or(DENSITY);
-    if shell {
-        element.note(
-            Effect::Changes,
-            format!("{} shellinertia: taken as solid", element.label()),
-        );
+    if item.is("shellinertia", "true") && takes {
+        element.lost(format!("{} shellinertia, taken as solid", element.label()));
     }
-    let (volume, gyration) = unit_mass;
-    let mass = item.number("mass")?.unwrap_or(density * volume);
-    Ok(Some(Mass {
-        mass,
-        center: pose.origin,
-        inertia: Matrix::diagonal(scaled(gyration, mass)).turned(pose.turn),
-    }))
+    let mass = item.value("density", DENSITY)? * volume;
+    let mass = element.mass(item.value("mass", mass)?)?;
+    let inertia = Matrix::diagonal(scaled(gyration, mass)).turned(pose.turn);
+    Ok(Some((mass, pose.origin, inertia)))
 }
 
+type Mass = (f64, Vector, Matrix);
+/// Volume, and the moments of inertia of a mass of 1.
 type UnitMass = (f64, Vector);
 
 fn sphere(r: f64) -> UnitMass {

@@ -77,7 +77,7 @@ pub(super) fn key(name: &str) -> String {
 }
 
 /// A comment of one line.
-pub(super) fn comment(text: &str) -> String {
+pub(crate) fn comment(text: &str) -> String {
     let text: String = text
         .chars()
         .map(|c| if c.is_control() { ' ' } else { c })
