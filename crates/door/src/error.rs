@@ -85,6 +85,18 @@ impl DoorError {
         }
     }
 
+    /// The message with its place, and what may help.
+    pub fn full_message(&self) -> String {
+        let place = self.part().map_or(String::new(), |part| {
+            let before = part.text.get(..part.span.0).unwrap_or_default();
+            format!("{}:{}: ", part.file, 1 + before.matches('\n').count())
+        });
+        let help = self
+            .help()
+            .map_or(String::new(), |help| format!(" ({help})"));
+        format!("{place}{self}{help}")
+    }
+
     /// What may help.
     pub fn help(&self) -> Option<String> {
         let help = match self {

@@ -17,6 +17,23 @@ pub enum Format {
     Pmks,
 }
 
+impl FromStr for Format {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        match name {
+            "mjcf" => Ok(Self::Mjcf),
+            "urdf" => Ok(Self::Urdf),
+            "sdf" => Ok(Self::Sdf),
+            "asmt" => Ok(Self::Asmt),
+            "pmks" => Ok(Self::Pmks),
+            _ => Err(format!(
+                "there is no format `{name}`: mjcf, urdf, sdf, asmt or pmks"
+            )),
+        }
+    }
+}
+
 /// A joint that closes a loop between two named frames.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Closing {

@@ -7,7 +7,7 @@ use crate::finding::Effect;
 use crate::model::{Body, GROUND, Load, Model};
 use crate::pose::{Matrix, Pose, scaled};
 use crate::settle::{Read, span};
-use crate::xml::{AT_LIMITS, Element, LOST, Rules, Xml};
+use crate::xml::{AT_LIMITS, Element, LOST, NO_GRAVITY, Rules, Xml};
 use std::collections::HashMap;
 
 const RULES: Rules = Rules {
@@ -21,11 +21,13 @@ pub(crate) fn read(xml: &Xml<'_>) -> Result<Read, DoorError> {
     let root = xml.root(0);
     let _ = root.attribute("version");
     let mut top = root;
-    let mut gravity = [0.0, 0.0, -9.8];
+    let mut gravity = [0.0, 0.0, -9.81];
     if let Some(world) = root.child("world") {
         let _ = world.attribute("name");
-        gravity = world.child_vector("gravity")?.unwrap_or(gravity);
+        gravity = world.child_vector("gravity")?.unwrap_or([0.0, 0.0, -9.8]);
         top = world;
+    } else {
+        root.kept(NO_GRAVITY);
     }
     let (still, moving): (Vec<_>, Vec<_>) = top
         .called("model")

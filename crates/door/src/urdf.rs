@@ -7,7 +7,7 @@ use crate::model::{Along, Body, Coupling, End, Joint, Kind, Model};
 use crate::options::ImportOptions;
 use crate::pose::{Matrix, Pose, Vector};
 use crate::settle::Read;
-use crate::xml::{Element, Rules, Xml};
+use crate::xml::{Element, NO_GRAVITY, Rules, Xml};
 use std::collections::HashMap;
 
 const RULES: Rules = Rules {
@@ -19,6 +19,7 @@ const RULES: Rules = Rules {
 pub(crate) fn read(xml: &Xml<'_>, options: &ImportOptions) -> Result<Read, DoorError> {
     let root = xml.root(0);
     let title = root.attribute("name").unwrap_or("URDF model");
+    root.kept(NO_GRAVITY);
     let mut reader = Reader {
         model: Model::new(title, &root.place(), xml.findings.clone()),
         links: HashMap::new(),

@@ -3,7 +3,7 @@
 use crate::error::{DoorError, Part};
 use crate::finding::{Effect, Findings, Place};
 use crate::pose::{Vector, unit};
-use roxmltree::{Document, Node, NodeId, ParsingOptions};
+use roxmltree::{Attribute, Document, Node, NodeId, ParsingOptions};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
@@ -212,8 +212,12 @@ impl<'t> Xml<'t> {
             element.name_all();
             return element.left_out(rules.effect(element.tag()), "", idle);
         }
-        let is_read = |byte| self.ledger.borrow().read.contains(&(element.source, byte));
-        let rest = attributes.iter().filter(|one| !is_read(one.range().start));
+        // Names are part of every message.
+        let is_read = |one: &Attribute<'_, '_>| {
+            let key = (element.source, one.range().start);
+            one.name() == "name" || self.ledger.borrow().read.contains(&key)
+        };
+        let rest = attributes.iter().filter(|one| !is_read(one));
         let rest: Vec<&str> = rest.map(|one| one.name()).collect();
         coverage.read += 1 + attributes.len() - rest.len();
         coverage.named += rest.len();
@@ -232,6 +236,7 @@ type Idle = BTreeMap<String, (usize, usize)>;
 
 /// What becomes of parts that act only at a limit, and of parts that change the motion.
 pub(crate) const AT_LIMITS: &str = "left out (acts only at a limit)";
+pub(crate) const NO_GRAVITY: &str = "no gravity in the file: 9.81 m/s2 against z";
 pub(crate) const LOST: &str = "left out (changes the motion)";
 
 /// An element of one of the files.

@@ -85,7 +85,7 @@ pub enum Error {
         difference: f64,
     },
     /// A model of another program cannot be imported.
-    #[error("{0}")]
+    #[error("{}", .0.full_message())]
     Import(dwell_door::DoorError),
     /// A coordinate outside the domain of a table.
     #[error("{q} is not in the table, which reaches from {from} to {to}")]
