@@ -5,14 +5,14 @@ mod text;
 
 use crate::error::DoorError;
 use crate::finding::Effect;
-use crate::model::{GROUND, Joint, Kind, Model, Motion};
+use crate::model::{Drive, GROUND, Joint, Kind, Model, Motion};
 use crate::names::{Names, allowed, free_name};
 use crate::plane::{Plane, size};
 use crate::pose::{Matrix, Pose, Vector, add, cross, dot, length, scaled, sub, unit};
 use std::collections::HashSet;
 use std::f64::consts::TAU;
 pub(crate) use text::comment;
-use text::{Text, key, quoted};
+use text::{Text, key, list, number, quoted};
 
 /// Ends closer than this, relative to the size, are one point; axes closer are one axis.
 const ONE: f64 = 1e-12;
@@ -22,6 +22,8 @@ pub(crate) struct Writer<'m> {
     plane: Option<Plane>,
     names: Names,
     size: f64,
+    /// The names of loads and drives.
+    load_names: HashSet<String>,
     text: Text,
 }
 
@@ -31,13 +33,12 @@ pub(crate) fn write(model: &Model, plane: Option<Plane>) -> Result<String, DoorE
         model,
         plane,
         size: size(model),
-        text: Text::default(),
         names: Names::new(model),
+        load_names: HashSet::new(),
+        text: Text::default(),
     };
-    writer
-        .text
-        .line(&format!("title = {}", quoted(&model.title)));
-    writer.bodies();
+    writer.text.pair("title", quoted(&model.title));
+    (0..model.bodies.len()).for_each(|body| writer.body(body));
     writer.joints();
     writer.coordinates();
     writer.assembly();
@@ -47,25 +48,21 @@ pub(crate) fn write(model: &Model, plane: Option<Plane>) -> Result<String, DoorE
 }
 
 impl Writer<'_> {
-    fn point(&mut self, point: Vector) -> String {
-        // Below the rounding of the drawing is zero.
-        let least = 1e-16 * self.size;
-        let point = point.map(|x| if x.abs() < least { 0.0 } else { x });
-        self.vector(point)
+    /// A point in the axes of the scene; below the rounding of the drawing is zero.
+    fn point(&self, point: Vector) -> String {
+        self.vector(clean(point, 1e-16 * self.size))
     }
 
-    /// A point or direction in the axes of the scene.
-    fn vector(&mut self, vector: Vector) -> String {
+    fn vector(&self, vector: Vector) -> String {
         match self.plane {
-            Some(plane) => self.text.list(&plane.point(vector)),
-            None => self.text.list(&vector),
+            Some(plane) => list(&plane.point(vector)),
+            None => list(&vector),
         }
     }
 
     /// A direction of a joint.
-    fn direction(&mut self, axis: Vector) -> String {
-        let axis = axis.map(|x| if x.abs() < 1e-16 { 0.0 } else { x });
-        self.vector(axis)
+    fn direction(&self, axis: Vector) -> String {
+        self.vector(clean(axis, 1e-16))
     }
 
     /// Where the ends of a joint are drawn: in one place, unless the loop is open there. The coordinate is zero as drawn.
@@ -81,18 +78,14 @@ impl Writer<'_> {
             first.origin = second.origin;
         }
         let apart = |k: usize| length(sub(first.turn.column(k), second.turn.column(k))) > ONE;
-        let turns = apart(0) && matches!(joint.kind, Slide | Fixed);
-        if joint.kind != Universal && !apart(2) && !turns {
+        let turned = apart(0) && matches!(joint.kind, Slide | Fixed);
+        if joint.kind != Universal && !apart(2) && !turned {
             first.turn = second.turn;
         } else if matches!(joint.kind, Hinge | Cylinder | Screw(_)) {
             // The angle counts from the normals as drawn.
-            let x = sub(
-                second.turn.column(0),
-                scaled(axis, dot(axis, second.turn.column(0))),
-            );
-            first.turn = unit(x).map_or(first.turn, |x| {
-                Matrix([x, cross(axis, x), axis]).transposed()
-            });
+            let x = second.turn.column(0);
+            let x = unit(sub(x, scaled(axis, dot(axis, x)))).unwrap_or(first.turn.column(0));
+            first.turn = Matrix([x, cross(axis, x), axis]).transposed();
         }
         [first, second]
     }
@@ -102,29 +95,19 @@ impl Writer<'_> {
         body == GROUND || self.model.joints.iter().any(|joint| joint.touches(body))
     }
 
-    fn bodies(&mut self) {
-        for body in 0..self.model.bodies.len() {
-            if self.has(body) {
-                self.body(body);
-            }
+    fn body(&mut self, of: usize) {
+        if !self.has(of) {
+            return;
         }
-    }
-
-    fn body(&mut self, number: usize) {
-        let body = &self.model.bodies[number];
-        self.text.table(&["bodies", &self.names.bodies[number]]);
+        let body = &self.model.bodies[of];
         let mut points: Vec<(String, Vector)> = Vec::new();
-        for (k, joint) in self.model.joints.iter().enumerate() {
-            let ends = self.ends(joint);
-            for (end, drawn) in joint.ends().into_iter().zip(ends) {
-                if end.body == number {
-                    points.push((self.names.joints[k].clone(), drawn.origin));
-                }
-            }
+        for (joint, name) in self.model.joints.iter().zip(&self.names.joints) {
+            let ends = joint.ends().into_iter().zip(self.ends(joint));
+            let here = ends.filter(|(end, _)| end.body == of);
+            points.extend(here.map(|(_, drawn)| (name.clone(), drawn.origin)));
         }
+        points.extend(self.load_points(of));
         let mut taken: HashSet<String> = points.iter().map(|(name, _)| name.clone()).collect();
-        points.extend(self.load_points(number));
-        taken.extend(points.iter().map(|(name, _)| name.clone()));
         for (name, point) in &body.points {
             let name = allowed(name);
             if !taken.contains(&name) {
@@ -134,126 +117,96 @@ impl Writer<'_> {
         if points.is_empty() {
             points.push(("origin".to_owned(), body.pose.origin));
         }
-        let entry =
-            |(name, point): (String, Vector)| format!("{} = {}", key(&name), self.point(point));
-        let points: Vec<String> = points.into_iter().map(entry).collect();
-        self.text
-            .line(&format!("points = {{ {} }}", points.join(", ")));
-        if number == GROUND {
-            return;
+        let entries = points
+            .iter()
+            .map(|(name, at)| format!("{} = {}", key(name), self.point(*at)));
+        let entries: Vec<String> = entries.collect();
+        self.text.table(&["bodies", &self.names.bodies[of]]);
+        self.text.entry("points", &entries.join(", "));
+        if of != GROUND {
+            self.masses(of);
         }
+    }
+
+    fn masses(&mut self, of: usize) {
+        let body = &self.model.bodies[of];
         if body.mass != 0.0 {
-            let center = self.point(body.pose.point(body.center));
-            self.text.pair("mass", body.mass);
-            self.text.line(&format!("center = {center}"));
+            self.text.pair("mass", number(body.mass));
+            self.text
+                .pair("center", self.point(body.pose.point(body.center)));
         }
         let inertia = body.inertia.turned(body.pose.turn);
-        if let Some(plane) = &self.plane {
-            let about = dot(plane.normal, inertia.apply(plane.normal));
+        if let Some(Plane { normal, .. }) = self.plane {
+            let about = dot(normal, inertia.apply(normal));
             if about != 0.0 {
-                self.text.pair("inertia", about);
+                self.text.pair("inertia", number(about));
             }
             return;
         }
-        let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = inertia.0;
-        let least = 1e-16
-            * [xx, yy, zz]
-                .iter()
-                .fold(0.0f64, |most, x| most.max(x.abs()));
-        let all = [xx, yy, zz, xy, xz, yz].map(|x| if x.abs() <= least { 0.0 } else { x });
-        if all.iter().any(|x| *x != 0.0) {
-            let count = if all[3..].iter().all(|x| *x == 0.0) {
-                3
-            } else {
-                6
-            };
-            let list = self.text.list(&all[..count]);
-            self.text.line(&format!("inertia = {list}"));
+        let least = 1e-16 * (0..3).map(|k| inertia.0[k][k].abs()).fold(0.0, f64::max);
+        let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = inertia.0.map(|row| clean(row, least));
+        let all = [xx, yy, zz, xy, xz, yz];
+        if all != [0.0; 6] {
+            let count = if [xy, xz, yz] == [0.0; 3] { 3 } else { 6 };
+            self.text.pair("inertia", list(&all[..count]));
         }
     }
 
     fn joints(&mut self) {
         self.text.table(&["joints"]);
-        for (number, joint) in self.model.joints.iter().enumerate() {
-            let bodies = joint.ends().map(|end| self.names.bodies[end.body].clone());
-            let name = self.names.joints[number].clone();
+        for (joint, name) in self.model.joints.iter().zip(&self.names.joints) {
+            let bodies = joint.ends().map(|end| &self.names.bodies[end.body]);
             let ends = bodies
                 .map(|body| quoted(&format!("{body}.{name}")))
                 .join(", ");
-            let [first, second] = self.ends(joint);
-            let kind = self.kind_key(joint);
-            let rest = match self.plane {
-                Some(plane) => self.planar_keys(joint, &plane, [first, second]),
-                None => self.spatial_keys(joint, [first, second]),
+            let places = self.ends(joint);
+            let rest = match &self.plane {
+                Some(plane) => self.planar_keys(joint, plane, places),
+                None => self.spatial_keys(joint, places),
             };
-            let name = key(&name);
-            self.text
-                .line(&format!("{name} = {{ {kind} = [{ends}]{rest} }}"));
+            let kind = kind_key(joint, self.plane.is_some());
+            self.text.entry(name, &format!("{kind} = [{ends}]{rest}"));
         }
         for coupling in &self.model.couplings {
             self.coupling(coupling);
         }
     }
 
-    fn kind_key(&self, joint: &Joint) -> &'static str {
+    fn planar_keys(&self, joint: &Joint, plane: &Plane, ends: [Pose; 2]) -> String {
+        let same = ends[0].turn == ends[1].turn;
+        let axes = ends.map(|end| self.direction(end.turn.column(2)));
         match joint.kind {
-            Kind::Ball | Kind::Cylinder if self.plane.is_some() => "revolute",
-            Kind::Fixed => "weld",
-            Kind::Hinge => "revolute",
-            Kind::Slide => "prismatic",
-            Kind::Cylinder => "cylindrical",
-            Kind::Screw(_) => "helical",
-            Kind::Universal => "universal",
-            Kind::Ball => "spherical",
-            Kind::Planar => "planar",
-            Kind::Distance(_) => "distance",
-        }
-    }
-
-    fn planar_keys(&mut self, joint: &Joint, plane: &Plane, [first, second]: [Pose; 2]) -> String {
-        let axes = [first, second].map(|end| end.turn.column(2));
-        match joint.kind {
-            Kind::Slide if first.turn == second.turn => {
-                format!(", axis = {}", self.direction(axes[0]))
+            Kind::Slide if same => format!(", axis = {}", axes[0]),
+            Kind::Slide => format!(", axes = [{}]", axes.join(", ")),
+            Kind::Fixed if !same => {
+                // A direction that is not along the normal shows the angle between the frames.
+                let along = dot(ends[0].turn.column(0), plane.normal).abs();
+                let k = usize::from(along > 0.8);
+                let [[a, b], [c, d]] = ends.map(|end| plane.point(end.turn.column(k)));
+                format!(", angle = {}", number(b.atan2(a) - d.atan2(c)))
             }
-            Kind::Slide => format!(
-                ", axes = [{}, {}]",
-                self.direction(axes[0]),
-                self.direction(axes[1])
-            ),
-            Kind::Fixed if first.turn != second.turn => {
-                // The direction that lies most in the plane shows the angle between the frames.
-                let flat = |k: usize| dot(first.turn.column(k), plane.normal).abs();
-                let k = if flat(0) < 0.8 { 0 } else { 1 };
-                let angle = |end: Pose| {
-                    let [x, y] = plane.point(end.turn.column(k));
-                    y.atan2(x)
-                };
-                let number = self.text.number(angle(first) - angle(second));
-                format!(", angle = {number}")
-            }
-            Kind::Distance(length) => format!(", length = {}", self.text.number(length)),
+            Kind::Distance(length) => format!(", length = {}", number(length)),
             _ => String::new(),
         }
     }
 
-    fn spatial_keys(&mut self, joint: &Joint, [first, second]: [Pose; 2]) -> String {
-        let both = |writer: &mut Self, k: usize| {
-            let [a, b] = [first, second].map(|end| writer.direction(end.turn.column(k)));
-            format!("[{a}, {b}]")
+    fn spatial_keys(&self, joint: &Joint, ends: [Pose; 2]) -> String {
+        let both = |k: usize| {
+            ends.map(|end| self.direction(end.turn.column(k)))
+                .join(", ")
         };
-        let aligned = first.turn == second.turn;
+        let same = ends[0].turn == ends[1].turn;
         let directed = match joint.kind {
             Kind::Ball | Kind::Distance(_) => String::new(),
-            Kind::Fixed if aligned => String::new(),
-            Kind::Universal => format!(", axes = {}", both(self, 2)),
-            _ if aligned => format!(", axis = {}", self.direction(second.turn.column(2))),
-            Kind::Planar => format!(", axes = {}", both(self, 2)),
-            _ => format!(", axes = {}, normals = {}", both(self, 2), both(self, 0)),
+            Kind::Fixed if same => String::new(),
+            Kind::Universal => format!(", axes = [{}]", both(2)),
+            _ if same => format!(", axis = {}", self.direction(ends[1].turn.column(2))),
+            Kind::Planar => format!(", axes = [{}]", both(2)),
+            _ => format!(", axes = [{}], normals = [{}]", both(2), both(0)),
         };
         match joint.kind {
-            Kind::Screw(pitch) => format!("{directed}, pitch = {}", self.text.number(pitch)),
-            Kind::Distance(length) => format!("{directed}, length = {}", self.text.number(length)),
+            Kind::Screw(pitch) => format!("{directed}, pitch = {}", number(pitch)),
+            Kind::Distance(length) => format!("{directed}, length = {}", number(length)),
             _ => directed,
         }
     }
@@ -272,112 +225,93 @@ impl Writer<'_> {
     fn measure(&self, joint: usize, travel: &str) -> String {
         let name = quoted(&self.names.joints[joint]);
         match (self.model.joints[joint].is_angle(), &self.plane) {
-            (true, Some(plane)) => format!("{{ angle = {} }}", self.turning_pair(joint, plane)),
-            (true, None) => format!("{{ angle = {name} }}"),
-            (false, _) => format!("{{ {travel} = {name} }}"),
+            (true, Some(plane)) => format!("angle = {}", self.turning_pair(joint, plane)),
+            (true, None) => format!("angle = {name}"),
+            (false, _) => format!("{travel} = {name}"),
         }
     }
 
     fn coordinates(&mut self) {
         self.text.table(&["actuators"]);
         let driven: Vec<usize> = self.model.drives.iter().map(|drive| drive.joint).collect();
+        let travel = if self.plane.is_some() {
+            "length"
+        } else {
+            "travel"
+        };
         for joint in &driven {
-            let travel = if self.plane.is_some() {
-                "length"
-            } else {
-                "travel"
-            };
             let measure = self.measure(*joint, travel);
-            self.text
-                .line(&format!("{} = {measure}", self.names.coordinates[*joint]));
+            self.text.entry(&self.names.coordinates[*joint], &measure);
         }
-        let named = (0..self.model.joints.len())
-            .filter(|joint| !driven.contains(joint) && self.needs_coordinate(*joint));
-        let named: Vec<usize> = named.collect();
+        let others = (0..self.model.joints.len()).filter(|joint| !driven.contains(joint));
+        let named: Vec<usize> = others
+            .filter(|joint| self.needs_coordinate(*joint))
+            .collect();
         if !named.is_empty() {
             self.text.table(&["coordinates"]);
         }
         for joint in named {
             let measure = self.measure(joint, "travel");
-            self.text
-                .line(&format!("{} = {measure}", self.names.coordinates[joint]));
+            self.text.entry(&self.names.coordinates[joint], &measure);
         }
     }
 
     fn assembly(&mut self) {
         self.text.table(&["assembly"]);
-        let mut zero: Vec<String> = Vec::new();
         for drive in &self.model.drives {
             let drawn = self.model.joints[drive.joint].drawn;
             let name = &self.names.coordinates[drive.joint];
             if drawn != 0.0 {
-                self.text.line(&comment(&format!(
-                    "{name} is the file's coordinate minus {drawn}."
-                )));
+                let text = format!("{name} is the file's coordinate minus {drawn}.");
+                self.text.line(&comment(&text));
             }
-            zero.push(name.clone());
+            self.text.pair(name, 0);
         }
-        if self.plane.is_some() {
-            let bodies = (1..self.model.bodies.len()).filter(|body| self.has(*body));
-            zero.extend(bodies.map(|body| key(&self.names.bodies[body])));
-            let joints = self.model.joints.iter().zip(&self.names.joints);
-            let slides = joints.filter(|(joint, name)| {
-                joint.kind == Kind::Slide && !self.names.bodies.contains(name)
-            });
-            zero.extend(slides.map(|(_, name)| key(name)));
-        }
-        for name in zero {
-            self.text.line(&format!("{name} = 0"));
-        }
+        // Bodies and slides of a planar scene need guesses, also where they are drawn.
+        let bodies = (1..self.model.bodies.len()).filter(|body| self.has(*body));
+        let bodies = bodies.map(|body| &self.names.bodies[body]);
+        let joints = self.model.joints.iter().zip(&self.names.joints);
+        let slides = joints
+            .filter(|(joint, _)| joint.kind == Kind::Slide)
+            .map(|(_, name)| name);
+        let slides = slides.filter(|name| !self.names.bodies.contains(name));
+        let guesses = bodies.chain(slides).filter(|_| self.plane.is_some());
+        let guesses: Vec<&String> = guesses.collect();
+        guesses.iter().for_each(|name| self.text.pair(name, 0));
     }
 
     fn motion(&mut self) {
-        let drives = &self.model.drives;
-        let laws: Option<Vec<(String, f64)>> = drives
-            .iter()
-            .map(|drive| {
-                let of = &self.model.joints[drive.joint];
-                match &drive.motion {
-                    Motion::Unknown => None,
-                    Motion::Speed(speed) if *speed != 0.0 => {
-                        Some((format!("speed = {speed}"), TAU / speed.abs()))
-                    }
-                    Motion::Speed(_) => Some(("expression = \"0\"".to_owned(), 1.0)),
-                    Motion::Expression(law, duration) => Some((
-                        format!(
-                            "expression = {}",
-                            quoted(&format!("({law}) - ({})", of.drawn))
-                        ),
-                        *duration,
-                    )),
-                }
-            })
-            .collect();
+        let law = |drive: &Drive| match &drive.motion {
+            Motion::Unknown => None,
+            Motion::Speed(0.0) => Some(("expression = \"0\"".to_owned(), 1.0)),
+            Motion::Speed(speed) => {
+                Some((format!("speed = {}", number(*speed)), TAU / speed.abs()))
+            }
+            Motion::Expression(law, duration) => {
+                let law = format!("({law}) - ({})", self.model.joints[drive.joint].drawn);
+                Some((format!("expression = {}", quoted(&law)), *duration))
+            }
+        };
+        let drives = self.model.drives.iter();
+        let laws: Option<Vec<(String, f64)>> = drives.clone().map(law).collect();
+        let names = drives.map(|drive| self.names.coordinates[drive.joint].as_str());
+        let names: Vec<&str> = names.collect();
         if let Some(laws) = laws {
-            let duration = laws
+            let shortest = laws
                 .iter()
                 .map(|(_, duration)| *duration)
                 .fold(f64::MAX, f64::min);
             self.text.table(&["prescribed"]);
-            self.text.pair("duration", duration);
-            for (drive, (law, _)) in drives.iter().zip(laws) {
-                self.text.line(&format!(
-                    "{} = {{ {law} }}",
-                    self.names.coordinates[drive.joint]
-                ));
+            self.text.pair("duration", number(shortest));
+            for (name, (law, _)) in names.iter().zip(laws) {
+                self.text.entry(name, &law);
             }
-        } else if let [_] = drives[..] {
+        } else if names.len() == 1 {
             self.text.table(&["coordinate-sweep"]);
-            self.text.line("speed = 1");
+            self.text.pair("speed", 1);
         } else {
-            let names: Vec<_> = drives
-                .iter()
-                .map(|drive| self.names.coordinates[drive.joint].as_str())
-                .collect();
-            let text = format!(
-                "kinetostatics needs [prescribed] with the duration and a law of each of {}",
-                names.join(", ")
-            );
+            let names = names.join(", ");
+            let text = format!("kinetostatics needs [prescribed]: a duration and laws of {names}");
             self.text.line(&comment(&text));
         }
     }
@@ -385,7 +319,26 @@ impl Writer<'_> {
     fn note(&self, joint: usize, effect: Effect, text: &str) {
         let of = &self.model.joints[joint];
         self.model
-            .findings
-            .add(&of.place, effect, format!("joint {} {text}", of.name));
+            .note(&of.place, effect, format!("joint {} {text}", of.name));
     }
+}
+
+fn kind_key(joint: &Joint, in_plane: bool) -> &'static str {
+    match joint.kind {
+        Kind::Ball | Kind::Cylinder if in_plane => "revolute",
+        Kind::Fixed => "weld",
+        Kind::Hinge => "revolute",
+        Kind::Slide => "prismatic",
+        Kind::Cylinder => "cylindrical",
+        Kind::Screw(_) => "helical",
+        Kind::Universal => "universal",
+        Kind::Ball => "spherical",
+        Kind::Planar => "planar",
+        Kind::Distance(_) => "distance",
+    }
+}
+
+/// Zero in place of what is below `least`.
+fn clean(vector: Vector, least: f64) -> Vector {
+    vector.map(|x| if x.abs() < least { 0.0 } else { x })
 }
