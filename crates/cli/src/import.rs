@@ -1,6 +1,5 @@
 //! `dwell import`: writes a scene from a model of another program.
 
-use crate::options::{Options, STANDARD_INPUT};
 use crate::values::{Choices, choice, parse_length};
 use crate::{print, print_note};
 use clap::Args;
@@ -71,7 +70,8 @@ pub(crate) struct ImportArgs {
 }
 
 /// Writes the scene, and prints what became of the parts of the model.
-pub(crate) fn write(arguments: &ImportArgs, options: &Options) -> Result<(), Report> {
+/// `out` is the scene file, a folder for it, or `-`; `name` replaces its name in a folder.
+pub(crate) fn write(arguments: &ImportArgs, out: &Path, name: Option<&str>) -> Result<(), Report> {
     let import =
         dwell_door::import(&arguments.model, &import_options(arguments)?).map_err(report)?;
     for finding in &import.findings {
@@ -92,10 +92,10 @@ pub(crate) fn write(arguments: &ImportArgs, options: &Options) -> Result<(), Rep
     // A scene that cannot be read is no result.
     let scene = Scene::parse("the imported scene", &import.scene).map_err(Report::new)?;
     crate::print_warnings(&scene);
-    if options.out == Path::new(STANDARD_INPUT) {
+    if out == Path::new("-") {
         return print(&import.scene);
     }
-    let path = scene_path(arguments, options);
+    let path = scene_path(&arguments.model, out, name);
     save(&path, &import.scene)?;
     let limits = import
         .findings
@@ -132,25 +132,14 @@ fn import_options(arguments: &ImportArgs) -> Result<ImportOptions, Report> {
 }
 
 /// `--out SCENE.toml`, or the model's name in the folder of `--out`.
-fn scene_path(arguments: &ImportArgs, options: &Options) -> PathBuf {
-    if options
-        .out
-        .extension()
-        .is_some_and(|ending| ending == "toml")
-    {
-        return options.out.clone();
+fn scene_path(model: &Path, out: &Path, name: Option<&str>) -> PathBuf {
+    if out.extension().is_some_and(|ending| ending == "toml") {
+        return out.to_owned();
     }
-    let of_model = || {
-        arguments
-            .model
-            .file_stem()
-            .map_or("model".into(), |stem| stem.to_string_lossy())
-    };
-    let name = options
-        .name
-        .clone()
-        .unwrap_or_else(|| of_model().into_owned());
-    options.out.join(name).with_added_extension("toml")
+    let stem = model
+        .file_stem()
+        .map_or("model".into(), |stem| stem.to_string_lossy());
+    out.join(name.unwrap_or(&stem)).with_added_extension("toml")
 }
 
 /// Only an import of the same model is replaced.

@@ -66,7 +66,10 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
     let mut times = Times::new();
     match command {
         Command::Schema => return print(&dwell_scene::schema()).map(|()| true),
-        Command::Import(arguments) => return import::write(arguments, options).map(|()| true),
+        Command::Import(arguments) => {
+            let written = import::write(arguments, &options.out, options.name.as_deref());
+            return written.map(|()| true);
+        }
         Command::Init { scene } => return init::write(scene).map(|()| true),
         _ => {}
     }

@@ -79,7 +79,7 @@ impl Rows<'_> {
                 rows.push(self.row(joint, point, axis, turn));
             }
             Kind::Universal => {
-                rows.push(self.row(joint, point, [0.0; 3], cross(first.turn.column(2), axis)))
+                rows.push(self.row(joint, point, [0.0; 3], cross(first.turn.column(2), axis)));
             }
             Kind::Distance(_) => {
                 let along = unit(sub(second.origin, first.origin)).unwrap_or(axis);

@@ -66,46 +66,31 @@ pub(crate) fn read(file: &TextFile, findings: Findings) -> Result<Read, DoorErro
         );
     }
     let fields: Vec<&str> = query.split('.').collect();
-    let [settings, decimals, integers, enums, rest @ ..] = fields.as_slice() else {
+    let [settings, decimals, integers, enums, lists @ ..] = fields.as_slice() else {
         return Err(reader.error("the link has too few fields"));
     };
-    let flags = reader.whole(settings)?;
+    let first = |text: &str, k: usize| {
+        text.split(',')
+            .nth(k)
+            .map_or(Ok(0.0), |text| reader.decimal(text))
+    };
+    // Revolutions a minute, and for a slide its unit of length a second.
+    let (turns, travel) = (first(integers, 0)? * 1000.0, first(decimals, 1)?);
     let units = reader.units(enums)?;
-    let mut lists = rest.split(|field| field.is_empty());
-    let [joints, links, forces] = [(); 3].map(|()| lists.next().unwrap_or_default());
-    let mut pins = joints
-        .iter()
-        .map(|joint| reader.pin(joint, &units))
-        .collect::<Result<Vec<_>, _>>()?;
-    for link in links {
-        reader.link(link, &units, &mut pins)?;
-    }
-    if flags & NO_GRAVITY != 0 {
-        reader.model.gravity = [0.0; 3];
-    } else {
-        reader.model.gravity = [0.0, -9.81, 0.0];
-    }
-    for force in forces {
-        reader.force(force, &units)?;
-    }
-    let turn = if flags & CLOCKWISE != 0 { -1.0 } else { 1.0 };
-    let speed = reader.whole(integers.split(',').next().unwrap_or_default())? as f64;
-    let linear = decimals
-        .split(',')
-        .nth(1)
-        .map(|text| reader.decimal(text))
-        .transpose()?;
-    let linear = linear.filter(|speed| *speed != 0.0).unwrap_or(1.0) * units.length;
-    for pin in &pins {
-        reader.joints(pin, [turn * speed * TAU / 60.0, turn * linear]);
-    }
+    let travel = if travel == 0.0 { 1.0 } else { travel } * units.length;
+    let links = reader.lists(
+        reader.whole(settings)?,
+        [turns * TAU / 60.0, travel],
+        &units,
+        lists,
+    )?;
     reader.coverage.all = query
         .split(['.', ','])
         .filter(|token| !token.is_empty())
         .count();
     // Colours, the scale of the picture, the time step, the active object and the check digit.
-    reader.coverage.named =
-        links.len() + decimals.split(',').take(1).count() + integers.split(',').skip(1).count() + 1;
+    let rest = integers.split(',').count();
+    reader.coverage.named = links + 1 + rest;
     reader.coverage.read = reader.coverage.all - reader.coverage.named;
     let text = "colours, scale, time step, grid and active object: left out, nothing lost";
     reader
@@ -121,6 +106,32 @@ pub(crate) fn read(file: &TextFile, findings: Findings) -> Result<Read, DoorErro
 }
 
 impl Reader<'_> {
+    /// Reads joints, links and forces, and returns how many links there are.
+    fn lists(
+        &mut self,
+        flags: u64,
+        speeds: [f64; 2],
+        units: &Units,
+        lists: &[&str],
+    ) -> Result<usize, DoorError> {
+        let mut lists = lists.split(|field| field.is_empty());
+        let [joints, links, forces] = [(); 3].map(|()| lists.next().unwrap_or_default());
+        let pins = joints.iter().map(|joint| self.pin(joint, units));
+        let mut pins = pins.collect::<Result<Vec<_>, _>>()?;
+        for link in links {
+            self.link(link, units, &mut pins)?;
+        }
+        let gravity = if flags & NO_GRAVITY == 0 { -9.81 } else { 0.0 };
+        self.model.gravity = [0.0, gravity, 0.0];
+        for force in forces {
+            self.force(force, units)?;
+        }
+        let sign = if flags & CLOCKWISE == 0 { 1.0 } else { -1.0 };
+        pins.iter()
+            .for_each(|pin| self.joints(pin, speeds.map(|speed| sign * speed)));
+        Ok(links.len())
+    }
+
     fn error(&self, message: &str) -> DoorError {
         self.file
             .error((0, self.file.text.trim_end().len()), message.to_owned(), "")

@@ -62,7 +62,7 @@ impl Writer<'_> {
 
     /// A direction of a joint.
     fn direction(&self, axis: Vector) -> String {
-        self.vector(clean(axis, 1e-16))
+        self.vector(clean(axis, 1e-15))
     }
 
     /// Where the ends of a joint are drawn: in one place, unless the loop is open there. The coordinate is zero as drawn.

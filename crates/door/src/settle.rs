@@ -152,8 +152,8 @@ pub(crate) fn span(model: &mut Model) {
 fn check_floating(model: &mut Model) -> Result<(), DoorError> {
     let component = components(model, &model.joints);
     let mut floating: Vec<String> = Vec::new();
-    for body in 1..model.bodies.len() {
-        if component[body] != body || model.left_out.contains(&body) {
+    for (body, root) in component.into_iter().enumerate().skip(1) {
+        if root != body || model.left_out.contains(&body) {
             continue;
         }
         let name = model.bodies[body].name.clone();
@@ -270,6 +270,24 @@ fn merge_fixed(model: &mut Model) {
             .map(|(name, point)| (name, pose.point(point)));
         root.points.extend(points);
     }
+    move_to_roots(model, &component, &places);
+    // Drives and couplings follow the joints that are left.
+    let joints = 0..model.joints.len();
+    let kept: Vec<usize> = joints.filter(|k| !is_merged(&model.joints[*k])).collect();
+    let number = |joint: usize| kept.iter().position(|k| *k == joint);
+    model
+        .drives
+        .retain_mut(|one| number(one.joint).map(|k| one.joint = k).is_some());
+    model.couplings.retain_mut(|one| {
+        let both = number(one.dependent).zip(number(one.independent));
+        both.map(|both| (one.dependent, one.independent) = both)
+            .is_some()
+    });
+    model.joints.retain(|joint| !is_merged(joint));
+}
+
+/// Joints and loads of merged bodies are those of the body that is left, in its frame.
+fn move_to_roots(model: &mut Model, component: &[usize], places: &[Pose]) {
     let moved = |(body, point): (usize, Vector)| (component[body], places[body].point(point));
     for joint in &mut model.joints {
         for end in [&mut joint.first, &mut joint.second] {
@@ -291,19 +309,6 @@ fn merge_fixed(model: &mut Model) {
             }
         }
     }
-    // Drives and couplings follow the joints that are left.
-    let joints = 0..model.joints.len();
-    let kept: Vec<usize> = joints.filter(|k| !is_merged(&model.joints[*k])).collect();
-    let number = |joint: usize| kept.iter().position(|k| *k == joint);
-    model
-        .drives
-        .retain_mut(|one| number(one.joint).map(|k| one.joint = k).is_some());
-    model.couplings.retain_mut(|one| {
-        let both = number(one.dependent).zip(number(one.independent));
-        both.map(|both| (one.dependent, one.independent) = both)
-            .is_some()
-    });
-    model.joints.retain(|joint| !is_merged(joint));
 }
 
 /// The armature of a hinge of the ground is inertia of its body about the axis; elsewhere it has no counterpart.

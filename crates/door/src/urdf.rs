@@ -215,7 +215,12 @@ fn axis(element: Element<'_>) -> Result<Vector, DoorError> {
     };
     // In a Gazebo joint the axis is the text of a child.
     let vector = axis.child_vector("xyz")?.or(axis.vector("xyz")?);
-    axis.unit(vector.unwrap_or([1.0, 0.0, 0.0]))
+    let vector = vector.unwrap_or([1.0, 0.0, 0.0]);
+    // Fixed joints and balls often have an axis of zeros.
+    match kind(&element)? {
+        Kind::Fixed | Kind::Ball if vector == [0.0; 3] => Ok([1.0, 0.0, 0.0]),
+        _ => axis.unit(vector),
+    }
 }
 
 /// The kind of a joint, by the names of all dialects.
@@ -235,9 +240,12 @@ fn kind(element: &Element<'_>) -> Result<Kind, DoorError> {
 
 fn along(element: Element<'_>) -> Result<Along, DoorError> {
     let mut along = Along::default();
-    if let Some(dynamics) = element.child("dynamics") {
-        along.damping = dynamics.value("damping", 0.0)?;
-        along.friction = dynamics.value("friction", 0.0)?;
+    for dynamics in ["dynamics", "joint_properties"]
+        .iter()
+        .filter_map(|tag| element.child(tag))
+    {
+        along.damping = dynamics.value("damping", along.damping)?;
+        along.friction = dynamics.value("friction", along.friction)?;
     }
     if let Some(limit) = element.child("limit") {
         let given = limit

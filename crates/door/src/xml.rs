@@ -186,15 +186,20 @@ impl<'t> Xml<'t> {
                     &mut idle,
                 );
             }
-            for (what, (line, count)) in idle {
+            for (what, (line, effect, count)) in idle {
                 let times = if count > 1 {
                     format!(" ({count} times)")
                 } else {
                     String::new()
                 };
-                let text = format!("{what}{times}: left out, nothing lost");
+                let means = if effect == Effect::Nothing {
+                    "left out, nothing lost"
+                } else {
+                    AT_LIMITS
+                };
+                let place = self.files[source].place(line);
                 self.findings
-                    .add(&self.files[source].place(line), Effect::Nothing, text);
+                    .add(&place, effect, format!("{what}{times}: {means}"));
             }
         }
         coverage
@@ -231,8 +236,8 @@ impl<'t> Xml<'t> {
     }
 }
 
-/// Parts without effect share a finding: the line of the first, and how many there are.
-type Idle = BTreeMap<String, (usize, usize)>;
+/// Parts without effect, or only at limits, share a finding: the line of the first, and how many there are.
+type Idle = BTreeMap<String, (usize, Effect, usize)>;
 
 /// What becomes of parts that act only at a limit, and of parts that change the motion.
 pub(crate) const AT_LIMITS: &str = "left out (acts only at a limit)";
@@ -280,21 +285,18 @@ impl<'d> Element<'d> {
     }
 
     fn left_out(&self, effect: Effect, attributes: &str, idle: &mut Idle) {
-        let (tag, label) = (self.tag(), self.label());
-        match effect {
-            Effect::Nothing => {
-                idle.entry(format!("{tag}{attributes}"))
-                    .or_insert((self.line(), 0))
-                    .1 += 1;
-            }
-            Effect::AtLimits => self.note(effect, format!("{label}{attributes}: {AT_LIMITS}")),
+        let what = match effect {
             Effect::Kept | Effect::Changes => {
-                self.note(
-                    effect,
-                    format!("{label}{attributes}: left out (may change the motion)"),
+                let text = format!(
+                    "{}{attributes}: left out (may change the motion)",
+                    self.label()
                 );
+                return self.note(effect, text);
             }
-        }
+            _ => format!("{}{attributes}", self.tag()),
+        };
+        let (_, _, count) = idle.entry(what).or_insert((self.line(), effect, 0));
+        *count += 1;
     }
 
     /// Its child elements; includes are replaced by what they include. It counts as read.

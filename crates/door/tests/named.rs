@@ -148,8 +148,8 @@ fn mutated(text: &str, changes: &[(prop::sample::Index, u8)]) -> String {
         match kind % 8 {
             0 => drop(text.drain(at..(at + usize::from(*kind) / 32).min(text.len()))),
             1 => drop(text.drain(line..end)),
-            2 => text.insert_str(line, &text[line..end].to_owned()),
-            3 => text.insert_str(value, "-"),
+            2 => text = [&text[..end], &text[line..]].concat(),
+            3 => text.insert(value, '-'),
             4 => text.replace_range(value..close, "1e308 1e308 1e308"),
             5 => text.replace_range(value..close, "0"),
             6 => text.replace_range(value..close, ""),

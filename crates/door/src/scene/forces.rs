@@ -104,7 +104,7 @@ impl Writer<'_> {
         for load in &self.model.loads {
             match load {
                 Load::Spring { name, ends, .. } => {
-                    self.spring(load, &allowed(name), ends.map(|(body, _)| body))
+                    self.spring(load, &allowed(name), ends.map(|(body, _)| body));
                 }
                 Load::Force {
                     name,

@@ -41,7 +41,7 @@ impl Text {
 pub(super) fn number(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),
-        value if !(value.abs() <= LARGEST) => WRONG.to_string(),
+        value if value.is_nan() || value.abs() > LARGEST => WRONG.to_string(),
         value if (1e-5..1e9).contains(&value.abs()) => format!("{value}"),
         value => format!("{value:e}"),
     }
