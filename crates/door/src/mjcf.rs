@@ -258,16 +258,17 @@ impl<'d> Reader<'d, '_> {
         let item = self.defaults.item(element, None)?;
         let _ = element.attribute("name");
         let name = element.attribute("joint");
+        let joint = name
+            .map(|name| self.joint_named(&element, name))
+            .transpose()?;
         let drives = ["motor", "position", "velocity", "general", "intvelocity"].contains(&tag);
-        let Some(name) = name.filter(|_| drives) else {
+        let joint = joint.filter(|joint| drives && self.model.joints[*joint].is_driveable());
+        let Some((name, joint)) = name.zip(joint) else {
             let of = name.map_or(String::new(), |joint| format!(" of {joint}"));
-            element.leave(
-                Effect::Changes,
-                format!("{tag} actuator{of}: {}", crate::xml::LOST),
-            );
+            let text = format!("{tag} actuator{of}: {}", crate::xml::LOST);
+            element.leave(Effect::Changes, text);
             return Ok(());
         };
-        let joint = self.joint_named(&element, name)?;
         let gear = item.numbers("gear")?.and_then(|gear| gear.first().copied());
         let gear = gear.unwrap_or(1.0);
         let gains = match tag {
@@ -275,9 +276,6 @@ impl<'d> Reader<'d, '_> {
             "velocity" => Some([0.0, item.value("kv", 1.0)?]),
             _ => None,
         };
-        if !self.model.joints[joint].is_driveable() {
-            return Err(element.error(format!("joint `{name}` has no single coordinate to drive")));
-        }
         element.kept(match tag {
             "motor" => {
                 format!("motor of {name}: drives it, with {gear} N m or N for a control of 1")

@@ -103,18 +103,11 @@ impl Rows<'_> {
 
 fn rank(mut rows: Vec<Vec<f64>>) -> usize {
     let mut rank = 0;
-    while rank < rows.len() {
-        let entries = |k: usize| {
-            rows[k]
-                .iter()
-                .enumerate()
-                .map(move |(column, x)| (x.abs(), k, column))
-        };
-        let pivot = (rank..rows.len())
-            .flat_map(entries)
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, row, column)) = pivot.filter(|(size, ..)| *size > ZERO) else {
-            break;
+    for column in 0..rows.first().map_or(0, Vec::len) {
+        let size = |row: &usize| rows[*row][column].abs();
+        let pivot = (rank..rows.len()).max_by(|a, b| size(a).total_cmp(&size(b)));
+        let Some(row) = pivot.filter(|row| size(row) > ZERO) else {
+            continue;
         };
         rows.swap(rank, row);
         let (above, below) = rows.split_at_mut(rank + 1);
@@ -124,6 +117,7 @@ fn rank(mut rows: Vec<Vec<f64>>) -> usize {
             other
                 .iter_mut()
                 .zip(pivot)
+                .skip(column)
                 .for_each(|(a, b)| *a -= factor * b);
         }
         rank += 1;

@@ -50,11 +50,16 @@ pub(crate) fn settle(read: Read, options: &ImportOptions) -> Result<Model, DoorE
     select_drives(&mut model, options)?;
     merge_fixed(&mut model);
     keep_armatures(&mut model);
-    if model.drives.is_empty() {
-        return Err(DoorError::NoDrive {
-            needed: freedoms(&model),
-            joints: driveable_names(&model).map(str::to_owned).collect(),
-        });
+    let (needed, drives) = (freedoms(&model), model.drives.len());
+    if drives == 0 {
+        let joints = driveable_names(&model).map(str::to_owned).collect();
+        return Err(DoorError::NoDrive { needed, joints });
+    }
+    if drives < needed {
+        let all = driveable_names(&model).collect::<Vec<_>>().join(", ");
+        let text = format!("{needed} degrees of freedom and {drives} drives: add --drive of {all}");
+        let place = model.bodies[GROUND].place.clone();
+        model.note(&place, Effect::Kept, text);
     }
     Ok(model)
 }

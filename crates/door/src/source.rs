@@ -130,7 +130,7 @@ fn with_includes(
             };
             let inside = Path::new(file)
                 .components()
-                .all(|part| matches!(part, Component::Normal(_)));
+                .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
             if !inside || wanted.len() + files.len() > 200 {
                 return Err(refuse(format!(
                     "`{file}` is not read: it is not below the folder of the model"

@@ -36,7 +36,7 @@ fn every_command_accepts_an_imported_scene() {
     fs::write(dir.0.join("scene.toml"), "title = \"Mine\"").unwrap();
     let kept = dir.run(&["import", &model("m1-fourbar.xml"), "--out", "scene.toml"]);
     assert_eq!(kept.status, Some(2));
-    assert!(kept.err.contains("is not replaced"), "{}", kept.err);
+    assert!(kept.err.contains("exists already"), "{}", kept.err);
 }
 
 #[test]

@@ -94,8 +94,9 @@ impl Writer<'_> {
 
     pub(super) fn loads(&mut self) {
         self.text.table(&["loads"]);
-        let gravity = self.model.gravity;
-        if length(gravity) > 0.0 {
+        let gravity = self.in_plane(self.model.gravity);
+        // What is left of gravity along the normal is rounding.
+        if length(gravity) > 1e-14 * length(self.model.gravity) {
             self.load("weight", &format!("gravity = {}", self.vector(gravity)));
         }
         for joint in 0..self.model.joints.len() {
@@ -118,6 +119,12 @@ impl Writer<'_> {
         }
         self.servos();
         self.stops();
+    }
+
+    /// The part of a vector in the plane of a planar scene.
+    fn in_plane(&self, vector: Vector) -> Vector {
+        let normal = self.plane.map_or([0.0; 3], |plane| plane.normal);
+        sub(vector, scaled(normal, dot(vector, normal)))
     }
 
     /// A load with a name that no other has.
@@ -205,10 +212,7 @@ impl Writer<'_> {
     fn force(&mut self, name: &str, body: usize, force: Vector, turns: bool) {
         let turned = self.model.bodies[body].pose.turn.apply(force);
         let force = if turns { turned } else { force };
-        let flat = self
-            .plane
-            .map(|plane| sub(force, scaled(plane.normal, dot(force, plane.normal))));
-        let size = length(flat.unwrap_or(force));
+        let size = length(self.in_plane(force));
         let point = quoted(&format!("{}.at_{name}", self.names.bodies[body]));
         let frame = if turns { ", frame = \"body\"" } else { "" };
         let (direction, size_text) = (self.vector(force), number(size));
