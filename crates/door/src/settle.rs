@@ -57,7 +57,8 @@ pub(crate) fn settle(read: Read, options: &ImportOptions) -> Result<Model, DoorE
     }
     if drives < needed {
         let all = driveable_names(&model).collect::<Vec<_>>().join(", ");
-        let text = format!("{needed} degrees of freedom and {drives} drives: add --drive of {all}");
+        let given = format!("{needed} degrees of freedom, driven {drives}");
+        let text = format!("{given}: give --drive for {needed} of {all}");
         let place = model.bodies[GROUND].place.clone();
         model.note(&place, Effect::Kept, text);
     }
