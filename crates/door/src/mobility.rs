@@ -68,11 +68,12 @@ impl Rows<'_> {
             Kind::Planar => (&all[2..], &all[..2]),
             Kind::Distance(_) => (&[], &[]),
         };
+        let still = [0.0; 3];
         let mut rows: Vec<_> = points
             .iter()
-            .map(|u| self.row(joint, point, *u, [0.0; 3]))
+            .map(|u| self.row(joint, point, *u, still))
             .collect();
-        rows.extend(turns.iter().map(|w| self.row(joint, point, [0.0; 3], *w)));
+        rows.extend(turns.iter().map(|w| self.row(joint, point, still, *w)));
         match joint.kind {
             Kind::Screw(pitch) => {
                 let turn = scaled(axis, -pitch / std::f64::consts::TAU);

@@ -3,7 +3,7 @@
 use crate::error::DoorError;
 use crate::finding::{Effect, Findings, Place};
 use crate::model::{Body, End, GROUND, Joint, Kind, Load, Model, Motion};
-use crate::pose::{Matrix, Pose, sub, unit};
+use crate::pose::{Matrix, Pose, Vector, sub, unit};
 use crate::settle::{Read, span};
 use crate::xml::{Coverage, TextFile};
 use std::f64::consts::TAU;
@@ -20,6 +20,8 @@ const WELDED: u64 = 8;
 /// Bits of a force.
 const LOCAL: u64 = 1;
 const OUTWARD: u64 = 2;
+/// In N.
+const POUND_FORCE: f64 = 4.448_221_615_260_5;
 
 struct Reader<'t> {
     file: &'t TextFile,
@@ -40,7 +42,7 @@ struct Pin {
     flags: u64,
     id: String,
     name: String,
-    at: [f64; 3],
+    at: Vector,
     angle: f64,
     bodies: Vec<usize>,
 }
@@ -55,48 +57,38 @@ pub(crate) fn read(file: &TextFile, findings: Findings) -> Result<Read, DoorErro
         place,
         coverage: Coverage::default(),
     };
-    let last = query
-        .chars()
-        .next_back()
-        .map(|c| c.to_string())
-        .unwrap_or_default();
-    if reader.whole(&last)? != (query.len().saturating_sub(1) % 62) as u64 {
-        return Err(
-            reader.error("the check digit at the end of the link is wrong: a part is missing")
-        );
+    let digit = DIGITS.chars().nth(query.len().saturating_sub(1) % 62);
+    if query.chars().next_back() != digit {
+        return Err(reader.error("the check digit of the link is wrong: a part is missing"));
     }
     let fields: Vec<&str> = query.split('.').collect();
     let [settings, decimals, integers, enums, lists @ ..] = fields.as_slice() else {
         return Err(reader.error("the link has too few fields"));
     };
-    let first = |text: &str, k: usize| {
-        text.split(',')
-            .nth(k)
-            .map_or(Ok(0.0), |text| reader.decimal(text))
-    };
     // Revolutions a minute, and for a slide its unit of length a second.
-    let (turns, travel) = (first(integers, 0)? * 1000.0, first(decimals, 1)?);
+    let turns =
+        reader.decimal(integers.split(',').next().unwrap_or_default())? * 1000.0 * TAU / 60.0;
+    let travel = decimals
+        .split(',')
+        .nth(1)
+        .map_or(Ok(1.0), |text| reader.decimal(text))?;
     let units = reader.units(enums)?;
-    let travel = if travel == 0.0 { 1.0 } else { travel } * units.length;
-    let links = reader.lists(
-        reader.whole(settings)?,
-        [turns * TAU / 60.0, travel],
-        &units,
-        lists,
-    )?;
-    reader.coverage.all = query
-        .split(['.', ','])
-        .filter(|token| !token.is_empty())
-        .count();
+    let speeds = [
+        turns,
+        if travel == 0.0 { 1.0 } else { travel } * units.length,
+    ];
+    let links = reader.lists(reader.whole(settings)?, speeds, &units, lists)?;
+    let tokens = query.split(['.', ',']).filter(|token| !token.is_empty());
     // Colours, the scale of the picture, the time step, the active object and the check digit.
-    let rest = integers.split(',').count();
-    reader.coverage.named = links + 1 + rest;
-    reader.coverage.read = reader.coverage.all - reader.coverage.named;
+    let named = links + 1 + integers.split(',').count();
+    let read = tokens.count().saturating_sub(named);
+    reader.coverage = Coverage {
+        all: read + named,
+        read,
+        named,
+    };
     let text = "colours, scale, time step, grid and active object: left out, nothing lost";
-    reader
-        .model
-        .findings
-        .add(&reader.place, Effect::Nothing, text);
+    reader.model.note(&reader.place, Effect::Nothing, text);
     span(&mut reader.model);
     Ok(Read {
         model: reader.model,
@@ -127,14 +119,14 @@ impl Reader<'_> {
             self.force(force, units)?;
         }
         let sign = if flags & CLOCKWISE == 0 { 1.0 } else { -1.0 };
-        pins.iter()
-            .for_each(|pin| self.joints(pin, speeds.map(|speed| sign * speed)));
+        let speeds = speeds.map(|speed| sign * speed);
+        pins.iter().for_each(|pin| self.joints(pin, speeds));
         Ok(links.len())
     }
 
     fn error(&self, message: &str) -> DoorError {
-        self.file
-            .error((0, self.file.text.trim_end().len()), message.to_owned(), "")
+        let span = (0, self.file.text.trim_end().len());
+        self.file.error(span, message.to_owned(), "")
     }
 
     /// A whole number of 0 or more.
@@ -163,14 +155,10 @@ impl Reader<'_> {
             2 => (1.0, 1.0),
             _ => return Err(self.error("the link has an unknown unit of length")),
         };
-        let force = if digit(2)? == 0 {
-            4.448_221_615_260_5
-        } else {
-            1.0
-        };
+        let force = if digit(2)? == 0 { POUND_FORCE } else { 1.0 };
         if length != 1.0 {
             let text = "masses are read in kg or lb, moments of inertia in kg cm2 or lb in2";
-            self.model.findings.add(&self.place, Effect::Kept, text);
+            self.model.note(&self.place, Effect::Kept, text);
         }
         Ok(Units {
             length,
@@ -179,17 +167,20 @@ impl Reader<'_> {
         })
     }
 
+    fn point(&self, x: &str, y: &str, units: &Units) -> Result<Vector, DoorError> {
+        let [x, y] = [self.decimal(x)?, self.decimal(y)?];
+        Ok([x * units.length, y * units.length, 0.0])
+    }
+
     fn fields<'f, const N: usize>(
         &self,
         what: &str,
         text: &'f str,
     ) -> Result<([&'f str; N], Vec<&'f str>), DoorError> {
         let all: Vec<&str> = text.split(',').collect();
-        let first = all
-            .get(..N)
-            .and_then(|first| <[&str; N]>::try_from(first).ok());
-        let first =
-            first.ok_or_else(|| self.error(&format!("the {what} `{text}` has too few fields")))?;
+        let first = all.get(..N).and_then(|first| first.try_into().ok());
+        let few = || self.error(&format!("the {what} `{text}` has too few fields"));
+        let first = first.ok_or_else(few)?;
         Ok((first, all[N..].to_vec()))
     }
 
@@ -197,21 +188,14 @@ impl Reader<'_> {
         let ([id, name, x, y, angle], _) = self.fields("joint", text)?;
         let (flags, id) = split_first(id);
         let flags = self.whole(flags)?;
+        let grounded = (flags & GROUNDED != 0).then_some(GROUND);
         Ok(Pin {
             flags,
             id: id.to_owned(),
             name: if name.is_empty() { id } else { name }.to_owned(),
-            at: [
-                self.decimal(x)? * units.length,
-                self.decimal(y)? * units.length,
-                0.0,
-            ],
+            at: self.point(x, y, units)?,
             angle: self.decimal(angle)?,
-            bodies: if flags & GROUNDED != 0 {
-                vec![GROUND]
-            } else {
-                Vec::new()
-            },
+            bodies: grounded.into_iter().collect(),
         })
     }
 
@@ -221,7 +205,7 @@ impl Reader<'_> {
         let (_kind, id) = split_first(kind_and_id);
         if root != "Y" {
             let text = format!("link {id}: a part of a compound link, which has the mass");
-            self.model.findings.add(&self.place, Effect::Kept, text);
+            self.model.note(&self.place, Effect::Kept, text);
             return Ok(());
         }
         let number = self.model.bodies.len();
@@ -232,25 +216,19 @@ impl Reader<'_> {
         if mass < 0.0 {
             return Err(self.error(&format!("the mass of link {name} is negative")));
         }
-        let center = [
-            self.decimal(x)? * units.length,
-            self.decimal(y)? * units.length,
-            0.0,
-        ];
+        let center = self.point(x, y, units)?;
         body.add_mass(mass, center, Matrix::diagonal([moment; 3]));
         for joint in joints.into_iter().take_while(|joint| !joint.is_empty()) {
             let pin = pins.iter_mut().find(|pin| pin.id == joint);
-            let pin = pin.ok_or_else(|| {
-                self.error(&format!("link {name} has an unknown joint `{joint}`"))
-            })?;
+            let unknown = || self.error(&format!("link {name} has an unknown joint `{joint}`"));
+            let pin = pin.ok_or_else(unknown)?;
             pin.bodies.push(number);
             if pin.bodies.len() == 1 {
                 body.points.push((pin.name.clone(), pin.at));
             }
         }
-        self.model
-            .frames
-            .push((name.to_owned(), number, Pose::IDENTITY));
+        let frame = (name.to_owned(), number, Pose::IDENTITY);
+        self.model.frames.push(frame);
         self.model.bodies.push(body);
         Ok(())
     }
@@ -266,11 +244,12 @@ impl Reader<'_> {
             Kind::Slide => [pin.angle.cos(), pin.angle.sin(), 0.0],
             _ => [0.0, 0.0, 1.0],
         };
-        let ends = pin
+        let frame = Pose::along(pin.at, axis);
+        let ends: Vec<End> = pin
             .bodies
             .iter()
-            .map(|body| End::new(*body, Pose::along(pin.at, axis)));
-        let ends: Vec<End> = ends.collect();
+            .map(|body| End::new(*body, frame))
+            .collect();
         for other in ends.iter().skip(1) {
             let name = match ends.len() {
                 2 => pin.name.clone(),
@@ -289,24 +268,12 @@ impl Reader<'_> {
     fn force(&mut self, text: &str, units: &Units) -> Result<(), DoorError> {
         let ([id, link, name, sx, sy, ex, ey, size], _) = self.fields("force", text)?;
         let flags = self.whole(split_first(id).0)?;
-        let body = self
-            .model
-            .frames
-            .iter()
-            .find(|(one, ..)| one == link)
-            .map(|(_, body, _)| *body);
-        let body = body
-            .ok_or_else(|| self.error(&format!("force {name} acts on an unknown link `{link}`")))?;
-        let point = |x, y| {
-            Ok::<_, DoorError>([
-                self.decimal(x)? * units.length,
-                self.decimal(y)? * units.length,
-                0.0,
-            ])
-        };
-        let (start, end) = (point(sx, sy)?, point(ex, ey)?);
-        let outward = unit(sub(end, start))
-            .ok_or_else(|| self.error(&format!("force {name} has no direction")))?;
+        let frame = self.model.frames.iter().find(|(one, ..)| one == link);
+        let unknown = || self.error(&format!("force {name} acts on an unknown link `{link}`"));
+        let body = frame.ok_or_else(unknown)?.1;
+        let [start, end] = [self.point(sx, sy, units)?, self.point(ex, ey, units)?];
+        let none = || self.error(&format!("force {name} has no direction"));
+        let outward = unit(sub(end, start)).ok_or_else(none)?;
         let sign = if flags & OUTWARD != 0 { 1.0 } else { -1.0 };
         let size = self.decimal(size)? * units.force * sign;
         self.model.loads.push(Load::Force {

@@ -40,12 +40,9 @@ pub(crate) fn import(
     options: &ImportOptions,
     folder: Option<&Path>,
 ) -> Result<Import, DoorError> {
-    let format = options
-        .from
-        .or_else(|| format(name, text))
-        .ok_or_else(|| DoorError::Format {
-            file: name.to_owned(),
-        })?;
+    let format = options.from.or_else(|| format(name, text));
+    let file = name.to_owned();
+    let format = format.ok_or(DoorError::Format { file })?;
     let findings = Findings::default();
     let read = match format {
         Format::Mjcf => of_xml(
@@ -82,10 +79,8 @@ pub(crate) fn import(
 fn format(name: &str, text: &str) -> Option<Format> {
     let begins = |what: &str| text.trim_start().starts_with(what);
     let has = |what: &str| text.contains(what);
-    match Path::new(name)
-        .extension()
-        .and_then(|ending| ending.to_str())
-    {
+    let ending = Path::new(name).extension();
+    match ending.and_then(|ending| ending.to_str()) {
         Some("mjcf") => Some(Format::Mjcf),
         Some("urdf") => Some(Format::Urdf),
         Some("sdf" | "world") => Some(Format::Sdf),
@@ -109,34 +104,29 @@ fn with_includes(
     let mut next = 0;
     while next < files.len() {
         let tree = files[next].parse()?;
-        let mut wanted = Vec::new();
+        let mut wanted: Vec<TextFile> = Vec::new();
+        let mut size = files.iter().map(|file| file.text.len()).sum::<usize>();
         for include in tree
             .descendants()
             .filter(|node| node.has_tag_name("include"))
         {
             let file = include.attribute("file").unwrap_or_default();
-            let known = files.iter().any(|one| &*one.file == file)
-                || wanted.iter().any(|one: &TextFile| &*one.file == file);
-            if known {
+            if files.iter().chain(&wanted).any(|one| &*one.file == file) {
                 continue;
             }
-            let refuse = |message: String| {
-                files[next].error((include.range().start, include.range().len()), message, "")
-            };
-            let Some(folder) = folder else {
-                return Err(refuse(format!(
-                    "`{file}` is not read: only the text is given"
-                )));
-            };
-            let inside = Path::new(file)
-                .components()
-                .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-            if !inside || wanted.len() + files.len() > 200 {
-                return Err(refuse(format!(
-                    "`{file}` is not read: it is not below the folder of the model"
-                )));
+            let place = (include.range().start, include.range().len());
+            let refuse =
+                |why: &str| files[next].error(place, format!("`{file}` is not read: {why}"), "");
+            let folder = folder.ok_or_else(|| refuse("only the text is given"))?;
+            let below = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+            if !Path::new(file).components().all(below) {
+                return Err(refuse("it is not below the folder of the model"));
             }
-            let text = read(&folder.join(file), file).map_err(|e| refuse(e.to_string()))?;
+            let text = read(&folder.join(file), file).map_err(|e| refuse(&e.to_string()))?;
+            size += text.len();
+            if size as u64 > LARGEST {
+                return Err(refuse("all files together are too large"));
+            }
             wanted.push(TextFile::new(file, &text));
         }
         drop(tree);
@@ -152,19 +142,16 @@ fn of_xml(
     findings: Findings,
     options: &ImportOptions,
 ) -> Result<Read, DoorError> {
-    for file in files {
-        if let Some(at) = file.text.find("<xacro:") {
-            return Err(file.error(
-                (at, 7),
-                "the file has macros of xacro".to_owned(),
-                "run xacro first",
-            ));
+    let trees = files.iter().map(TextFile::parse);
+    let trees = trees.collect::<Result<Vec<_>, _>>()?;
+    for (file, tree) in files.iter().zip(&trees) {
+        let is_macro = |space: &str| space.contains("xacro");
+        let mut nodes = tree.descendants();
+        if let Some(node) = nodes.find(|node| node.tag_name().namespace().is_some_and(is_macro)) {
+            let message = "the file has macros of xacro".to_owned();
+            return Err(file.error((node.range().start, 1), message, "run xacro first"));
         }
     }
-    let trees = files
-        .iter()
-        .map(TextFile::parse)
-        .collect::<Result<Vec<_>, _>>()?;
     let xml = Xml::new(files, &trees, findings);
     match format {
         Format::Urdf => urdf::read(&xml, options),

@@ -81,7 +81,13 @@ impl TextFile {
             let at = error.pos();
             let start = self.text.split_inclusive('\n').take(at.row as usize - 1);
             let byte = start.map(str::len).sum::<usize>().min(self.text.len());
-            self.error((byte, 0), format!("the XML is invalid: {error}"), "")
+            let message = format!("the XML is invalid: {error}");
+            let help = if message.contains("xacro") {
+                "run xacro first"
+            } else {
+                ""
+            };
+            self.error((byte, 0), message, help)
         })?;
         let mut depth: HashMap<NodeId, usize> = HashMap::new();
         for node in tree.root().descendants() {

@@ -25,6 +25,8 @@ impl Default for Angles {
 
 #[derive(Default)]
 pub(super) struct Defaults<'d> {
+    /// The class of all elements: that of the first section.
+    main: Option<&'d str>,
     classes: HashMap<&'d str, Class<'d>>,
 }
 
@@ -37,7 +39,10 @@ struct Class<'d> {
 impl<'d> Defaults<'d> {
     /// Reads a section of defaults.
     pub(super) fn add(&mut self, section: Element<'d>, parent: Option<&'d str>) {
-        let name = section.attribute("class").unwrap_or(MAIN);
+        let main = *self
+            .main
+            .get_or_insert(section.attribute("class").unwrap_or(MAIN));
+        let name = section.attribute("class").unwrap_or(main);
         for child in section.children() {
             if child.tag() == "default" {
                 self.add(child, Some(name));
@@ -47,7 +52,8 @@ impl<'d> Defaults<'d> {
             }
         }
         let class = self.classes.entry(name).or_default();
-        class.parent = class.parent.or(parent.filter(|parent| *parent != name));
+        let parent = parent.or(Some(main)).filter(|parent| *parent != name);
+        class.parent = class.parent.or(parent);
     }
 
     /// An element with the defaults of its class, or of that of the bodies around it.
@@ -57,13 +63,9 @@ impl<'d> Defaults<'d> {
         inherited: Option<&'d str>,
     ) -> Result<Item<'d>, DoorError> {
         let own = element.attribute("class");
-        let mut class = own.or(inherited).unwrap_or(MAIN);
-        let is_known = class == MAIN || self.classes.contains_key(class);
-        element.known(
-            (is_known || own.is_none()).then_some(()),
-            "class of defaults",
-            class,
-        )?;
+        let mut class = own.or(inherited).or(self.main).unwrap_or(MAIN);
+        let unknown = own.is_some() && !self.classes.contains_key(class);
+        element.known((!unknown).then_some(()), "class of defaults", class)?;
         let mut chain = Vec::new();
         // A class is its own ancestor only in a file that no program reads.
         for _ in 0..=self.classes.len() {
