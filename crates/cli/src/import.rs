@@ -49,7 +49,7 @@ pub(crate) struct ImportArgs {
     /// Coordinates of joints as drawn, in the file's coordinate, in rad or m: q1=2.2,p1=-1.4
     #[arg(long, value_delimiter = ',', value_parser = parse_start, value_name = "JOINT=VALUE", allow_hyphen_values = true)]
     start: Vec<(String, f64)>,
-    /// Two frames that a joint connects: FRAME=FRAME:revolute, spherical or fixed
+    /// Two frames that a joint connects: FRAME=FRAME:KIND; KIND is revolute (about z), spherical or fixed
     #[arg(long, value_name = "FRAME=FRAME:KIND")]
     close: Vec<Closing>,
     /// The YAML file of an extended URDF that closes its loops
