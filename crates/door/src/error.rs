@@ -26,7 +26,7 @@ pub enum DoorError {
     #[error("{}", .0.message)]
     Part(Box<Part>),
     /// The file does not say which joints drive.
-    #[error("the model has {needed} degrees of freedom and no drive")]
+    #[error("the model has {} and no drive", freedoms(*needed))]
     NoDrive {
         /// The degrees of freedom.
         needed: usize,
@@ -49,6 +49,12 @@ pub enum DoorError {
     /// A number of the model is not finite, or above 1e60.
     #[error("the model has a number that is not finite, or above 1e60, near {0}")]
     Number(String),
+}
+
+/// A number of degrees of freedom in words.
+pub(crate) fn freedoms(count: usize) -> String {
+    let degrees = if count == 1 { "degree" } else { "degrees" };
+    format!("{count} {degrees} of freedom")
 }
 
 /// A part of a file.

@@ -57,8 +57,10 @@ pub(crate) fn settle(read: Read, options: &ImportOptions) -> Result<Model, DoorE
     }
     if drives < needed {
         let all = driveable_names(&model).collect::<Vec<_>>().join(", ");
-        let given = format!("{needed} degrees of freedom, driven {drives}");
-        let text = format!("{given}: give --drive for {needed} of {all}");
+        let freedoms = crate::error::freedoms(needed);
+        let text = format!(
+            "{freedoms}, of which {drives} driven: give --drive for each of {needed} joints among {all}"
+        );
         let place = model.bodies[GROUND].place.clone();
         model.note(&place, Effect::Kept, text);
     }

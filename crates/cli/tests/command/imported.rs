@@ -64,7 +64,7 @@ fn errors_of_an_import_say_what_to_give_and_where_the_file_is_wrong() {
     let run = dir.run(&["import", &model("m4-sixbar.xml"), "--out", "-"]);
     assert_eq!(run.status, Some(2));
     assert!(
-        run.err.contains("1 degrees of freedom and no drive") && run.err.contains("A, B, D, E, P"),
+        run.err.contains("1 degree of freedom and no drive") && run.err.contains("A, B, D, E, P"),
         "{}",
         run.err
     );
