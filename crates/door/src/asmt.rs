@@ -1,7 +1,7 @@
 //! ASMT, the format of OndselSolver and FreeCAD: a tree of lines, indented by tabs.
 
 use crate::error::DoorError;
-use crate::model::{Body, End, GROUND, Joint, Kind, Model, Motion};
+use crate::model::{End, GROUND, Joint, Kind, Model, Motion};
 use crate::pose::{Matrix, Pose, Vector, dot, sub};
 use crate::settle::{Read, span};
 use crate::xml::{Element, Rules, Xml};
@@ -86,29 +86,17 @@ pub(crate) fn read(xml: &Xml<'_>) -> Result<Read, DoorError> {
     // The ground of the scene is the world, in which the assembly lies.
     let outer = pose(assembly)?;
     reader.markers(assembly, GROUND, outer, &format!("/{name}"))?;
-    for part in assembly
-        .child("Parts")
-        .map(Element::children)
-        .unwrap_or_default()
-    {
+    for part in assembly.inner("Parts") {
         reader.part(part, outer, name)?;
     }
     let parameters = assembly.child("SimulationParameters");
     let time = |key, default| parameters.map_or(Ok(default), |one| one.child_value(key, default));
     let duration = time("tend", 1.0)? - time("tstart", 0.0)?;
     if let Some(sets) = assembly.child("ConstraintSets") {
-        for joint in sets
-            .child("Joints")
-            .map(Element::children)
-            .unwrap_or_default()
-        {
+        for joint in sets.inner("Joints") {
             reader.joint(joint.read())?;
         }
-        for motion in sets
-            .child("Motions")
-            .map(Element::children)
-            .unwrap_or_default()
-        {
+        for motion in sets.inner("Motions") {
             reader.motion(motion.read(), if duration > 0.0 { duration } else { 1.0 })?;
         }
         let _ = sets.child("GeneralConstraintSets");
@@ -142,17 +130,9 @@ impl Reader {
         in_body: Pose,
         path: &str,
     ) -> Result<(), DoorError> {
-        for point in of
-            .child("RefPoints")
-            .map(Element::children)
-            .unwrap_or_default()
-        {
+        for point in of.inner("RefPoints") {
             let outer = in_body.then(pose(point)?);
-            for marker in point
-                .child("Markers")
-                .map(Element::children)
-                .unwrap_or_default()
-            {
+            for marker in point.inner("Markers") {
                 let name = marker.child_text("Name").unwrap_or_default();
                 let place = (body, outer.then(pose(marker)?));
                 self.markers.insert(format!("{path}/{name}"), place);
@@ -165,8 +145,9 @@ impl Reader {
 
     fn part(&mut self, part: Element<'_>, outer: Pose, assembly: &str) -> Result<(), DoorError> {
         let name = part.read().child_text("Name").unwrap_or_default();
-        let number = self.model.bodies.len();
-        let mut body = Body::new(name, part.place(), outer.then(pose(part)?));
+        let number = self
+            .model
+            .push_body(name, part.place(), outer.then(pose(part)?));
         if let Some(marker) = part.child("PrincipalMassMarker") {
             let frame = pose(marker)?;
             let mass = marker.mass(marker.child_value("Mass", 0.0)?)?;
@@ -177,16 +158,13 @@ impl Reader {
                 ));
             }
             let _ = marker.child_text("Name");
-            body.add_mass(
+            self.model.bodies[number].add_mass(
                 mass,
                 frame.origin,
                 Matrix::diagonal(moments).turned(frame.turn),
             );
         }
-        self.model
-            .frames
-            .push((name.to_owned(), number, Pose::IDENTITY));
-        self.model.bodies.push(body);
+        self.model.push_frame(name, number, Pose::IDENTITY);
         self.markers(part, number, Pose::IDENTITY, &format!("/{assembly}/{name}"))
     }
 
@@ -235,11 +213,11 @@ impl Reader {
     fn motion(&mut self, element: Element<'_>, duration: f64) -> Result<(), DoorError> {
         let path = element.child_text("MotionJoint").unwrap_or_default();
         let name = path.rsplit('/').next().unwrap_or_default();
-        let joint = self
-            .model
-            .joint_named(name)
-            .filter(|joint| self.model.joints[*joint].is_driveable());
-        let joint = element.known(joint, "joint with one coordinate", path)?;
+        let joint = element.known(
+            self.model.driveable(name),
+            "joint with one coordinate",
+            path,
+        )?;
         let key = if self.model.joints[joint].is_angle() {
             "RotationZ"
         } else {

@@ -300,6 +300,22 @@ impl Model {
         given.map_or_else(|| format!("loop{count}"), str::to_owned)
     }
 
+    /// A new body without mass, and its number.
+    pub(crate) fn push_body(&mut self, name: &str, place: Place, pose: Pose) -> usize {
+        self.bodies.push(Body::new(name, place, pose));
+        self.bodies.len() - 1
+    }
+
+    pub(crate) fn push_frame(&mut self, name: &str, body: usize, pose: Pose) {
+        self.frames.push((name.to_owned(), body, pose));
+    }
+
+    /// A joint with one coordinate.
+    pub(crate) fn driveable(&self, name: &str) -> Option<usize> {
+        self.joint_named(name)
+            .filter(|joint| self.joints[*joint].is_driveable())
+    }
+
     pub(crate) fn joint_named(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint.name == name)
     }

@@ -227,8 +227,7 @@ impl Reader<'_> {
                 body.points.push((pin.name.clone(), pin.at));
             }
         }
-        let frame = (name.to_owned(), number, Pose::IDENTITY);
-        self.model.frames.push(frame);
+        self.model.push_frame(name, number, Pose::IDENTITY);
         self.model.bodies.push(body);
         Ok(())
     }

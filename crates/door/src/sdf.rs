@@ -4,7 +4,7 @@ mod joints;
 
 use crate::error::DoorError;
 use crate::finding::Effect;
-use crate::model::{Body, GROUND, Load, Model};
+use crate::model::{GROUND, Load, Model};
 use crate::pose::{Matrix, Pose, scaled};
 use crate::settle::{Read, span};
 use crate::xml::{AT_LIMITS, Element, LOST, NO_GRAVITY, Rules, Xml};
@@ -143,9 +143,7 @@ impl<'d> Reader<'d> {
             let element = self.frames[name].element;
             let world = self.in_world(name, &element)?;
             let end = self.model.end_at(self.body_of(name, &element)?, world);
-            self.model
-                .frames
-                .push((name.to_owned(), end.body, end.frame));
+            self.model.push_frame(name, end.body, end.frame);
             if element.tag() == "joint" {
                 self.joint(name, element, world)?;
             }
@@ -176,10 +174,8 @@ impl<'d> Reader<'d> {
         }
         self.names.push(name);
         if tag == "link" {
-            self.links.insert(name, self.model.bodies.len());
-            self.model
-                .bodies
-                .push(Body::new(name, element.place(), Pose::IDENTITY));
+            let body = self.model.push_body(name, element.place(), Pose::IDENTITY);
+            self.links.insert(name, body);
         }
         Ok(())
     }

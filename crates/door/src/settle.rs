@@ -74,10 +74,8 @@ fn driveable_names(model: &Model) -> impl Iterator<Item = &str> {
 
 /// A joint with one coordinate by its name.
 fn driveable(model: &Model, name: &str) -> Result<usize, DoorError> {
-    let joint = model
-        .joint_named(name)
-        .filter(|joint| model.joints[*joint].is_driveable());
     let what = "joint with one coordinate";
+    let joint = model.driveable(name);
     joint.ok_or_else(|| DoorError::unknown(what, name, driveable_names(model)))
 }
 

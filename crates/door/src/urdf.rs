@@ -3,7 +3,7 @@
 mod loops;
 
 use crate::error::DoorError;
-use crate::model::{Along, Body, Coupling, End, Joint, Kind, Model};
+use crate::model::{Along, Coupling, End, Joint, Kind, Model};
 use crate::options::ImportOptions;
 use crate::pose::{Matrix, Pose, Vector};
 use crate::settle::Read;
@@ -73,7 +73,7 @@ fn name<'d>(element: &Element<'d>) -> Result<&'d str, DoorError> {
 impl<'d> Reader<'d> {
     fn link(&mut self, element: Element<'d>) -> Result<(), DoorError> {
         let name = name(&element)?;
-        let mut body = Body::new(name, element.place(), Pose::IDENTITY);
+        let number = self.model.push_body(name, element.place(), Pose::IDENTITY);
         if let Some(inertial) = element.child("inertial") {
             let pose = origin(inertial.child("origin"))?;
             let mass = inertial
@@ -89,16 +89,12 @@ impl<'d> Reader<'d> {
                 }
             }
             let inertia = Matrix::symmetric(tensor).turned(pose.turn);
-            body.add_mass(inertial.mass(mass)?, pose.origin, inertia);
+            self.model.bodies[number].add_mass(inertial.mass(mass)?, pose.origin, inertia);
         }
-        let number = self.model.bodies.len();
         if self.links.insert(name, number).is_some() {
             return Err(element.error(format!("the link `{name}` is given twice")));
         }
-        self.model
-            .frames
-            .push((name.to_owned(), number, Pose::IDENTITY));
-        self.model.bodies.push(body);
+        self.model.push_frame(name, number, Pose::IDENTITY);
         Ok(())
     }
 
@@ -117,8 +113,7 @@ impl<'d> Reader<'d> {
                 return Err(element.error_with(message, help));
             }
             self.model
-                .frames
-                .push((joint.name.clone(), joint.second.body, Pose::IDENTITY));
+                .push_frame(&joint.name, joint.second.body, Pose::IDENTITY);
             self.model.joints.push(joint);
         }
         // From the links without parent, which are ground, outwards; each joint once.

@@ -335,6 +335,16 @@ impl<'d> Element<'d> {
         self.xml.ledger.borrow().read.contains(&self.key())
     }
 
+    /// The children of a child.
+    pub(crate) fn inner(self, tag: &str) -> Vec<Self> {
+        self.child(tag).map(Self::children).unwrap_or_default()
+    }
+
+    /// Its name, or another.
+    pub(crate) fn name_or(&self, other: impl FnOnce() -> String) -> String {
+        self.attribute("name").map_or_else(other, str::to_owned)
+    }
+
     /// The first child of this name, which counts as read.
     pub(crate) fn child(self, tag: &str) -> Option<Self> {
         let is = |one: &Node<'_, '_>| one.is_element() && one.tag_name().name() == tag;

@@ -6,7 +6,7 @@ use super::defaults::Item;
 use super::shapes;
 use crate::error::DoorError;
 use crate::finding::Effect;
-use crate::model::{Along, Body, End, Joint, Kind, Load};
+use crate::model::{Along, End, Joint, Kind, Load};
 use crate::pose::{Matrix, Pose, scaled};
 use crate::xml::{AT_LIMITS, Element};
 
@@ -61,9 +61,7 @@ impl<'d> Reader<'d, '_> {
         let world = self.model.bodies[parent].pose.then(pose);
         let class = element.attribute("childclass").or(class);
         let number = self.model.bodies.len();
-        let name = element
-            .attribute("name")
-            .map_or(format!("body{number}"), str::to_owned);
+        let name = element.name_or(|| format!("body{number}"));
         let mut contents = Contents::default();
         self.collect(element, Pose::IDENTITY, class, &mut contents)?;
         let is_free = |(item, _): &(Item<'d>, Pose)| item.is("type", "free");
@@ -79,10 +77,8 @@ impl<'d> Reader<'d, '_> {
             } else {
                 name.clone()
             };
-            let first = std::mem::replace(&mut body, self.model.bodies.len());
-            self.model
-                .bodies
-                .push(Body::new(&name, element.place(), world));
+            let next = self.model.push_body(&name, element.place(), world);
+            let first = std::mem::replace(&mut body, next);
             if let Some((item, frame)) = contents.joints.get(k) {
                 self.joint(item, *frame, [first, body])?;
             }
@@ -139,9 +135,7 @@ impl<'d> Reader<'d, '_> {
         let second = End::new(second, frame.then(place));
         let ends = [self.model.seen_from(first, &second), second];
         let body = &self.model.bodies[second.body].name;
-        let name = element
-            .attribute("name")
-            .map_or(format!("{body}_joint"), str::to_owned);
+        let name = element.name_or(|| format!("{body}_joint"));
         let count = if kind == Kind::Ball { 4 } else { 1 };
         self.order.push((Some(self.model.joints.len()), count));
         let (along, reference) = self.along(item, kind, &name)?;
@@ -208,7 +202,7 @@ impl<'d> Reader<'d, '_> {
             let pose = frame.then(item.pose(self.angles)?);
             if let Some(name) = item.element.attribute("name") {
                 self.sites.insert(name, (body, pose));
-                self.model.frames.push((name.to_owned(), body, pose));
+                self.model.push_frame(name, body, pose);
                 self.model.bodies[body]
                     .points
                     .push((name.to_owned(), pose.origin));
