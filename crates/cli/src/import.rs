@@ -24,13 +24,14 @@ const FORMATS: Choices<Format> = &[
     ),
 ];
 
+/// Whether the scene is always spatial.
 const PLANE: Choices<bool> = &[
     (
         "auto",
-        true,
+        false,
         "A mechanism that moves in a plane becomes a planar scene",
     ),
-    ("off", false, "Always a scene in space"),
+    ("off", true, "Always a scene in space"),
 ];
 
 #[derive(Debug, Args)]
@@ -126,7 +127,7 @@ fn import_options(arguments: &ImportArgs) -> Result<ImportOptions, Report> {
         close: arguments.close.clone(),
         loops: loops.transpose()?,
         fix: arguments.fix.clone(),
-        flatten: arguments.plane,
+        spatial: arguments.plane,
         tolerance: arguments.tolerance,
     })
 }
@@ -158,20 +159,17 @@ fn save(path: &Path, scene: &str) -> Result<(), Report> {
 }
 
 /// An error of the import, pointing into the file.
-#[expect(clippy::needless_pass_by_value, reason = "for map_err")]
 fn report(error: DoorError) -> Report {
-    let help = error.help();
     let mut diagnostic = miette::MietteDiagnostic::new(error.to_string());
-    if let Some(help) = help {
-        diagnostic = diagnostic.with_help(help);
+    if !error.help.is_empty() {
+        diagnostic = diagnostic.with_help(error.help);
     }
-    let Some(part) = error.part() else {
+    let Some(part) = error.part else {
         return Report::new(diagnostic);
     };
-    let (start, length) = part.span;
+    let label = LabeledSpan::new(None, part.span.start, part.span.len());
     let source = NamedSource::new(&*part.file, part.text.to_string());
-    Report::new(diagnostic.with_label(LabeledSpan::new(None, start, length)))
-        .with_source_code(source)
+    Report::new(diagnostic.with_label(label)).with_source_code(source)
 }
 
 fn parse_start(text: &str) -> Result<(String, f64), String> {

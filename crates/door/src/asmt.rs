@@ -2,8 +2,9 @@
 
 use crate::error::DoorError;
 use crate::model::{End, GROUND, Joint, Kind, Model, Motion};
-use crate::pose::{Matrix, Pose, Vector, dot, sub};
-use crate::settle::{Read, span};
+use crate::options::ImportOptions;
+use crate::pose::{Matrix, Pose, Vector, cross, dot, length, sub};
+use crate::settle::Read;
 use crate::xml::{Element, Rules, Xml};
 use std::collections::HashMap;
 
@@ -18,43 +19,33 @@ const RULES: Rules = Rules {
 pub(crate) fn as_xml(text: &str) -> String {
     let lines: Vec<&str> = text.lines().collect();
     let depth = |line: &str| line.len() - line.trim_start_matches('\t').len();
+    let is_blank = |line: &&str| line.trim().is_empty();
     let is_above = |k: usize| {
-        let below = lines[k + 1..].iter().find(|line| !line.trim().is_empty());
+        let below = lines[k + 1..].iter().find(|line| !is_blank(line));
         below.is_some_and(|below| depth(below) > depth(lines[k]))
     };
     let mut xml = "<asmt>".to_owned();
     // The open elements: depth, name, and whether it holds elements.
-    let mut open: Vec<(usize, String, bool)> = Vec::new();
+    let mut open: Vec<(usize, &str, bool)> = Vec::new();
     for (k, line) in lines.iter().enumerate() {
         let (here, word) = (depth(line), line.trim());
-        while !word.is_empty() && open.last().is_some_and(|(above, ..)| *above >= here) {
-            let name = open.pop().map(|(_, name, _)| name);
-            xml += &format!("</{}>", name.unwrap_or_default());
+        let ends = |above: &mut (usize, &str, bool)| !word.is_empty() && above.0 >= here;
+        while let Some((_, name, _)) = open.pop_if(ends) {
+            xml += &format!("</{name}>");
         }
         let is_name = word.starts_with(|c: char| c.is_ascii_alphabetic())
             && word.chars().all(|c| c.is_ascii_alphanumeric());
         if is_name && (is_above(k) || open.last().is_none_or(|(.., elements)| *elements)) {
-            let end = lines[k + 1..]
-                .iter()
-                .position(|line| !line.trim().is_empty() && depth(line) <= here);
-            let end = end.map_or(lines.len(), |end| k + 1 + end);
-            let elements =
-                (k + 1..end).any(|below| depth(lines[below]) == here + 1 && is_above(below));
+            let inside = |k: &usize| is_blank(&lines[*k]) || depth(lines[*k]) > here;
+            let mut below = (k + 1..lines.len()).take_while(inside);
+            let elements = below.any(|k| depth(lines[k]) == here + 1 && is_above(k));
             xml += &format!("<{word}>");
-            open.push((here, word.to_owned(), elements));
+            open.push((here, word, elements));
         } else {
-            let plain = word
-                .replace('&', "&amp;")
-                .replace('<', "&lt;")
-                .replace('>', "&gt;");
-            // Floats may end with `d`.
-            let float = |word: &str| {
-                word.trim_end_matches('d')
-                    .parse::<f64>()
-                    .map(|_| word.trim_end_matches('d').to_owned())
-            };
-            let floats: Result<Vec<String>, _> = plain.split_whitespace().map(float).collect();
-            xml += &floats.map_or(plain, |floats| floats.join(" "));
+            let words = word.split_whitespace().map(without_d);
+            let plain = words.collect::<Vec<_>>().join(" ");
+            let plain = plain.replace('&', "&amp;").replace('<', "&lt;");
+            xml += &plain.replace('>', "&gt;");
         }
         xml.push('\n');
     }
@@ -64,25 +55,31 @@ pub(crate) fn as_xml(text: &str) -> String {
     xml + "</asmt>"
 }
 
-struct Reader {
-    model: Model,
-    /// The body, and the place in it, of markers by paths such as `/assembly/part/marker`.
-    markers: HashMap<String, (usize, Pose)>,
+/// Floats may end with `d`.
+fn without_d(word: &str) -> &str {
+    let float = word.strip_suffix('d');
+    float
+        .filter(|float| float.parse::<f64>().is_ok())
+        .unwrap_or(word)
 }
 
-pub(crate) fn read(xml: &Xml<'_>) -> Result<Read, DoorError> {
-    let root = xml.root(0).read();
-    let assembly = root
-        .child("Assembly")
-        .ok_or_else(|| root.error("the file has no assembly"))?;
-    let name = assembly.child_text("Name").unwrap_or_default();
+struct Reader {
+    model: Model,
+    /// Markers by paths such as `/assembly/part/marker`.
+    markers: HashMap<String, End>,
+}
+
+pub(crate) fn read(xml: &Xml<'_>, _: &ImportOptions) -> Result<Read, DoorError> {
+    let root = xml.root().read();
+    let assembly = root.child("Assembly");
+    let assembly = assembly.ok_or_else(|| root.error("the file has no assembly"))?;
+    let name = name(assembly);
     let mut reader = Reader {
-        model: Model::new(name, &root.place(), xml.findings.clone()),
+        model: Model::new(name, root.place()),
         markers: HashMap::new(),
     };
-    reader.model.gravity = assembly
-        .child_vector("ConstantGravity")?
-        .unwrap_or_default();
+    let gravity = assembly.vector("ConstantGravity")?;
+    reader.model.gravity = gravity.unwrap_or_default();
     // The ground of the scene is the world, in which the assembly lies.
     let outer = pose(assembly)?;
     reader.markers(assembly, GROUND, outer, &format!("/{name}"))?;
@@ -90,19 +87,21 @@ pub(crate) fn read(xml: &Xml<'_>) -> Result<Read, DoorError> {
         reader.part(part, outer, name)?;
     }
     let parameters = assembly.child("SimulationParameters");
-    let time = |key, default| parameters.map_or(Ok(default), |one| one.child_value(key, default));
-    let duration = time("tend", 1.0)? - time("tstart", 0.0)?;
+    let time = |key, default| parameters.map_or(Ok(default), |one| one.value(key, default));
+    let duration = match time("tend", 1.0)? - time("tstart", 0.0)? {
+        positive if positive > 0.0 => positive,
+        _ => 1.0,
+    };
     if let Some(sets) = assembly.child("ConstraintSets") {
         for joint in sets.inner("Joints") {
             reader.joint(joint.read())?;
         }
         for motion in sets.inner("Motions") {
-            reader.motion(motion.read(), if duration > 0.0 { duration } else { 1.0 })?;
+            reader.motion(motion.read(), duration)?;
         }
         let _ = sets.child("GeneralConstraintSets");
     }
     let _ = assembly.child("ForceTorques");
-    span(&mut reader.model);
     Ok(Read {
         coverage: xml.name_the_rest(&RULES),
         model: reader.model,
@@ -110,15 +109,22 @@ pub(crate) fn read(xml: &Xml<'_>) -> Result<Read, DoorError> {
     })
 }
 
+fn name<'d>(element: Element<'d>) -> &'d str {
+    element.given("Name").unwrap_or_default()
+}
+
 /// Position and rotation.
 fn pose(element: Element<'_>) -> Result<Pose, DoorError> {
-    let origin = element.child_vector("Position3D")?.unwrap_or_default();
-    let Some([a, b, c, d, e, f, g, h, i]) = element.child_vector("RotationMatrix")? else {
-        return Ok(Pose::at(origin));
-    };
-    let turn = Matrix([[a, b, c], [d, e, f], [g, h, i]]);
-    let valid = (turn.rotation_error() < 1e-6).then_some(Pose::new(origin, turn));
-    valid.ok_or_else(|| element.error("the matrix is no rotation"))
+    let origin = element.vector("Position3D")?.unwrap_or_default();
+    let rows = element.vector("RotationMatrix")?;
+    let [a, b, c, d, e, f, g, h, i] = rows.unwrap_or([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
+    let rows = [[a, b, c], [d, e, f], [g, h, i]];
+    let [x, y, z] = rows;
+    let is_unit = |row: &Vector| (length(*row) - 1.0).abs() < 1e-6;
+    if !(rows.iter().all(is_unit) && length(sub(cross(x, y), z)) < 1e-6) {
+        return Err(element.error("the matrix is no rotation"));
+    }
+    Ok(Pose::new(origin, Matrix(rows)))
 }
 
 impl Reader {
@@ -127,58 +133,45 @@ impl Reader {
         &mut self,
         of: Element<'_>,
         body: usize,
-        in_body: Pose,
+        outer: Pose,
         path: &str,
     ) -> Result<(), DoorError> {
         for point in of.inner("RefPoints") {
-            let outer = in_body.then(pose(point)?);
+            let outer = outer.then(pose(point.read())?);
             for marker in point.inner("Markers") {
-                let name = marker.child_text("Name").unwrap_or_default();
-                let place = (body, outer.then(pose(marker)?));
-                self.markers.insert(format!("{path}/{name}"), place);
-                let _ = marker.read();
+                let frame = outer.then(pose(marker.read())?);
+                let path = format!("{path}/{}", name(marker));
+                self.markers.insert(path, End { body, frame });
             }
-            let _ = point.read();
         }
         Ok(())
     }
 
     fn part(&mut self, part: Element<'_>, outer: Pose, assembly: &str) -> Result<(), DoorError> {
-        let name = part.read().child_text("Name").unwrap_or_default();
-        let number = self
-            .model
-            .push_body(name, part.place(), outer.then(pose(part)?));
+        let name = name(part.read());
+        let world = outer.then(pose(part)?);
+        let body = self.model.push_body(name, part.place(), world);
         if let Some(marker) = part.child("PrincipalMassMarker") {
-            let frame = pose(marker)?;
-            let mass = marker.mass(marker.child_value("Mass", 0.0)?)?;
-            let moments: Vector = marker.child_vector("MomentOfInertias")?.unwrap_or_default();
+            let frame = world.then(pose(marker)?);
+            let mass = marker.mass(marker.value("Mass", 0.0)?)?;
+            let moments: Vector = marker.vector("MomentOfInertias")?.unwrap_or_default();
             if mass == 1.0 && moments == [1.0; 3] {
-                part.kept(format!(
-                    "part {name}: 1 kg and 1 kg m2, the default of programs without masses"
-                ));
+                let what = "1 kg and 1 kg m2, the default of programs without masses";
+                part.kept(format!("part {name}: {what}"));
             }
-            let _ = marker.child_text("Name");
-            self.model.bodies[number].add_mass(
-                mass,
-                frame.origin,
-                Matrix::diagonal(moments).turned(frame.turn),
-            );
+            let _ = marker.given("Name");
+            self.model.bodies[body].add_mass(mass, frame, Matrix::diagonal(moments));
         }
-        self.model.push_frame(name, number, Pose::IDENTITY);
-        self.markers(part, number, Pose::IDENTITY, &format!("/{assembly}/{name}"))
+        self.markers(part, body, world, &format!("/{assembly}/{name}"))
     }
 
     fn end(&self, joint: Element<'_>, key: &str) -> Result<End, DoorError> {
-        let path = joint.child_text(key).unwrap_or_default();
-        let marker = self
-            .markers
-            .get(path)
-            .map(|(body, frame)| End::new(*body, *frame));
-        joint.known(marker, "marker", path)
+        let path = joint.given(key).unwrap_or_default();
+        joint.known(self.markers.get(path).copied(), "marker", path)
     }
 
     fn joint(&mut self, element: Element<'_>) -> Result<(), DoorError> {
-        let name = element.child_text("Name").unwrap_or_default();
+        let name = name(element);
         let kind = match element.tag() {
             "RevoluteJoint" => Kind::Hinge,
             "CylindricalJoint" => Kind::Cylinder,
@@ -186,7 +179,7 @@ impl Reader {
             "TranslationalJoint" => Kind::Slide,
             "SphericalJoint" => Kind::Ball,
             "PlanarJoint" => Kind::Planar,
-            "SphSphJoint" => Kind::Distance(element.child_value("distanceIJ", 0.0)?),
+            "SphSphJoint" => Kind::Distance(element.value("distanceIJ", 0.0)?),
             other => {
                 element.lost(format!("{other} {name}"));
                 return Ok(());
@@ -197,7 +190,7 @@ impl Reader {
             return Err(element.error("the joint connects a part with itself"));
         }
         // The coordinate as drawn: the angle from x to x about z, or the travel along z.
-        let [here, there] = ends.map(|end| self.model.drawn(&end));
+        let [here, there] = ends.map(|end| end.frame);
         let [x, y, z] = here.turn.transposed().0;
         let other = there.turn.column(0);
         let mut joint = Joint::new(name, element.place(), kind, ends);
@@ -211,21 +204,17 @@ impl Reader {
     }
 
     fn motion(&mut self, element: Element<'_>, duration: f64) -> Result<(), DoorError> {
-        let path = element.child_text("MotionJoint").unwrap_or_default();
+        let path = element.given("MotionJoint").unwrap_or_default();
         let name = path.rsplit('/').next().unwrap_or_default();
-        let joint = element.known(
-            self.model.driveable(name),
-            "joint with one coordinate",
-            path,
-        )?;
-        let key = if self.model.joints[joint].is_angle() {
-            "RotationZ"
-        } else {
-            "TranslationZ"
+        let joint = self.model.driveable(name);
+        let joint = element.known(joint, "joint with one coordinate", path)?;
+        let key = match self.model.joints[joint].is_angle() {
+            true => "RotationZ",
+            false => "TranslationZ",
         };
-        let law = element.child_text(key).unwrap_or_default();
+        let law = element.given(key).unwrap_or_default();
         let expression = element.known(expression(law), "law that is read as", law)?;
-        let _ = element.child_text("Name");
+        let _ = element.given("Name");
         element.kept(format!("motion of {name}: {key} = {law}, drives it"));
         self.model.drive(joint).motion = Motion::Expression(expression, duration);
         Ok(())
@@ -253,7 +242,7 @@ fn expression(law: &str) -> Option<String> {
             "time" => text.push('t'),
             "sin" | "cos" | "tan" | "sqrt" | "exp" | "abs" | "pi" => text += token,
             // A float may end with `d`.
-            token if token.parse::<f64>().is_ok() && !is_word => {
+            _ if !is_word && token.parse::<f64>().is_ok() => {
                 text += token;
                 rest = rest.strip_prefix('d').unwrap_or(rest);
             }

@@ -5,8 +5,12 @@ use std::fmt;
 use std::rc::Rc;
 use std::sync::Arc;
 
+/// What becomes of parts that act only at a limit, and of parts that change the motion.
+pub(crate) const AT_LIMITS: &str = "left out (acts only at a limit)";
+pub(crate) const LOST: &str = "left out (changes the motion)";
+
 /// What leaving a part of a file out, or keeping it, means for the results.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Effect {
     /// It is in the scene, perhaps in another form.
     Kept,
@@ -33,43 +37,49 @@ pub struct Finding {
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            file, line, text, ..
-        } = self;
-        match line {
-            0 => write!(f, "{file}: {text}"),
-            line => write!(f, "{file}:{line}: {text}"),
+        match self.line {
+            0 => write!(f, "{}: {}", self.file, self.text),
+            line => write!(f, "{}:{line}: {}", self.file, self.text),
         }
     }
 }
 
-/// A place in a file.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// All findings of an import, shared by its steps.
+pub(crate) type Findings = Rc<RefCell<Vec<Finding>>>;
+
+/// The findings, those of the first file first, by their lines.
+pub(crate) fn sorted(findings: &Findings) -> Vec<Finding> {
+    let mut all = findings.borrow().clone();
+    let files: Vec<_> = all.iter().map(|one| Arc::clone(&one.file)).collect();
+    all.sort_by_key(|one| (files.iter().position(|file| *file == one.file), one.line));
+    all.dedup();
+    all
+}
+
+/// A place in a file, at which findings are noted.
+#[derive(Debug, Clone)]
 pub(crate) struct Place {
     pub(crate) file: Arc<str>,
     pub(crate) line: usize,
+    pub(crate) findings: Findings,
 }
 
-/// All findings of an import, shared by its steps.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Findings(Rc<RefCell<Vec<Finding>>>);
-
-impl Findings {
-    pub(crate) fn add(&self, place: &Place, effect: Effect, text: impl Into<String>) {
-        self.0.borrow_mut().push(Finding {
-            file: Arc::clone(&place.file),
-            line: place.line,
+impl Place {
+    pub(crate) fn note(&self, effect: Effect, text: impl Into<String>) {
+        self.findings.borrow_mut().push(Finding {
+            file: Arc::clone(&self.file),
+            line: self.line,
             text: text.into(),
             effect,
         });
     }
 
-    /// The findings, those of the first file first, by their lines.
-    pub(crate) fn sorted(&self) -> Vec<Finding> {
-        let mut all = self.0.borrow().clone();
-        let files: Vec<_> = all.iter().map(|one| Arc::clone(&one.file)).collect();
-        all.sort_by_key(|one| (files.iter().position(|file| *file == one.file), one.line));
-        all.dedup();
-        all
+    pub(crate) fn kept(&self, text: impl Into<String>) {
+        self.note(Effect::Kept, text);
+    }
+
+    /// Something that changes the motion is left out.
+    pub(crate) fn lost(&self, what: impl fmt::Display) {
+        self.note(Effect::Changes, format!("{what}: {LOST}"));
     }
 }

@@ -27,11 +27,10 @@ mod options;
 mod plane;
 mod pmks;
 mod pose;
+mod robot;
 mod scene;
-mod sdf;
 mod settle;
 mod source;
-mod urdf;
 mod xml;
 
 pub use error::{DoorError, Part};
@@ -98,13 +97,11 @@ fn head(name: &str, text: &str, import: &Import, model: &model::Model) -> String
             "Planar: x is {x:?} of the file, y is {y:?}, the normal {normal:?}."
         ));
     }
-    let names = names::Names::new(model);
-    let renamed = names.changed(model);
-    lines.extend(
-        renamed
-            .iter()
-            .map(|(old, new)| format!("renamed: {old} is {new}")),
-    );
+    let renamed = names::Names::new(model).changed(model);
+    let renamed = renamed
+        .iter()
+        .map(|[old, new]| format!("renamed: {old} is {new}"));
+    lines.extend(renamed);
     lines.extend(import.findings.iter().map(ToString::to_string));
     let lines = lines.iter().map(|line| scene::comment(line));
     lines.collect::<Vec<_>>().join("\n")

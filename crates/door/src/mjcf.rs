@@ -2,20 +2,16 @@
 
 mod bodies;
 mod constraints;
-mod contacts;
 mod defaults;
 mod shapes;
 
 use crate::error::DoorError;
-use crate::finding::Effect;
-use crate::model::{GROUND, Model};
+use crate::model::{Action, GROUND, Model};
 use crate::options::ImportOptions;
-use crate::pose::{Matrix, Pose};
+use crate::pose::{Matrix, Pose, scaled};
 use crate::settle::{Move, Read};
 use crate::xml::{Element, Rules, Xml};
-use bodies::Contents;
-use contacts::Shape;
-use defaults::{Angles, Defaults};
+use defaults::Class;
 use std::collections::HashMap;
 
 const RULES: Rules = Rules {
@@ -31,69 +27,71 @@ const RULES: Rules = Rules {
         lengthrange",
 };
 
-struct Reader<'d, 'o> {
+struct Reader<'d> {
     model: Model,
-    options: &'o ImportOptions,
-    angles: Angles,
+    /// What an angle of the file is in rad.
+    angle: f64,
+    /// The axes of Euler angles.
+    sequence: [char; 3],
     /// Whether a range limits only with the word `limited`.
     limits_need_word: bool,
     /// Whether geoms give the inertia: never, always, or where there is no other.
     from_shapes: Option<bool>,
     total_mass: f64,
-    defaults: Defaults<'d>,
-    shapes: Vec<Shape<'d>>,
+    main_class: Option<&'d str>,
+    classes: HashMap<&'d str, Class<'d>>,
+    /// Geoms, each with its body.
+    shapes: Vec<(Element<'d>, usize)>,
     /// The coordinates of a keyframe in their order: the joint, unless its body floats, and how many.
     order: Vec<(Option<usize>, usize)>,
-    sites: HashMap<&'d str, (usize, Pose)>,
     excluded: Vec<[&'d str; 2]>,
     /// Whether shapes touch each other at all.
     touches: bool,
     moves: Vec<(usize, Move)>,
-    /// Bodies that float, with their elements.
-    floating: Vec<(usize, Element<'d>)>,
 }
 
 /// Reads a model; the first file is that of the root.
 pub(crate) fn read(xml: &Xml<'_>, options: &ImportOptions) -> Result<Read, DoorError> {
-    let root = xml.root(0);
+    let root = xml.root();
     let title = root.attribute("model").unwrap_or("MuJoCo model");
-    let mut model = Model::new(title, &root.place(), xml.findings.clone());
+    let mut model = Model::new(title, root.place());
     model.terms = ["frictionloss", "range"];
     let mut reader = Reader {
         model,
-        options,
-        angles: Angles::default(),
+        angle: 1f64.to_radians(),
+        sequence: ['x', 'y', 'z'],
         limits_need_word: false,
         from_shapes: None,
         total_mass: 0.0,
-        defaults: Defaults::default(),
+        main_class: None,
+        classes: HashMap::new(),
         shapes: Vec::new(),
         order: Vec::new(),
-        sites: HashMap::new(),
         excluded: Vec::new(),
         touches: true,
         moves: Vec::new(),
-        floating: Vec::new(),
     };
     let sections = root.children();
-    for tag in [
-        "compiler",
-        "default",
-        "option",
-        "worldbody",
-        "equality",
-        "tendon",
-        "actuator",
-        "contact",
-        "keyframe",
-    ] {
-        for section in sections.iter().filter(|one| one.tag() == tag) {
-            reader.section(*section)?;
-        }
+    let of = |tag: &'static str| sections.iter().filter(move |one| one.tag() == tag);
+    of("compiler").try_for_each(|one| reader.compiler(*one))?;
+    of("default").for_each(|one| reader.defaults(*one, None));
+    of("option").try_for_each(|one| reader.option(*one))?;
+    for world in of("worldbody") {
+        let parts = reader.parts(*world, Pose::IDENTITY, None)?;
+        reader.fill(GROUND, &parts)?;
     }
-    reader.name_floating();
-    reader.name_contacts();
-    reader.defaults.read_known();
+    reader.scale_masses();
+    let inner = |tag| of(tag).flat_map(|one| one.children());
+    inner("equality").try_for_each(|one| reader.constraint(one))?;
+    inner("tendon").try_for_each(|one| reader.tendon(one))?;
+    inner("actuator").try_for_each(|one| reader.actuator(one))?;
+    inner("contact").for_each(|one| reader.contact(one));
+    if let Some(name) = &options.key {
+        let keys = of("keyframe").flat_map(|one| one.called("key"));
+        reader.keyframe(&keys.collect::<Vec<_>>(), name)?;
+    }
+    // Only options connect bodies that float with others.
+    reader.name_contacts(options.fix.is_none() && options.close.is_empty())?;
     Ok(Read {
         coverage: xml.name_the_rest(&RULES),
         model: reader.model,
@@ -101,46 +99,17 @@ pub(crate) fn read(xml: &Xml<'_>, options: &ImportOptions) -> Result<Read, DoorE
     })
 }
 
-impl<'d> Reader<'d, '_> {
-    fn section(&mut self, section: Element<'d>) -> Result<(), DoorError> {
-        match section.tag() {
-            "compiler" => return self.compiler(section),
-            "default" => self.defaults.add(section, None),
-            "option" => return self.option(section),
-            "worldbody" => {
-                let mut contents = Contents::default();
-                self.collect(section, Pose::IDENTITY, None, &mut contents)?;
-                self.fill(GROUND, &contents)?;
-                for (element, pose, class) in contents.bodies {
-                    self.body(element, GROUND, pose, class)?;
-                }
-                self.scale_masses();
-            }
-            "keyframe" => return self.keyframe(section),
-            tag => {
-                for child in section.children() {
-                    match tag {
-                        "equality" => self.constraint(child)?,
-                        "tendon" => self.tendon(child)?,
-                        "actuator" => self.actuator(child)?,
-                        _ => self.contact(child),
-                    }
-                }
-            }
-        }
-        Ok(())
-    }
-
+impl<'d> Reader<'d> {
     fn compiler(&mut self, section: Element<'d>) -> Result<(), DoorError> {
-        if section.attribute("angle") == Some("radian") {
-            self.angles.unit = 1.0;
+        if section.is("angle", "radian") {
+            self.angle = 1.0;
         }
         if let Some(sequence) = section.attribute("eulerseq") {
             let letters: Vec<char> = sequence.chars().filter(|c| "xyzXYZ".contains(*c)).collect();
             let three = letters.try_into().ok();
-            self.angles.sequence = section.known(three, "sequence of axes", sequence)?;
+            self.sequence = section.known(three, "sequence of axes", sequence)?;
         }
-        self.limits_need_word = section.attribute("autolimits") == Some("false");
+        self.limits_need_word = section.is("autolimits", "false");
         let from_shapes = section.attribute("inertiafromgeom");
         self.from_shapes = from_shapes.and_then(|word| word.parse().ok());
         self.total_mass = section.value("settotalmass", self.total_mass)?;
@@ -157,8 +126,8 @@ impl<'d> Reader<'d, '_> {
         self.model.gravity = gravity.unwrap_or(self.model.gravity);
         let mut fluid = Vec::new();
         for name in ["density", "viscosity", "wind"] {
-            let text = section.attribute(name).unwrap_or_default();
-            if section.numbers(name, text)?.iter().any(|x| *x != 0.0) {
+            let numbers = section.numbers(name)?.unwrap_or_default();
+            if numbers.iter().any(|x| *x != 0.0) {
                 fluid.push(name);
             }
         }
@@ -166,10 +135,10 @@ impl<'d> Reader<'d, '_> {
             section.lost(format!("option {}: fluid forces", fluid.join(", ")));
         }
         for flag in section.called("flag") {
-            if flag.attribute("gravity") == Some("disable") {
+            if flag.is("gravity", "disable") {
                 self.model.gravity = [0.0; 3];
             }
-            self.touches &= flag.attribute("contact") != Some("disable");
+            self.touches &= !flag.is("contact", "disable");
         }
         Ok(())
     }
@@ -182,23 +151,23 @@ impl<'d> Reader<'d, '_> {
                 body.mass *= factor;
                 body.inertia = body.inertia.scaled(factor);
             }
+            // So far these are forces against the weight.
+            for load in &mut self.model.loads {
+                if let Action::Force { force, .. } = &mut load.action {
+                    *force = scaled(*force, factor);
+                }
+            }
         }
     }
 
-    fn keyframe(&mut self, section: Element<'d>) -> Result<(), DoorError> {
-        let Some(wanted) = &self.options.key else {
-            return Ok(());
-        };
-        let keys = section.called("key");
+    /// The pose of a keyframe, by the coordinates in the order of the joints.
+    fn keyframe(&mut self, keys: &[Element<'d>], wanted: &str) -> Result<(), DoorError> {
         let name_of = |key: &Element<'d>| key.attribute("name").unwrap_or_default();
         let Some(key) = keys.iter().find(|key| name_of(key) == wanted) else {
-            return Err(DoorError::unknown(
-                "keyframe",
-                wanted,
-                keys.iter().map(name_of),
-            ));
+            let known = keys.iter().map(name_of);
+            return Err(DoorError::unknown("keyframe", wanted, known));
         };
-        let numbers = key.numbers("qpos", key.attribute("qpos").unwrap_or_default())?;
+        let numbers = key.numbers("qpos")?.unwrap_or_default();
         let mut rest = &numbers[..];
         for (joint, count) in &self.order {
             let Some((values, after)) = rest.split_at_checked(*count) else {
@@ -209,82 +178,12 @@ impl<'d> Reader<'d, '_> {
                 (Some(joint), [value]) => self.moves.push((*joint, Move::To(*value))),
                 (Some(joint), [w, x, y, z]) => {
                     let turn = Matrix::quaternion([*w, *x, *y, *z]);
-                    self.moves
-                        .extend(turn.map(|turn| (*joint, Move::Turn(turn))));
+                    let turn = turn.map(|turn| (*joint, Move::Turn(turn)));
+                    self.moves.extend(turn);
                 }
                 _ => key.kept("key: the pose of a floating body is not taken from it"),
             }
         }
-        Ok(())
-    }
-
-    /// Bodies that float and that nothing refers to are left out.
-    fn name_floating(&mut self) {
-        for (body, element) in std::mem::take(&mut self.floating) {
-            let name = self.model.bodies[body].name.clone();
-            let used = self.model.joints.iter().any(|joint| joint.touches(body));
-            let loaded = self
-                .model
-                .loads
-                .iter()
-                .any(|load| load.bodies().contains(&body));
-            if used || loaded || self.options.fix.as_ref() == Some(&name) {
-                continue;
-            }
-            let text = format!("body {name}, free, joined to nothing: left out");
-            element.note(Effect::Changes, text);
-            let mut forces: Vec<&str> = Vec::new();
-            forces.extend(element.attribute("gravcomp").map(|_| "gravcomp"));
-            let own = self.shapes.iter().filter(|shape| shape.body == body);
-            forces.extend(own.filter_map(|shape| shape.fluid.map(|_| "fluidshape")));
-            if !forces.is_empty() {
-                let forces = forces.join(", ");
-                let text =
-                    format!("body {name} {forces}: left out (gravcomp 1 cancels the weight)");
-                element.note(Effect::Changes, text);
-            }
-            self.model.left_out.push(body);
-            self.shapes.retain(|shape| shape.body != body);
-        }
-    }
-
-    fn joint_named(&self, element: &Element<'d>, name: &str) -> Result<usize, DoorError> {
-        element.known(self.model.joint_named(name), "joint", name)
-    }
-
-    /// An actuator of a joint drives it.
-    fn actuator(&mut self, element: Element<'d>) -> Result<(), DoorError> {
-        let tag = element.tag();
-        let item = self.defaults.item(element, None)?;
-        let _ = element.attribute("name");
-        let name = element.attribute("joint");
-        let joint = name
-            .map(|name| self.joint_named(&element, name))
-            .transpose()?;
-        let drives = ["motor", "position", "velocity", "general", "intvelocity"].contains(&tag);
-        let joint = joint.filter(|joint| drives && self.model.joints[*joint].is_driveable());
-        let Some((name, joint)) = name.zip(joint) else {
-            let of = name.map_or(String::new(), |joint| format!(" of {joint}"));
-            let text = format!("{tag} actuator{of}: {}", crate::xml::LOST);
-            element.leave(Effect::Changes, text);
-            return Ok(());
-        };
-        let gear = item.numbers("gear")?.and_then(|gear| gear.first().copied());
-        let gear = gear.unwrap_or(1.0);
-        let gains = match tag {
-            "position" => Some([item.value("kp", 1.0)?, item.value("kv", 0.0)?]),
-            "velocity" => Some([0.0, item.value("kv", 1.0)?]),
-            _ => None,
-        };
-        element.kept(match tag {
-            "motor" => {
-                format!("motor of {name}: drives it, with {gear} N m or N for a control of 1")
-            }
-            "position" => "position actuator: servo: kept as a drive (kp, kv)".to_owned(),
-            "velocity" => "velocity actuator: servo: kept as a drive (kv)".to_owned(),
-            _ => format!("{tag} actuator of {name}: drives it; its own law is left out"),
-        });
-        self.model.drive(joint).servo = gains.map(|gains| gains.map(|gain| gain * gear * gear));
         Ok(())
     }
 }

@@ -1,6 +1,7 @@
-//! A mechanism between a file and a scene: every reader makes one, and the writer of scenes reads it.
+//! A mechanism between a file and a scene: every reader makes one, and the writer of scenes reads it. All is given in the frame of the
+//! ground, as drawn.
 
-use crate::finding::{Effect, Findings, Place};
+use crate::finding::Place;
 use crate::pose::{Matrix, Pose, Vector, add, dot, scaled, sub};
 
 /// The index of the ground among the bodies.
@@ -10,49 +11,41 @@ pub(crate) const GROUND: usize = 0;
 pub(crate) struct Body {
     pub(crate) name: String,
     pub(crate) place: Place,
-    /// Where its frame is as drawn.
+    /// Its frame in the file.
     pub(crate) pose: Pose,
     pub(crate) mass: f64,
-    /// In its frame, as all that follows; the tensor is about the centre of mass.
     pub(crate) center: Vector,
+    /// About the centre of mass.
     pub(crate) inertia: Matrix,
     pub(crate) points: Vec<(String, Vector)>,
 }
 
 impl Body {
-    pub(crate) fn new(name: &str, place: Place, pose: Pose) -> Self {
-        Self {
-            name: name.to_owned(),
-            place,
-            pose,
-            mass: 0.0,
-            center: [0.0; 3],
-            inertia: Matrix::ZERO,
-            points: Vec::new(),
-        }
-    }
-
-    /// Adds a part, given in the body's frame.
-    pub(crate) fn add_mass(&mut self, mass: f64, center: Vector, inertia: Matrix) {
+    /// Adds a part: its mass and its tensor, with the frame at its centre of mass.
+    pub(crate) fn add_mass(&mut self, mass: f64, frame: Pose, tensor: Matrix) {
+        self.inertia = self.inertia.plus(tensor.turned(frame.turn));
         if mass == 0.0 {
-            self.inertia = self.inertia.plus(inertia);
             return;
         }
+        // The tensor of two masses about their common centre.
+        let apart = sub(frame.origin, self.center);
         let total = self.mass + mass;
-        let weighted = add(scaled(self.center, self.mass), scaled(center, mass));
-        let common = scaled(weighted, 1.0 / total);
-        let old = steiner(self.mass, sub(self.center, common));
-        let new = steiner(mass, sub(center, common));
-        let both = self.inertia.plus(inertia).plus(old).plus(new);
-        (self.mass, self.center, self.inertia) = (total, common, both);
+        let isotropic = Matrix::IDENTITY.scaled(dot(apart, apart));
+        let across = isotropic.plus(Matrix::outer(apart, apart).scaled(-1.0));
+        self.inertia = self.inertia.plus(across.scaled(self.mass * mass / total));
+        self.center = add(self.center, scaled(apart, mass / total));
+        self.mass = total;
     }
-}
 
-/// The tensor of a mass at an offset.
-pub(crate) fn steiner(mass: f64, offset: Vector) -> Matrix {
-    let isotropic = Matrix::IDENTITY.scaled(dot(offset, offset));
-    let along = Matrix::outer(offset, offset).scaled(-1.0);
-    isotropic.plus(along).scaled(mass)
+    /// Moves the body from the drawn pose.
+    pub(crate) fn move_by(&mut self, motion: Pose) {
+        self.pose = motion.then(self.pose);
+        self.center = motion.point(self.center);
+        self.inertia = self.inertia.turned(motion.turn);
+        for (_, point) in &mut self.points {
+            *point = motion.point(*point);
+        }
+    }
 }
 
 /// A kind of joint. Axes are those of its ends.
@@ -73,18 +66,16 @@ pub(crate) enum Kind {
     Distance(f64),
 }
 
-/// A side of a joint, in the frame of its body.
+/// A frame of a body. As a side of a joint its origin is the joint's point, and its z the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct End {
     pub(crate) body: usize,
-    /// Its origin is the joint's point, its z the axis.
     pub(crate) frame: Pose,
 }
 
-impl End {
-    pub(crate) fn new(body: usize, frame: Pose) -> Self {
-        Self { body, frame }
-    }
+/// The same frame of two bodies.
+pub(crate) fn both(bodies: [usize; 2], frame: Pose) -> [End; 2] {
+    bodies.map(|body| End { body, frame })
 }
 
 /// What acts along the coordinate of a joint, and its limits, in the file's own coordinate.
@@ -95,6 +86,7 @@ pub(crate) struct Along {
     pub(crate) stiffness: f64,
     pub(crate) spring_reference: f64,
     pub(crate) armature: f64,
+    /// Of a one-sided limit the other number is infinite.
     pub(crate) limits: Option<[f64; 2]>,
 }
 
@@ -103,8 +95,7 @@ pub(crate) struct Joint {
     pub(crate) name: String,
     pub(crate) place: Place,
     pub(crate) kind: Kind,
-    pub(crate) first: End,
-    pub(crate) second: End,
+    pub(crate) ends: [End; 2],
     /// Whether the second body hangs on the first; other joints close loops.
     pub(crate) in_tree: bool,
     /// The file's coordinate as drawn.
@@ -115,25 +106,27 @@ pub(crate) struct Joint {
 impl Joint {
     /// A joint that is not in the tree, drawn where its coordinate is zero.
     pub(crate) fn new(name: impl Into<String>, place: Place, kind: Kind, ends: [End; 2]) -> Self {
-        let [first, second] = ends;
         Self {
             name: name.into(),
             place,
             kind,
-            first,
-            second,
+            ends,
             in_tree: false,
             drawn: 0.0,
             along: Along::default(),
         }
     }
 
-    pub(crate) fn ends(&self) -> [&End; 2] {
-        [&self.first, &self.second]
+    pub(crate) fn axis(&self) -> Vector {
+        self.ends[1].frame.turn.column(2)
     }
 
-    pub(crate) fn touches(&self, body: usize) -> bool {
-        self.first.body == body || self.second.body == body
+    pub(crate) fn origin(&self) -> Vector {
+        self.ends[1].frame.origin
+    }
+
+    pub(crate) fn bodies(&self) -> [usize; 2] {
+        self.ends.map(|end| end.body)
     }
 
     /// Whether it has one coordinate.
@@ -161,7 +154,7 @@ pub(crate) struct Coupling {
 }
 
 impl Coupling {
-    /// The polynomial with its slope.
+    /// The dependent coordinate with its slope.
     pub(crate) fn at(&self, independent: f64) -> [f64; 2] {
         let x = independent - self.references[1];
         let step = |[value, slope]: [f64; 2], c: &f64| [value * x + c, slope * x + value];
@@ -170,33 +163,24 @@ impl Coupling {
     }
 }
 
-/// A load with places of its own.
+/// A load with places of its own: each with its body.
 #[derive(Debug, Clone)]
-pub(crate) enum Load {
-    /// A spring with a damper between two points, each of a body and in its frame.
+pub(crate) struct Load {
+    pub(crate) name: String,
+    pub(crate) at: Vec<(usize, Vector)>,
+    pub(crate) action: Action,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) enum Action {
+    /// A spring with a damper between two places.
     Spring {
-        name: String,
-        ends: [(usize, Vector); 2],
         stiffness: f64,
         damping: f64,
         free_length: f64,
     },
-    /// A force at a point of a body; its direction is that of the ground, or turns with the body.
-    Force {
-        name: String,
-        at: (usize, Vector),
-        force: Vector,
-        turns: bool,
-    },
-}
-
-impl Load {
-    pub(crate) fn bodies(&self) -> Vec<usize> {
-        match self {
-            Self::Spring { ends, .. } => ends.iter().map(|(body, _)| *body).collect(),
-            Self::Force { at, .. } => vec![at.0],
-        }
-    }
+    /// A force at a place; its direction stays, or turns with the body.
+    Force { force: Vector, turns: bool },
 }
 
 /// A joint that drives.
@@ -206,17 +190,6 @@ pub(crate) struct Drive {
     pub(crate) motion: Motion,
     /// Gains kp and kv of a servo that holds the file's coordinate at zero.
     pub(crate) servo: Option<[f64; 2]>,
-}
-
-impl Drive {
-    pub(crate) fn new(joint: usize) -> Self {
-        let (motion, servo) = (Motion::Unknown, None);
-        Self {
-            joint,
-            motion,
-            servo,
-        }
-    }
 }
 
 /// How the file moves a drive.
@@ -237,60 +210,58 @@ pub(crate) struct Model {
     pub(crate) couplings: Vec<Coupling>,
     pub(crate) loads: Vec<Load>,
     pub(crate) drives: Vec<Drive>,
-    /// Named frames of bodies, which `--close` may name.
-    pub(crate) frames: Vec<(String, usize, Pose)>,
-    /// Bodies that are left out, and named.
-    pub(crate) left_out: Vec<usize>,
+    /// Named frames, besides those of bodies, which `--close` may name.
+    pub(crate) frames: Vec<(String, End)>,
     /// The file's words for friction and limits of a joint.
     pub(crate) terms: [&'static str; 2],
-    pub(crate) findings: Findings,
 }
 
 impl Model {
-    pub(crate) fn new(title: &str, file: &Place, findings: Findings) -> Self {
-        let ground = Body::new("ground", file.clone(), Pose::IDENTITY);
-        Self {
+    pub(crate) fn new(title: &str, file: Place) -> Self {
+        let mut model = Self {
             title: title.to_owned(),
             gravity: [0.0, 0.0, -9.81],
-            bodies: vec![ground],
+            bodies: Vec::new(),
             joints: Vec::new(),
             couplings: Vec::new(),
             loads: Vec::new(),
             drives: Vec::new(),
             frames: Vec::new(),
-            left_out: Vec::new(),
             terms: ["friction", "limit"],
-            findings,
-        }
+        };
+        model.push_body("ground", file, Pose::IDENTITY);
+        model
     }
 
-    /// Where an end is as drawn.
-    pub(crate) fn drawn(&self, end: &End) -> Pose {
-        self.bodies[end.body].pose.then(end.frame)
-    }
-
-    /// The end on a body that is drawn at a place of the world.
-    pub(crate) fn end_at(&self, body: usize, world: Pose) -> End {
-        End::new(body, self.bodies[body].pose.inverse().then(world))
-    }
-
-    /// The same place as seen from another body, as drawn.
-    pub(crate) fn seen_from(&self, body: usize, end: &End) -> End {
-        self.end_at(body, self.drawn(end))
+    /// A new body without mass, and its number.
+    pub(crate) fn push_body(&mut self, name: &str, place: Place, pose: Pose) -> usize {
+        self.bodies.push(Body {
+            name: name.to_owned(),
+            place,
+            pose,
+            mass: 0.0,
+            center: [0.0; 3],
+            inertia: Matrix::ZERO,
+            points: Vec::new(),
+        });
+        self.bodies.len() - 1
     }
 
     /// Fixes a body to the ground where it is.
     pub(crate) fn hold(&mut self, body: usize) {
-        let second = End::new(body, Pose::IDENTITY);
-        let ends = [self.seen_from(GROUND, &second), second];
-        let (name, place) = (&self.bodies[body].name, self.bodies[body].place.clone());
-        let mut joint = Joint::new(format!("{name}_ground"), place, Kind::Fixed, ends);
-        joint.in_tree = true;
-        self.joints.push(joint);
+        let Body {
+            name, place, pose, ..
+        } = &self.bodies[body];
+        let ends = both([GROUND, body], *pose);
+        let name = format!("{name}_ground");
+        self.push_tree_joint(Joint::new(name, place.clone(), Kind::Fixed, ends));
     }
 
-    pub(crate) fn note(&self, place: &Place, effect: Effect, text: impl Into<String>) {
-        self.findings.add(place, effect, text);
+    /// A joint of the tree, and its number.
+    pub(crate) fn push_tree_joint(&mut self, joint: Joint) -> usize {
+        let in_tree = true;
+        self.joints.push(Joint { in_tree, ..joint });
+        self.joints.len() - 1
     }
 
     /// A name for the next joint that closes a loop.
@@ -300,33 +271,78 @@ impl Model {
         given.map_or_else(|| format!("loop{count}"), str::to_owned)
     }
 
-    /// A new body without mass, and its number.
-    pub(crate) fn push_body(&mut self, name: &str, place: Place, pose: Pose) -> usize {
-        self.bodies.push(Body::new(name, place, pose));
-        self.bodies.len() - 1
-    }
-
-    pub(crate) fn push_frame(&mut self, name: &str, body: usize, pose: Pose) {
-        self.frames.push((name.to_owned(), body, pose));
+    pub(crate) fn joint_named(&self, name: &str) -> Option<usize> {
+        self.joints.iter().position(|joint| joint.name == name)
     }
 
     /// A joint with one coordinate.
     pub(crate) fn driveable(&self, name: &str) -> Option<usize> {
-        self.joint_named(name)
-            .filter(|joint| self.joints[*joint].is_driveable())
-    }
-
-    pub(crate) fn joint_named(&self, name: &str) -> Option<usize> {
-        self.joints.iter().position(|joint| joint.name == name)
+        let joint = self.joint_named(name);
+        joint.filter(|joint| self.joints[*joint].is_driveable())
     }
 
     /// The drive of a joint, a new one if it has none.
     pub(crate) fn drive(&mut self, joint: usize) -> &mut Drive {
         let known = self.drives.iter().position(|drive| drive.joint == joint);
-        let at = known.unwrap_or(self.drives.len());
         if known.is_none() {
-            self.drives.push(Drive::new(joint));
+            self.drives.push(Drive {
+                joint,
+                motion: Motion::Unknown,
+                servo: None,
+            });
         }
-        &mut self.drives[at]
+        let last = self.drives.len() - 1;
+        &mut self.drives[known.unwrap_or(last)]
     }
+
+    /// Whether a joint or a load touches the body.
+    pub(crate) fn is_used(&self, body: usize) -> bool {
+        let loaded = |load: &Load| load.at.iter().any(|(of, _)| *of == body);
+        self.loads.iter().any(loaded) || self.has(body)
+    }
+
+    /// Whether the body is the ground, or in a joint: others are not in the scene.
+    pub(crate) fn has(&self, body: usize) -> bool {
+        let touches = |joint: &Joint| joint.bodies().contains(&body);
+        body == GROUND || self.joints.iter().any(touches)
+    }
+
+    /// For each body the first of those that some of the joints connect with it.
+    pub(crate) fn components(&self, some: impl Fn(usize, &Joint) -> bool) -> Vec<usize> {
+        let mut first: Vec<usize> = (0..self.bodies.len()).collect();
+        for (k, joint) in self.joints.iter().enumerate() {
+            if some(k, joint) {
+                connect(&mut first, joint.bodies());
+            }
+        }
+        first
+    }
+
+    /// Selects the joints of the tree: those that are in it, then those that fix, then those with a coordinate. The others close loops.
+    pub(crate) fn span(&mut self) {
+        let rank = |joint: &Joint| {
+            (
+                !joint.in_tree,
+                joint.kind != Kind::Fixed,
+                !joint.is_driveable(),
+            )
+        };
+        let mut order: Vec<usize> = (0..self.joints.len()).collect();
+        order.sort_by_key(|joint| rank(&self.joints[*joint]));
+        let mut first: Vec<usize> = (0..self.bodies.len()).collect();
+        for joint in order {
+            let joint = &mut self.joints[joint];
+            joint.in_tree = connect(&mut first, joint.bodies());
+        }
+    }
+}
+
+/// Connects the components of two bodies, unless they are one.
+fn connect(first: &mut [usize], bodies: [usize; 2]) -> bool {
+    let [a, b] = bodies.map(|body| first[body]);
+    let (least, other) = (a.min(b), a.max(b));
+    for one in first.iter_mut().filter(|one| **one == other) {
+        *one = least;
+    }
+    a != b
 }

@@ -2,6 +2,7 @@
 
 use crate::model::Model;
 use std::collections::HashSet;
+use std::iter;
 
 /// The names in the scene of bodies, joints, and the coordinates of joints.
 pub(crate) struct Names {
@@ -13,16 +14,16 @@ pub(crate) struct Names {
 impl Names {
     pub(crate) fn new(model: &Model) -> Self {
         // A body and a coordinate have different names.
-        let mut taken: HashSet<String> = ["ground", "t"].map(str::to_owned).into();
-        let names = model.bodies.iter().map(|body| body.name.as_str());
-        let bodies = names
-            .skip(1)
-            .map(|name| free_name(&allowed(name), &mut taken));
-        let bodies = std::iter::once("ground".to_owned()).chain(bodies).collect();
+        let mut taken = HashSet::from(["t".to_owned()]);
+        let bodies = model.bodies.iter();
+        let bodies = bodies.map(|body| free_name(&allowed(&body.name), &mut taken));
+        let bodies = bodies.collect();
         let names = model.joints.iter().map(|joint| allowed(&joint.name));
-        let coordinate =
-            |name: String| free_name(&format!("q_{}", name.replace('-', "_")), &mut taken);
-        let coordinates = names.clone().map(coordinate).collect();
+        let coordinates = names.clone().map(|name| {
+            let name = format!("q_{}", name.replace('-', "_"));
+            free_name(&name, &mut taken)
+        });
+        let coordinates = coordinates.collect();
         let mut of_joints = HashSet::new();
         let joints = names.map(|name| free_name(&name, &mut of_joints)).collect();
         Self {
@@ -33,19 +34,15 @@ impl Names {
     }
 
     /// What was renamed: the former name and the new one.
-    pub(crate) fn changed<'n>(&'n self, model: &'n Model) -> Vec<(&'n str, &'n str)> {
-        let bodies = model
-            .bodies
-            .iter()
-            .map(|body| &body.name[..])
-            .zip(&self.bodies);
-        let joints = model
-            .joints
-            .iter()
-            .map(|joint| &joint.name[..])
-            .zip(&self.joints);
-        let pairs = bodies.chain(joints).map(|(old, new)| (old, new.as_str()));
-        pairs.filter(|(old, new)| old != new).collect()
+    pub(crate) fn changed(&self, model: &Model) -> Vec<[String; 2]> {
+        let bodies = model.bodies.iter().map(|body| &body.name);
+        let joints = model.joints.iter().map(|joint| &joint.name);
+        let old = bodies.chain(joints);
+        let pairs = old.zip(self.bodies.iter().chain(&self.joints));
+        let changed = pairs.filter(|(old, new)| old != new);
+        changed
+            .map(|(old, new)| [old.clone(), new.clone()])
+            .collect()
     }
 }
 
@@ -53,18 +50,16 @@ impl Names {
 pub(crate) fn allowed(name: &str) -> String {
     let is_other = |c: char| !(c.is_alphanumeric() || c == '-');
     let name = name.trim().replace(is_other, "_");
-    let name: String = name.chars().take(60).collect();
-    if name.is_empty() {
-        "unnamed".to_owned()
-    } else {
-        name
+    match name.is_empty() {
+        true => "unnamed".to_owned(),
+        false => name.chars().take(60).collect(),
     }
 }
 
 /// The name, with a number if another part has it.
 pub(crate) fn free_name(name: &str, taken: &mut HashSet<String>) -> String {
     let numbered = (2..).map(|n| format!("{name}_{n}"));
-    let mut all = std::iter::once(name.to_owned()).chain(numbered);
+    let mut all = iter::once(name.to_owned()).chain(numbered);
     let free = all.find(|one| !taken.contains(one)).unwrap_or_default();
     taken.insert(free.clone());
     free

@@ -47,8 +47,7 @@ impl FromStr for Closing {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text.rsplit_once(':');
-        let parsed = parts.and_then(|(frames, kind)| {
+        let parts = text.rsplit_once(':').and_then(|(frames, kind)| {
             let (first, second) = frames.split_once('=')?;
             let known = ["revolute", "spherical", "fixed"].contains(&kind);
             known.then(|| Self {
@@ -56,14 +55,13 @@ impl FromStr for Closing {
                 kind: kind.to_owned(),
             })
         });
-        parsed.ok_or_else(|| {
-            "write FRAME=FRAME:KIND; the kind is revolute, spherical or fixed".to_owned()
-        })
+        let help = "write FRAME=FRAME:KIND; the kind is revolute, spherical or fixed";
+        parts.ok_or_else(|| help.to_owned())
     }
 }
 
 /// The options of an import. By default the file decides.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ImportOptions {
     /// The format; otherwise the ending or the beginning of the file shows it.
     pub from: Option<Format>,
@@ -79,24 +77,8 @@ pub struct ImportOptions {
     pub loops: Option<String>,
     /// A floating body that is held where it is drawn.
     pub fix: Option<String>,
-    /// Whether a mechanism that moves in a plane becomes a planar scene.
-    pub flatten: bool,
+    /// A scene in space, even if the mechanism moves in a plane.
+    pub spatial: bool,
     /// How far, in m, points may be from the plane of a planar mechanism; 1e-6 of its size by default.
     pub tolerance: Option<f64>,
-}
-
-impl Default for ImportOptions {
-    fn default() -> Self {
-        Self {
-            from: None,
-            drives: Vec::new(),
-            key: None,
-            start: Vec::new(),
-            close: Vec::new(),
-            loops: None,
-            fix: None,
-            flatten: true,
-            tolerance: None,
-        }
-    }
 }

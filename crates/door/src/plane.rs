@@ -1,10 +1,8 @@
 //! Mechanisms that move in a plane.
 
-use crate::finding::Effect;
-use crate::model::{GROUND, Joint, Kind, Load, Model};
+use crate::model::{Action, GROUND, Joint, Kind, Model};
 use crate::options::ImportOptions;
 use crate::pose::{Pose, Vector, cross, dot, length, perpendicular, scaled, sub, unit};
-use crate::settle::components;
 
 /// What differs by less is rounding, in rad, or relative to the size.
 const ROUNDING: f64 = 1e-13;
@@ -23,24 +21,26 @@ pub(crate) struct Plane {
 
 impl Plane {
     fn new(normal: Vector) -> Self {
-        let normal = snapped(normal);
-        let up = if normal[2].abs() > 0.9 {
-            [0.0, 1.0, 0.0]
-        } else {
-            [0.0, 0.0, 1.0]
+        // Along an axis of the ground, if it is so but for rounding.
+        let rounded = normal.map(f64::round);
+        let is_axis = length(sub(normal, rounded)) < ROUNDING;
+        let normal = if is_axis { rounded } else { normal };
+        let up = match normal[2].abs() > 0.9 {
+            true => [0.0, 1.0, 0.0],
+            false => [0.0, 0.0, 1.0],
         };
         let flat = sub(up, scaled(normal, dot(up, normal)));
         let y = unit(flat).unwrap_or_else(|| perpendicular(normal));
         let x = cross(y, normal);
         // Of the two sides the one from which x points along an axis of the ground, not against it.
-        let most = x.iter().fold(0.0f64, |most, c| {
+        let larger = |most: f64, c: &f64| {
             if c.abs() > most.abs() + 1e-9 {
                 *c
             } else {
                 most
             }
-        });
-        let side = if most < 0.0 { -1.0 } else { 1.0 };
+        };
+        let side = x.iter().fold(0.0, larger).signum();
         // Zero in place of rounding, and of minus zero.
         let clean = |v: Vector| v.map(|c| if c.abs() < ROUNDING / 1000.0 { 0.0 } else { c });
         Self {
@@ -55,55 +55,36 @@ impl Plane {
     }
 }
 
-/// A unit vector along an axis of the ground, if it is so but for rounding.
-fn snapped(axis: Vector) -> Vector {
-    let rounded = axis.map(f64::round);
-    if length(sub(axis, rounded)) < ROUNDING {
-        rounded
-    } else {
-        axis
-    }
-}
-
-/// A deviation from the plane: the part, how much in its unit, and relative to the size, or in rad.
-struct Deviation<'m> {
-    joint: &'m Joint,
-    amount: String,
-    relative: f64,
-}
-
 /// The plane in which the mechanism moves, unless it moves in space. What is set right is named.
 pub(crate) fn find(model: &Model, options: &ImportOptions) -> Option<Plane> {
-    if !options.flatten {
-        return None;
-    }
-    let plane = Plane::new(normal(model)?);
+    let plane = Plane::new(normal(model).filter(|_| !options.spatial)?);
     let size = size(model);
     let tolerance = options.tolerance.map_or(TOLERANCE, |length| length / size);
-    let deviations = deviations(model, &plane, size)?;
-    let largest = deviations
-        .iter()
-        .map(|one| one.relative)
-        .fold(0.0, f64::max);
+    let deviations = deviations(model, plane.normal, size)?;
+    let amounts = deviations.iter().map(|(_, amount, _)| *amount);
+    let largest = amounts.fold(0.0, f64::max);
     if largest > tolerance {
         if largest < NEARLY {
             let needed = largest * size;
             let text = format!("nearly planar: `--tolerance {needed:.1e}` (m) makes it planar");
-            model.note(&model.bodies[GROUND].place, Effect::Kept, text);
+            model.bodies[GROUND].place.kept(text);
         }
         return None;
     }
-    for one in deviations.iter().filter(|one| one.relative > ROUNDING) {
-        let text = format!("snapped: `{}` by {}", one.joint.name, one.amount);
-        model.note(&one.joint.place, Effect::Kept, text);
+    for (joint, _, shown) in deviations
+        .iter()
+        .filter(|(_, amount, _)| *amount > ROUNDING)
+    {
+        let text = format!("snapped: `{}` by {shown}", joint.name);
+        joint.place.kept(text);
     }
     Some(plane)
 }
 
 /// The largest distance of joints along an axis of the ground.
 pub(crate) fn size(model: &Model) -> f64 {
-    let ends = model.joints.iter().flat_map(Joint::ends);
-    let points: Vec<Vector> = ends.map(|end| model.drawn(end).origin).collect();
+    let ends = model.joints.iter().flat_map(|joint| joint.ends);
+    let points: Vec<Vector> = ends.map(|end| end.frame.origin).collect();
     let extent = |k: usize| {
         let most = points.iter().map(|p| p[k]).fold(f64::MIN, f64::max);
         most - points.iter().map(|p| p[k]).fold(f64::MAX, f64::min)
@@ -116,7 +97,7 @@ pub(crate) fn size(model: &Model) -> f64 {
 fn normal(model: &Model) -> Option<Vector> {
     let of = |kind: Kind| {
         let joints = model.joints.iter().filter(move |joint| joint.kind == kind);
-        joints.map(|joint| model.drawn(&joint.second).turn.column(2))
+        joints.map(Joint::axis)
     };
     if let Some(axis) = of(Kind::Hinge).next() {
         return Some(axis);
@@ -124,60 +105,49 @@ fn normal(model: &Model) -> Option<Vector> {
     let first = of(Kind::Slide).next()?;
     let across = of(Kind::Slide).map(|axis| cross(first, axis));
     let across = across.max_by(|a, b| length(*a).total_cmp(&length(*b)))?;
-    if length(across) > NEARLY {
-        unit(across)
-    } else {
-        Some(perpendicular(first))
+    match length(across) > NEARLY {
+        true => unit(across),
+        false => Some(perpendicular(first)),
     }
 }
 
+/// A joint that is not as in a planar mechanism: by how much, in rad or relative to the size, and how this is written.
+type Deviation<'m> = (&'m Joint, f64, String);
+
 /// How far the joints are from those of a planar mechanism; none if some can never be.
-fn deviations<'m>(model: &'m Model, plane: &Plane, size: f64) -> Option<Vec<Deviation<'m>>> {
-    let n = plane.normal;
-    let mut all = Vec::new();
+fn deviations<'m>(model: &'m Model, n: Vector, size: f64) -> Option<Vec<Deviation<'m>>> {
     // Hinges and slides have to keep all bodies in the plane: balls among them are then pins.
-    let keeps = |joint: &&Joint| matches!(joint.kind, Kind::Hinge | Kind::Slide | Kind::Fixed);
-    let keeping: Vec<Joint> = model.joints.iter().filter(keeps).cloned().collect();
-    let component = components(model, &keeping);
+    let keeps = |joint: &Joint| matches!(joint.kind, Kind::Hinge | Kind::Slide | Kind::Fixed);
+    let component = model.components(|_, joint| keeps(joint));
+    let depth = |a: Vector, b: Vector| (dot(n, b) - dot(n, a)).abs();
+    let mut all = Vec::new();
     for joint in &model.joints {
-        if joint.ends().iter().any(|end| component[end.body] != GROUND) {
+        if joint.bodies().iter().any(|body| component[*body] != GROUND) {
             return None;
         }
-        let ends = joint.ends().map(|end| model.drawn(end));
-        let depth = (dot(n, ends[1].origin) - dot(n, ends[0].origin)).abs();
-        let across = |end: Pose| length(cross(end.turn.column(2), n));
-        let along = |end: Pose| dot(end.turn.column(2), n).abs();
+        let ends = joint.ends.map(|end| end.frame);
+        let depth = depth(ends[0].origin, ends[1].origin);
         let inside = |end: Pose| end.turn.transposed().apply(n);
         let tilts = match joint.kind {
-            Kind::Hinge | Kind::Cylinder => ends.map(across),
-            Kind::Slide => ends.map(along),
+            Kind::Hinge | Kind::Cylinder => ends.map(|end| length(cross(end.turn.column(2), n))),
+            Kind::Slide => ends.map(|end| dot(end.turn.column(2), n).abs()),
             Kind::Fixed => [length(cross(inside(ends[0]), inside(ends[1]))), 0.0],
             Kind::Distance(_) if depth > ROUNDING * size => return None,
             Kind::Ball | Kind::Distance(_) => [0.0; 2],
             Kind::Universal | Kind::Screw(_) | Kind::Planar => return None,
         };
         let tilt = tilts[0].max(tilts[1]);
-        let amount = format!("{tilt:.1e} rad of its axis");
-        all.push(Deviation {
-            joint,
-            amount,
-            relative: tilt,
-        });
+        all.push((joint, tilt, format!("{tilt:.1e} rad of its axis")));
         if !joint.in_tree && matches!(joint.kind, Kind::Hinge | Kind::Ball | Kind::Fixed) {
-            let (amount, relative) = (format!("{depth:.1e} m along the normal"), depth / size);
-            all.push(Deviation {
-                joint,
-                amount,
-                relative,
-            });
+            let shown = format!("{depth:.1e} m along the normal");
+            all.push((joint, depth / size, shown));
         }
     }
     for load in &model.loads {
-        if let Load::Spring { ends, .. } = load {
-            let [a, b] = ends.map(|(body, point)| dot(n, model.bodies[body].pose.point(point)));
-            if (a - b).abs() > ROUNDING * size {
-                return None;
-            }
+        if let (Action::Spring { .. }, [a, b]) = (&load.action, &load.at[..])
+            && depth(a.1, b.1) > ROUNDING * size
+        {
+            return None;
         }
     }
     Some(all)

@@ -135,16 +135,6 @@ impl Matrix {
     pub(crate) fn turned(self, turn: Self) -> Self {
         turn.times(self).times(turn.transposed())
     }
-
-    /// How far its rows are from perpendicular unit vectors of right-handed axes.
-    pub(crate) fn rotation_error(self) -> f64 {
-        let [a, b, c] = self.0;
-        let products = self.times(self.transposed());
-        let off = products.plus(Self::IDENTITY.scaled(-1.0));
-        let largest = |m: f64, x: &f64| m.max(x.abs());
-        let error = off.0.iter().flatten().fold(0.0, largest);
-        error.max((1.0 - dot(cross(a, b), c)).abs())
-    }
 }
 
 /// Where a frame is in another: origin and axes.
@@ -162,10 +152,6 @@ impl Pose {
 
     pub(crate) fn new(origin: Vector, turn: Matrix) -> Self {
         Self { origin, turn }
-    }
-
-    pub(crate) fn at(origin: Vector) -> Self {
-        Self::new(origin, Matrix::IDENTITY)
     }
 
     /// A frame whose z is along the unit vector `axis`.

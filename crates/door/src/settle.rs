@@ -3,9 +3,9 @@
 use crate::error::DoorError;
 use crate::finding::Effect;
 use crate::mobility::freedoms;
-use crate::model::{Drive, End, GROUND, Joint, Kind, Load, Model};
+use crate::model::{Action, Coupling, Drive, End, GROUND, Joint, Kind, Model};
 use crate::options::{Closing, ImportOptions};
-use crate::pose::{Matrix, Pose, Vector, scaled};
+use crate::pose::{Matrix, Pose, scaled};
 use crate::xml::Coverage;
 use std::f64::consts::TAU;
 
@@ -25,17 +25,20 @@ pub(crate) struct Read {
 
 /// Moves, closes, holds and merges as the options ask, and selects the drives.
 pub(crate) fn settle(read: Read, options: &ImportOptions) -> Result<Model, DoorError> {
-    let Read {
-        mut model,
-        mut moves,
-        ..
-    } = read;
+    let (mut model, mut moves) = (read.model, read.moves);
+    model.span();
     for closing in &options.close {
         close(&mut model, closing)?;
     }
     if let Some(name) = &options.fix {
-        fix(&mut model, name)?;
+        let names = model.bodies.iter().map(|body| body.name.as_str());
+        let body = names.clone().skip(1).position(|one| one == name);
+        let body = body.ok_or_else(|| DoorError::unknown("body", name, names.skip(1)))? + 1;
+        let place = model.bodies[body].place.clone();
+        place.kept(format!("body {name}: held where it is drawn"));
+        model.hold(body);
     }
+    model.span();
     check_floating(&mut model)?;
     for (name, value) in &options.start {
         moves.push((driveable(&model, name)?, Move::To(*value)));
@@ -50,20 +53,7 @@ pub(crate) fn settle(read: Read, options: &ImportOptions) -> Result<Model, DoorE
     select_drives(&mut model, options)?;
     merge_fixed(&mut model);
     keep_armatures(&mut model);
-    let (needed, drives) = (freedoms(&model), model.drives.len());
-    if drives == 0 {
-        let joints = driveable_names(&model).map(str::to_owned).collect();
-        return Err(DoorError::NoDrive { needed, joints });
-    }
-    if drives < needed {
-        let all = driveable_names(&model).collect::<Vec<_>>().join(", ");
-        let freedoms = crate::error::freedoms(needed);
-        let text = format!(
-            "{freedoms}, of which {drives} driven: give --drive for each of {needed} joints among {all}"
-        );
-        let place = model.bodies[GROUND].place.clone();
-        model.note(&place, Effect::Kept, text);
-    }
+    count_drives(&model)?;
     Ok(model)
 }
 
@@ -73,148 +63,105 @@ fn driveable_names(model: &Model) -> impl Iterator<Item = &str> {
 }
 
 /// A joint with one coordinate by its name.
-fn driveable(model: &Model, name: &str) -> Result<usize, DoorError> {
+pub(crate) fn driveable(model: &Model, name: &str) -> Result<usize, DoorError> {
     let what = "joint with one coordinate";
     let joint = model.driveable(name);
     joint.ok_or_else(|| DoorError::unknown(what, name, driveable_names(model)))
 }
 
 fn close(model: &mut Model, closing: &Closing) -> Result<(), DoorError> {
-    let ends = [
-        frame(model, &closing.frames[0])?,
-        frame(model, &closing.frames[1])?,
-    ];
+    let [first, second] = &closing.frames;
+    let ends = [frame(model, first)?, frame(model, second)?];
     let kind = match closing.kind.as_str() {
         "revolute" => Kind::Hinge,
         "spherical" => Kind::Ball,
         _ => Kind::Fixed,
     };
     let place = model.bodies[ends[0].body].place.clone();
-    let name = model.loop_name(None);
-    model.joints.push(Joint::new(name, place, kind, ends));
+    let joint = Joint::new(model.loop_name(None), place, kind, ends);
+    model.joints.push(joint);
     Ok(())
 }
 
-/// A frame of the file by its name.
+/// A frame of the file by its name: that of a body, another, or that of a joint.
 pub(crate) fn frame(model: &Model, name: &str) -> Result<End, DoorError> {
-    let found = model.frames.iter().find(|(one, ..)| one == name);
-    let end = found.map(|(_, body, frame)| End::new(*body, *frame));
-    let names = model.frames.iter().map(|(one, ..)| one.as_str());
-    end.ok_or_else(|| DoorError::unknown("frame", name, names))
-}
-
-/// Holds a floating body where it is.
-fn fix(model: &mut Model, name: &str) -> Result<(), DoorError> {
-    let names = model.bodies.iter().skip(1).map(|body| body.name.as_str());
-    let Some(body) = names.clone().position(|one| one == name) else {
-        return Err(DoorError::unknown("body", name, names));
-    };
-    let place = model.bodies[body + 1].place.clone();
-    model.note(
-        &place,
-        Effect::Kept,
-        format!("body {name}: held where it is drawn"),
-    );
-    model.hold(body + 1);
-    Ok(())
-}
-
-/// For each body a body that all bodies joined with it by some joints share: the first.
-pub(crate) fn components(model: &Model, joints: &[Joint]) -> Vec<usize> {
-    let mut least: Vec<usize> = (0..model.bodies.len()).collect();
-    let root = |least: &[usize], mut body: usize| {
-        while least[body] != body {
-            body = least[body];
-        }
-        body
-    };
-    for joint in joints {
-        let [a, b] = joint.ends().map(|end| root(&least, end.body));
-        least[a.max(b)] = a.min(b);
-    }
-    (0..model.bodies.len())
-        .map(|body| root(&least, body))
-        .collect()
-}
-
-/// Selects the joints of the tree: first those that fix, then those with a coordinate. The others close loops.
-pub(crate) fn span(model: &mut Model) {
-    let rank =
-        |joint: &Joint| u8::from(joint.kind != Kind::Fixed) + u8::from(!joint.is_driveable());
-    let mut order: Vec<usize> = (0..model.joints.len()).collect();
-    order.sort_by_key(|joint| rank(&model.joints[*joint]));
-    let mut tree: Vec<Joint> = Vec::new();
-    for joint in order {
-        let component = components(model, &tree);
-        let of = &mut model.joints[joint];
-        of.in_tree = component[of.first.body] != component[of.second.body];
-        if of.in_tree {
-            tree.push(of.clone());
-        }
-    }
+    let bodies = model.bodies.iter().enumerate().map(|(body, of)| {
+        let frame = of.pose;
+        (&of.name, End { body, frame })
+    });
+    let joints = model
+        .joints
+        .iter()
+        .map(|joint| (&joint.name, joint.ends[1]));
+    let others = model.frames.iter().map(|(name, end)| (name, *end));
+    let mut all = bodies.chain(others).chain(joints);
+    let known = all.clone().map(|(one, _)| one.as_str());
+    let found = all.find(|(one, _)| *one == name);
+    let end = found.map(|(_, end)| end);
+    end.ok_or_else(|| DoorError::unknown("frame", name, known))
 }
 
 /// Bodies that no joint connects with anything are left out; others have to be held.
 fn check_floating(model: &mut Model) -> Result<(), DoorError> {
-    let component = components(model, &model.joints);
-    let mut floating: Vec<String> = Vec::new();
-    for (body, root) in component.into_iter().enumerate().skip(1) {
-        if root != body || model.left_out.contains(&body) {
-            continue;
-        }
-        let name = model.bodies[body].name.clone();
-        let loaded = model.loads.iter().any(|load| load.bodies().contains(&body));
-        if loaded || model.joints.iter().any(|joint| joint.touches(body)) {
-            floating.push(name);
-        } else {
-            let place = model.bodies[body].place.clone();
-            let text = format!("body {name}, joined to nothing: left out");
-            model.note(&place, Effect::Changes, text);
-            model.left_out.push(body);
-        }
+    let component = model.components(|_, _| true);
+    let roots = (1..component.len()).filter(|body| component[*body] == *body);
+    let (floating, free): (Vec<usize>, Vec<usize>) = roots.partition(|body| model.is_used(*body));
+    for body in free {
+        let body = &model.bodies[body];
+        let text = format!("body {}, free, joined to nothing: left out", body.name);
+        body.place.note(Effect::Changes, text);
     }
     if floating.is_empty() {
-        Ok(())
-    } else {
-        Err(DoorError::Floating(floating))
+        return Ok(());
     }
+    let names: Vec<&str> = floating
+        .iter()
+        .map(|body| model.bodies[*body].name.as_str())
+        .collect();
+    let message = format!("nothing holds {}: the base floats", names.join(", "));
+    let help = "--fix BODY holds a body where it is drawn";
+    Err(DoorError::new(message, help))
 }
 
-/// Moves what hangs on a joint.
+/// Moves what hangs on a joint. What the tree without it connects with the ground stays.
 fn move_joint(model: &mut Model, joint: usize, by: Move) {
     let of = &model.joints[joint];
-    let here = model.drawn(&of.second);
-    let axis = here.turn.column(2);
-    let turn = |angle| Pose::turn_about(here.origin, Matrix::about(axis, angle));
+    let (origin, axis) = (of.origin(), of.axis());
+    let turn = |angle| Pose::turn_about(origin, Matrix::about(axis, angle));
+    let slide = |travel| Pose::new(scaled(axis, travel), Matrix::IDENTITY);
     let motion = match (by, of.kind) {
         (Move::To(value), Kind::Hinge | Kind::Cylinder) => turn(value - of.drawn),
-        (Move::To(value), Kind::Slide) => Pose::at(scaled(axis, value - of.drawn)),
+        (Move::To(value), Kind::Slide) => slide(value - of.drawn),
         (Move::To(value), Kind::Screw(pitch)) => {
             let angle = value - of.drawn;
-            Pose::at(scaled(axis, pitch * angle / TAU)).then(turn(angle))
+            slide(pitch * angle / TAU).then(turn(angle))
         }
         (Move::Turn(turn), Kind::Ball) => {
-            let body = model.bodies[of.second.body].pose.turn;
-            Pose::turn_about(here.origin, turn.turned(body))
+            let axes = model.bodies[of.ends[1].body].pose.turn;
+            Pose::turn_about(origin, turn.turned(axes))
         }
         _ => return,
     };
-    // What the tree without this joint connects with the ground stays.
-    let others = model
-        .joints
-        .iter()
-        .enumerate()
-        .filter(|(k, one)| *k != joint && one.in_tree);
-    let others: Vec<Joint> = others.map(|(_, one)| one.clone()).collect();
-    let component = components(model, &others);
-    let [first, second] = of.ends().map(|end| component[end.body]);
-    let (side, motion) = match second {
-        GROUND => (first, motion.inverse()),
-        side => (side, motion),
+    let component = model.components(|k, one| one.in_tree && k != joint);
+    let (side, motion) = match of.bodies().map(|body| component[body]) {
+        [first, GROUND] => (first, motion.inverse()),
+        [_, second] => (second, motion),
     };
-    for (body, root) in component.iter().enumerate() {
-        if *root == side && side != GROUND {
-            model.bodies[body].pose = motion.then(model.bodies[body].pose);
+    let moves = |body: usize| component[body] == side && side != GROUND;
+    let bodies = model.bodies.iter_mut().enumerate();
+    for (_, body) in bodies.filter(|(body, _)| moves(*body)) {
+        body.move_by(motion);
+    }
+    let ends = model.joints.iter_mut().flat_map(|joint| &mut joint.ends);
+    for end in ends.filter(|end| moves(end.body)) {
+        end.frame = motion.then(end.frame);
+    }
+    for load in &mut model.loads {
+        for (_, point) in load.at.iter_mut().filter(|(body, _)| moves(*body)) {
+            *point = motion.point(*point);
+            if let Action::Force { force, turns: true } = &mut load.action {
+                *force = motion.turn.apply(*force);
+            }
         }
     }
     if let Move::To(value) = by {
@@ -223,121 +170,121 @@ fn move_joint(model: &mut Model, joint: usize, by: Move) {
 }
 
 fn select_drives(model: &mut Model, options: &ImportOptions) -> Result<(), DoorError> {
-    let asked = options.drives.iter().map(|name| driveable(model, name));
-    let asked = asked.collect::<Result<Vec<_>, _>>()?;
-    if !asked.is_empty() {
-        asked.iter().for_each(|joint| {
-            model.drive(*joint);
-        });
-        model.drives.retain(|drive| asked.contains(&drive.joint));
-        let place = |drive: &Drive| asked.iter().position(|joint| *joint == drive.joint);
-        model.drives.sort_by_key(place);
+    if !options.drives.is_empty() {
+        let former = std::mem::take(&mut model.drives);
+        for name in &options.drives {
+            let joint = driveable(model, name)?;
+            let drive = model.drive(joint);
+            if let Some(known) = former.iter().find(|one| one.joint == joint) {
+                *drive = known.clone();
+            }
+        }
     }
     let (joints, couplings) = (&model.joints, &model.couplings);
-    let dependent = |joint: usize| couplings.iter().any(|one| one.dependent == joint);
-    model
-        .drives
-        .retain(|one| joints[one.joint].is_driveable() && !dependent(one.joint));
+    let depends = |joint: usize| couplings.iter().any(|one| one.dependent == joint);
+    let drives = |one: &Drive| joints[one.joint].is_driveable() && !depends(one.joint);
+    model.drives.retain(drives);
     Ok(())
 }
 
 /// One body in place of bodies that are fixed to each other.
 fn merge_fixed(model: &mut Model) {
     let is_merged = |joint: &Joint| joint.in_tree && joint.kind == Kind::Fixed;
-    let fixed = model.joints.iter().filter(|joint| is_merged(joint));
-    let fixed: Vec<Joint> = fixed.cloned().collect();
-    let component = components(model, &fixed);
-    let pose = |body: usize| model.bodies[body].pose;
-    let bodies = 0..model.bodies.len();
-    let place = |body: usize| pose(component[body]).inverse().then(pose(body));
-    let places: Vec<Pose> = bodies.clone().map(place).collect();
-    for joint in fixed
-        .iter()
-        .filter(|joint| joint.place != model.bodies[joint.second.body].place)
-    {
-        let [a, b] = joint.ends().map(|end| &model.bodies[end.body].name);
-        model.note(
-            &joint.place,
-            Effect::Kept,
-            format!("{b} is fixed to {a}: one body"),
-        );
+    for joint in model.joints.iter().filter(|joint| is_merged(joint)) {
+        let [a, b] = joint.bodies().map(|body| &model.bodies[body]);
+        if joint.place.line != b.place.line {
+            let text = format!("{} is fixed to {}: one body", b.name, a.name);
+            joint.place.kept(text);
+        }
     }
-    for body in bodies.filter(|body| component[*body] != *body) {
-        let (part, pose) = (model.bodies[body].clone(), places[body]);
-        let root = &mut model.bodies[component[body]];
-        root.add_mass(
-            part.mass,
-            pose.point(part.center),
-            part.inertia.turned(pose.turn),
-        );
-        let points = part
-            .points
-            .into_iter()
-            .map(|(name, point)| (name, pose.point(point)));
-        root.points.extend(points);
+    let root = model.components(|_, joint| is_merged(joint));
+    for body in (0..root.len()).filter(|body| root[*body] != *body) {
+        let part = model.bodies[body].clone();
+        let frame = Pose::new(part.center, Matrix::IDENTITY);
+        let whole = &mut model.bodies[root[body]];
+        whole.add_mass(part.mass, frame, part.inertia);
+        whole.points.extend(part.points);
     }
-    move_to_roots(model, &component, &places);
+    for end in model.joints.iter_mut().flat_map(|joint| &mut joint.ends) {
+        end.body = root[end.body];
+    }
+    for (body, _) in model.loads.iter_mut().flat_map(|load| &mut load.at) {
+        *body = root[*body];
+    }
     // Drives and couplings follow the joints that are left.
-    let joints = 0..model.joints.len();
-    let kept: Vec<usize> = joints.filter(|k| !is_merged(&model.joints[*k])).collect();
-    let number = |joint: usize| kept.iter().position(|k| *k == joint);
-    model
-        .drives
-        .retain_mut(|one| number(one.joint).map(|k| one.joint = k).is_some());
-    model.couplings.retain_mut(|one| {
-        let both = number(one.dependent).zip(number(one.independent));
-        both.map(|both| (one.dependent, one.independent) = both)
-            .is_some()
+    let mut numbers = Vec::new();
+    let mut count = 0;
+    model.joints.retain(|joint| {
+        let [first, second] = joint.bodies();
+        if first == second && !is_merged(joint) {
+            let text = format!("joint {}, between parts of one body: left out", joint.name);
+            joint.place.note(Effect::Nothing, text);
+        }
+        numbers.push((first != second).then_some(count));
+        count += usize::from(first != second);
+        first != second
     });
-    model.joints.retain(|joint| !is_merged(joint));
-}
-
-/// Joints and loads of merged bodies are those of the body that is left, in its frame.
-fn move_to_roots(model: &mut Model, component: &[usize], places: &[Pose]) {
-    let moved = |(body, point): (usize, Vector)| (component[body], places[body].point(point));
-    for joint in &mut model.joints {
-        for end in [&mut joint.first, &mut joint.second] {
-            *end = End::new(component[end.body], places[end.body].then(end.frame));
+    let kept = |joint: &mut usize| match numbers[*joint] {
+        Some(number) => {
+            *joint = number;
+            true
         }
-    }
-    for load in &mut model.loads {
-        match load {
-            Load::Spring { ends, .. } => *ends = ends.map(moved),
-            Load::Force {
-                at, force, turns, ..
-            } => {
-                let turn = if *turns {
-                    places[at.0].turn
-                } else {
-                    Matrix::IDENTITY
-                };
-                (*force, *at) = (turn.apply(*force), moved(*at));
-            }
-        }
-    }
+        None => false,
+    };
+    model.drives.retain_mut(|drive| kept(&mut drive.joint));
+    let both = |one: &mut Coupling| kept(&mut one.dependent) && kept(&mut one.independent);
+    model.couplings.retain_mut(both);
 }
 
 /// The armature of a hinge of the ground is inertia of its body about the axis; elsewhere it has no counterpart.
 fn keep_armatures(model: &mut Model) {
-    for joint in model.joints.clone() {
+    for joint in &model.joints {
         let armature = joint.along.armature;
-        let [first, second] = joint.ends();
-        let on_ground = joint.kind == Kind::Hinge && joint.touches(GROUND);
         let label = format!("joint {} armature {armature}", joint.name);
         if armature == 0.0 {
             continue;
         }
-        if on_ground {
-            let end = if second.body == GROUND { first } else { second };
-            let axis = end.frame.turn.column(2);
-            model.bodies[end.body].add_mass(0.0, axis, Matrix::outer(axis, axis).scaled(armature));
-            let text =
-                format!("{label} on a joint of the ground: kept (in the inertia about the axis)");
-            model.note(&joint.place, Effect::Kept, text);
+        let bodies = joint.bodies();
+        if joint.kind == Kind::Hinge && bodies.contains(&GROUND) {
+            let axis = joint.axis();
+            let tensor = Matrix::outer(axis, axis).scaled(armature);
+            let body = &mut model.bodies[bodies[0].max(bodies[1])];
+            body.add_mass(0.0, Pose::IDENTITY, tensor);
+            let how = "on a joint of the ground: kept (in the inertia about the axis)";
+            joint.place.kept(format!("{label} {how}"));
         } else {
             let what = format!("{label}, not on the ground: no exact counterpart: left out");
             let text = format!("{what} (changes the torque by {armature} × its acceleration)");
-            model.note(&joint.place, Effect::Changes, text);
+            joint.place.note(Effect::Changes, text);
         }
     }
+}
+
+/// As many joints have to drive as there are degrees of freedom.
+fn count_drives(model: &Model) -> Result<(), DoorError> {
+    let joints = driveable_names(model).collect::<Vec<_>>().join(", ");
+    if joints.is_empty() {
+        return Err(DoorError::new("the model has no joint that may drive", ""));
+    }
+    let counted = |count: usize, one: &str, more: &str| match count {
+        1 => format!("1 {one}"),
+        _ => format!("{count} {more}"),
+    };
+    let (needed, drives) = (freedoms(model), model.drives.len());
+    let freedoms = counted(needed, "degree of freedom", "degrees of freedom");
+    let wanted = counted(needed, "joint", "joints");
+    let help = format!("give --drive for {wanted} among {joints}");
+    if drives == 0 {
+        let help = if needed == 0 { "" } else { &help };
+        let message = format!("the model has {freedoms} and no drive");
+        return Err(DoorError::new(message, help));
+    }
+    if drives != needed {
+        let text = format!(
+            "{freedoms}, but {}: {help}",
+            counted(drives, "drive", "drives")
+        );
+        model.bodies[GROUND].place.kept(text);
+    }
+    Ok(())
 }

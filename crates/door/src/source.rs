@@ -1,37 +1,27 @@
 //! Which files are read, and by which reader.
 
 use crate::error::DoorError;
-use crate::finding::Findings;
+use crate::finding::{Findings, sorted};
 use crate::options::{Format, ImportOptions};
-use crate::plane;
-use crate::scene;
 use crate::settle::{Read, settle};
 use crate::xml::{TextFile, Xml};
-use crate::{Import, asmt, head, mjcf, pmks, sdf, urdf};
+use crate::{Import, asmt, head, mjcf, plane, pmks, robot, scene};
 use std::io::Read as _;
 use std::path::{Component, Path};
 
 /// Larger files are refused, in bytes.
-const LARGEST: u64 = 64 << 20;
+const LARGEST: usize = 64 << 20;
 
 /// Reads a file of text.
 pub(crate) fn read(path: &Path, name: &str) -> Result<String, DoorError> {
-    let failed = |reason: String| DoorError::File {
-        file: name.to_owned(),
-        reason,
-    };
-    let data = std::fs::metadata(path).map_err(|e| failed(e.to_string()))?;
-    if !data.is_file() || data.len() > LARGEST {
-        return Err(failed(format!(
-            "it is no file, or larger than {} MB",
-            LARGEST >> 20
-        )));
-    }
-    let file = std::fs::File::open(path).map_err(|e| failed(e.to_string()))?;
+    let failed = |reason: String| DoorError::new(format!("`{name}` cannot be read: {reason}"), "");
     let mut text = String::new();
-    let read = file.take(LARGEST).read_to_string(&mut text);
-    read.map_err(|e| failed(e.to_string()))?;
-    Ok(text)
+    let file = std::fs::File::open(path);
+    let read = file.and_then(|file| file.take(LARGEST as u64 + 1).read_to_string(&mut text));
+    match read.map_err(|e| failed(e.to_string()))? {
+        0..=LARGEST => Ok(text),
+        _ => Err(failed(format!("it is larger than {} MB", LARGEST >> 20))),
+    }
 }
 
 pub(crate) fn import(
@@ -41,32 +31,37 @@ pub(crate) fn import(
     folder: Option<&Path>,
 ) -> Result<Import, DoorError> {
     let format = options.from.or_else(|| format(name, text));
-    let file = name.to_owned();
-    let format = format.ok_or(DoorError::Format { file })?;
+    let format = format.ok_or_else(|| {
+        let message = format!("neither the ending nor the beginning of `{name}` shows its format");
+        DoorError::new(message, "give --from mjcf, urdf, sdf, asmt or pmks")
+    })?;
+    for (given, option, of) in [
+        (options.key.is_some(), "keyframe", Format::Mjcf),
+        (options.loops.is_some(), "YAML file of loops", Format::Urdf),
+    ] {
+        if given && format != of {
+            let message = format!("a {option} belongs to {of:?}, and `{name}` is {format:?}");
+            return Err(DoorError::new(message, ""));
+        }
+    }
     let findings = Findings::default();
+    let file = TextFile::new(name, text, &findings);
     let read = match format {
-        Format::Mjcf => of_xml(
-            format,
-            &with_includes(name, text, folder)?,
-            findings,
-            options,
-        )?,
-        Format::Urdf | Format::Sdf => {
-            of_xml(format, &[TextFile::new(name, text)], findings, options)?
-        }
+        Format::Mjcf => of_xml(format, &with_includes(file, folder)?, options)?,
+        Format::Urdf | Format::Sdf => of_xml(format, &[file], options)?,
         Format::Asmt => {
-            let mut file = TextFile::new(name, &asmt::as_xml(text));
-            file.shown = Some(text.into());
-            of_xml(format, &[file], findings, options)?
+            let mut tree = file.beside(name, &asmt::as_xml(text));
+            tree.shown = Some(text.into());
+            of_xml(format, &[tree], options)?
         }
-        Format::Pmks => pmks::read(&TextFile::new(name, text), findings)?,
+        Format::Pmks => pmks::read(&file)?,
     };
     let coverage = read.coverage;
     let model = settle(read, options)?;
     let plane = plane::find(&model, options);
     let mut import = Import {
         scene: scene::write(&model, plane)?,
-        findings: model.findings.sorted(),
+        findings: sorted(&findings),
         plane: plane.map(|plane| [plane.x, plane.y, plane.normal]),
         coverage,
     };
@@ -75,37 +70,35 @@ pub(crate) fn import(
     Ok(import)
 }
 
-/// The format that the ending of a file shows, or its root element.
+/// The format that the ending of a file shows, or its beginning.
 fn format(name: &str, text: &str) -> Option<Format> {
-    let begins = |what: &str| text.trim_start().starts_with(what);
-    let has = |what: &str| text.contains(what);
-    let ending = Path::new(name).extension();
-    match ending.and_then(|ending| ending.to_str()) {
+    let ending = Path::new(name)
+        .extension()
+        .and_then(|ending| ending.to_str());
+    let is_xml = text.trim_start().starts_with('<');
+    let has = |element: &str| is_xml && text.contains(element);
+    match ending {
         Some("mjcf") => Some(Format::Mjcf),
         Some("urdf") => Some(Format::Urdf),
         Some("sdf" | "world") => Some(Format::Sdf),
         Some("asmt") => Some(Format::Asmt),
-        _ if begins("<") && has("<mujoco") => Some(Format::Mjcf),
-        _ if begins("<") && has("<sdf") => Some(Format::Sdf),
-        _ if begins("<") && has("<robot") => Some(Format::Urdf),
-        _ if begins("OndselSolver") => Some(Format::Asmt),
-        _ if has(".") && !text.trim().contains(char::is_whitespace) => Some(Format::Pmks),
+        _ if has("<mujoco") => Some(Format::Mjcf),
+        _ if has("<sdf") => Some(Format::Sdf),
+        _ if has("<robot") => Some(Format::Urdf),
+        _ if text.starts_with("OndselSolver") => Some(Format::Asmt),
+        _ if pmks::is_link(text) => Some(Format::Pmks),
         _ => None,
     }
 }
 
 /// The file and those that it includes, each once.
-fn with_includes(
-    name: &str,
-    text: &str,
-    folder: Option<&Path>,
-) -> Result<Vec<TextFile>, DoorError> {
-    let mut files = vec![TextFile::new(name, text)];
+fn with_includes(file: TextFile, folder: Option<&Path>) -> Result<Vec<TextFile>, DoorError> {
+    let mut files = vec![file];
     let mut next = 0;
-    while next < files.len() {
-        let tree = files[next].parse()?;
+    while let Some(from) = files.get(next) {
         let mut wanted: Vec<TextFile> = Vec::new();
-        let mut size = files.iter().map(|file| file.text.len()).sum::<usize>();
+        let mut size: usize = files.iter().map(|file| file.text.len()).sum();
+        let tree = from.parse()?;
         for include in tree
             .descendants()
             .filter(|node| node.has_tag_name("include"))
@@ -114,9 +107,10 @@ fn with_includes(
             if files.iter().chain(&wanted).any(|one| &*one.file == file) {
                 continue;
             }
-            let place = (include.range().start, include.range().len());
-            let refuse =
-                |why: &str| files[next].error(place, format!("`{file}` is not read: {why}"), "");
+            let refuse = |why: &str| {
+                let message = format!("`{file}` is not read: {why}");
+                from.error(include.range(), &message, "")
+            };
             let folder = folder.ok_or_else(|| refuse("only the text is given"))?;
             let below = |part| matches!(part, Component::Normal(_) | Component::CurDir);
             if !Path::new(file).components().all(below) {
@@ -124,39 +118,34 @@ fn with_includes(
             }
             let text = read(&folder.join(file), file).map_err(|e| refuse(&e.to_string()))?;
             size += text.len();
-            if size as u64 > LARGEST {
+            if size > LARGEST {
                 return Err(refuse("all files together are too large"));
             }
-            wanted.push(TextFile::new(file, &text));
+            wanted.push(from.beside(file, &text));
         }
-        drop(tree);
         files.extend(wanted);
         next += 1;
     }
     Ok(files)
 }
 
-fn of_xml(
-    format: Format,
-    files: &[TextFile],
-    findings: Findings,
-    options: &ImportOptions,
-) -> Result<Read, DoorError> {
+fn of_xml(format: Format, files: &[TextFile], options: &ImportOptions) -> Result<Read, DoorError> {
     let trees = files.iter().map(TextFile::parse);
     let trees = trees.collect::<Result<Vec<_>, _>>()?;
-    for (file, tree) in files.iter().zip(&trees) {
-        let is_macro = |space: &str| space.contains("xacro");
-        let mut nodes = tree.descendants();
-        if let Some(node) = nodes.find(|node| node.tag_name().namespace().is_some_and(is_macro)) {
-            let message = "the file has macros of xacro".to_owned();
-            return Err(file.error((node.range().start, 1), message, "run xacro first"));
-        }
+    let xml = Xml::new(files, &trees);
+    let root = xml.root();
+    let (expected, read) = match format {
+        Format::Urdf => ("robot", robot::urdf as fn(&_, &_) -> _),
+        Format::Sdf => ("sdf", robot::sdf as _),
+        Format::Asmt => ("asmt", asmt::read as _),
+        Format::Mjcf | Format::Pmks => ("mujoco", mjcf::read as _),
+    };
+    if root.tag() != expected {
+        let message = format!(
+            "the file begins with `{}` in place of `{expected}`",
+            root.tag()
+        );
+        return Err(root.error_with(message, "--from names another format"));
     }
-    let xml = Xml::new(files, &trees, findings);
-    match format {
-        Format::Urdf => urdf::read(&xml, options),
-        Format::Sdf => sdf::read(&xml),
-        Format::Asmt => asmt::read(&xml),
-        Format::Mjcf | Format::Pmks => mjcf::read(&xml, options),
-    }
+    read(&xml, options)
 }

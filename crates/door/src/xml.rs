@@ -1,11 +1,13 @@
 //! XML files of which every element and attribute is read, or named with its line.
 
 use crate::error::{DoorError, Part};
-use crate::finding::{Effect, Findings, Place};
+use crate::finding::{AT_LIMITS, Effect, Findings, Place};
 use crate::pose::{Vector, unit};
-use roxmltree::{Attribute, Document, Node, NodeId, ParsingOptions};
+use roxmltree::{Document, Node, NodeId, ParsingOptions};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap, HashSet};
+use std::ops::Range;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// How deep elements may be nested. Readers call themselves for nested bodies.
@@ -20,16 +22,23 @@ pub(crate) struct TextFile {
     ends: Vec<usize>,
     /// The text that errors show in place of `text`, with the same lines.
     pub(crate) shown: Option<Arc<str>>,
+    findings: Findings,
 }
 
 impl TextFile {
-    pub(crate) fn new(file: &str, text: &str) -> Self {
+    pub(crate) fn new(file: &str, text: &str, findings: &Findings) -> Self {
         Self {
             file: file.into(),
             text: text.into(),
             ends: text.match_indices('\n').map(|(byte, _)| byte).collect(),
             shown: None,
+            findings: Rc::clone(findings),
         }
+    }
+
+    /// Another file of the same model.
+    pub(crate) fn beside(&self, file: &str, text: &str) -> Self {
+        Self::new(file, text, &self.findings)
     }
 
     /// The line of a byte, from 1.
@@ -41,34 +50,27 @@ impl TextFile {
         Place {
             file: Arc::clone(&self.file),
             line,
+            findings: Rc::clone(&self.findings),
         }
     }
 
-    pub(crate) fn error(&self, span: (usize, usize), message: String, help: &str) -> DoorError {
-        let mut text = Arc::clone(&self.text);
-        let mut span = span;
+    pub(crate) fn error(&self, span: Range<usize>, message: &str, help: &str) -> DoorError {
+        let (mut text, mut span) = (&self.text, span);
         if let Some(shown) = &self.shown {
-            // The line, without its indentation.
-            let lines = shown.split_inclusive('\n');
-            let start = lines
-                .clone()
-                .take(self.line(span.0) - 1)
-                .map(str::len)
-                .sum::<usize>();
-            let line = lines.clone().nth(self.line(span.0) - 1).unwrap_or_default();
-            span = (
-                start + line.len() - line.trim_start().len(),
-                line.trim().len(),
-            );
-            text = Arc::clone(shown);
+            let above = shown.split_inclusive('\n').take(self.line(span.start) - 1);
+            let start: usize = above.map(str::len).sum();
+            let line = shown[start..].lines().next().unwrap_or_default();
+            let indentation = line.len() - line.trim_start().len();
+            span = start + indentation..start + line.trim_end().len();
+            text = shown;
         }
-        DoorError::Part(Box::new(Part {
-            message,
-            help: help.to_owned(),
+        let mut error = DoorError::new(message, help);
+        error.part = Some(Part {
             file: Arc::clone(&self.file),
-            text,
+            text: Arc::clone(text),
             span,
-        }))
+        });
+        error
     }
 
     /// The parsed text. External entities are never read: a document type is refused.
@@ -77,39 +79,43 @@ impl TextFile {
             nodes_limit: 2_000_000,
             ..ParsingOptions::default()
         };
+        let xacro = |has: bool| if has { "run xacro first" } else { "" };
         let tree = Document::parse_with_options(&self.text, options).map_err(|error| {
-            let at = error.pos();
-            let start = self.text.split_inclusive('\n').take(at.row as usize - 1);
-            let byte = start.map(str::len).sum::<usize>().min(self.text.len());
+            let above = self.text.split_inclusive('\n');
+            let above = above.take(error.pos().row as usize - 1).map(str::len);
+            let byte = above.sum::<usize>().min(self.text.len());
             let message = format!("the XML is invalid: {error}");
-            let help = if message.contains("xacro") {
-                "run xacro first"
-            } else {
-                ""
-            };
-            self.error((byte, 0), message, help)
+            self.error(byte..byte, &message, xacro(message.contains("xacro")))
         })?;
-        let mut depth: HashMap<NodeId, usize> = HashMap::new();
-        for node in tree.root().descendants() {
-            let above = node.parent().and_then(|parent| depth.get(&parent.id()));
-            let here = above.map_or(0, |above| above + 1);
-            if here > DEEPEST {
-                let message = format!("elements are nested deeper than {DEEPEST}");
-                return Err(self.error((node.range().start, 1), message, ""));
+        for node in tree.descendants() {
+            let start = node.range().start;
+            let space = node.tag_name().namespace().unwrap_or_default();
+            if space.contains("xacro") {
+                let message = "the file has macros of xacro";
+                return Err(self.error(start..start + 1, message, xacro(true)));
             }
-            depth.insert(node.id(), here);
+            if node.ancestors().nth(DEEPEST + 1).is_some() {
+                let message = format!("elements are nested deeper than {DEEPEST}");
+                return Err(self.error(start..start + 1, &message, ""));
+            }
         }
         Ok(tree)
     }
 }
 
-/// What was read, by the first bytes of elements and attributes in their file.
+/// An element or an attribute: the index of its file, and its first byte there.
+type Key = (usize, usize);
+
+/// What was read.
 #[derive(Debug, Default)]
 struct Ledger {
-    read: HashSet<(usize, usize)>,
-    named: HashSet<(usize, usize)>,
-    /// Elements and attributes that a reader has asked for.
-    known: HashSet<(String, String)>,
+    read: HashSet<Key>,
+    /// Elements that a finding names.
+    named: HashSet<Key>,
+    /// The elements that give an element its defaults, the nearest first.
+    defaults: HashMap<Key, Vec<(usize, NodeId)>>,
+    /// By the names of elements the attributes that readers ask for.
+    known: HashMap<String, HashSet<String>>,
 }
 
 /// How many elements and attributes a file has, and what became of them.
@@ -123,14 +129,6 @@ pub struct Coverage {
     pub named: usize,
 }
 
-/// All XML files of a model.
-pub(crate) struct Xml<'t> {
-    files: &'t [TextFile],
-    trees: &'t [Document<'t>],
-    ledger: RefCell<Ledger>,
-    pub(crate) findings: Findings,
-}
-
 /// What parts that are not read mean, by the names of elements and attributes.
 pub(crate) struct Rules {
     /// No motion depends on them.
@@ -140,7 +138,7 @@ pub(crate) struct Rules {
 }
 
 impl Rules {
-    pub(crate) fn effect(&self, name: &str) -> Effect {
+    fn effect(&self, name: &str) -> Effect {
         let has = |list: &str| list.split_whitespace().any(|word| word == name);
         match (has(self.idle), has(self.limits)) {
             (true, _) => Effect::Nothing,
@@ -150,22 +148,24 @@ impl Rules {
     }
 }
 
+/// All XML files of a model.
+pub(crate) struct Xml<'t> {
+    files: &'t [TextFile],
+    trees: &'t [Document<'t>],
+    ledger: RefCell<Ledger>,
+}
+
 impl<'t> Xml<'t> {
-    pub(crate) fn new(
-        files: &'t [TextFile],
-        trees: &'t [Document<'t>],
-        findings: Findings,
-    ) -> Self {
+    pub(crate) fn new(files: &'t [TextFile], trees: &'t [Document<'t>]) -> Self {
+        let ledger = RefCell::default();
         Self {
             files,
             trees,
-            ledger: RefCell::default(),
-            findings,
+            ledger,
         }
     }
 
-    pub(crate) fn root(&self, source: usize) -> Element<'_> {
-        let node = self.trees[source].root_element();
+    fn element(&self, source: usize, node: Node<'t, 't>) -> Element<'_> {
         Element {
             xml: self,
             source,
@@ -173,82 +173,47 @@ impl<'t> Xml<'t> {
         }
     }
 
-    /// The index of an included file.
-    pub(crate) fn included(&self, file: &str) -> Option<usize> {
-        self.files.iter().position(|one| &*one.file == file)
+    /// The root of the first file.
+    pub(crate) fn root(&self) -> Element<'_> {
+        self.element(0, self.trees[0].root_element())
     }
 
-    /// Names what was not read, and counts.
+    /// Names what was not read, and counts. What has no effect, or only at limits, shares a finding: with the line of the first.
     pub(crate) fn name_the_rest(&self, rules: &Rules) -> Coverage {
         let mut coverage = Coverage::default();
+        let mut shared: BTreeMap<(usize, String, Effect), (usize, usize)> = BTreeMap::new();
         for (source, tree) in self.trees.iter().enumerate() {
-            let mut idle = Idle::new();
-            for node in tree.root().descendants().filter(Node::is_element) {
-                let xml = self;
-                self.name(
-                    Element { xml, source, node },
-                    rules,
-                    &mut coverage,
-                    &mut idle,
-                );
+            for node in tree.descendants().filter(Node::is_element) {
+                let element = self.element(source, node);
+                for (effect, attributes) in element.rest(rules, &mut coverage) {
+                    if effect == Effect::Changes {
+                        let what = format!("{}{attributes}", element.label());
+                        element.note(effect, format!("{what}: left out (may change the motion)"));
+                        continue;
+                    }
+                    let what = format!("{}{attributes}", element.tag());
+                    let (_, count) = shared
+                        .entry((source, what, effect))
+                        .or_insert((element.place().line, 0));
+                    *count += 1;
+                }
             }
-            for (what, (line, effect, count)) in idle {
-                let times = if count > 1 {
-                    format!(" ({count} times)")
-                } else {
-                    String::new()
-                };
-                let means = if effect == Effect::Nothing {
-                    "left out, nothing lost"
-                } else {
-                    AT_LIMITS
-                };
-                let place = self.files[source].place(line);
-                self.findings
-                    .add(&place, effect, format!("{what}{times}: {means}"));
-            }
+        }
+        for ((source, what, effect), (line, count)) in shared {
+            let times = match count {
+                1 => String::new(),
+                _ => format!(" ({count} times)"),
+            };
+            let means = match effect {
+                Effect::Nothing => "left out, nothing lost",
+                _ => AT_LIMITS,
+            };
+            let text = format!("{what}{times}: {means}");
+            self.files[source].place(line).note(effect, text);
         }
         coverage
     }
-
-    fn name(&self, element: Element<'_>, rules: &Rules, coverage: &mut Coverage, idle: &mut Idle) {
-        let attributes: Vec<_> = element.node.attributes().collect();
-        coverage.all += 1 + attributes.len();
-        if self.ledger.borrow().named.contains(&element.key()) {
-            coverage.named += 1 + attributes.len();
-            return;
-        }
-        if !element.is_read() {
-            coverage.named += 1 + attributes.len();
-            element.name_all();
-            return element.left_out(rules.effect(element.tag()), "", idle);
-        }
-        // Names are part of every message.
-        let is_read = |one: &Attribute<'_, '_>| {
-            let key = (element.source, one.range().start);
-            one.name() == "name" || self.ledger.borrow().read.contains(&key)
-        };
-        let rest = attributes.iter().filter(|one| !is_read(one));
-        let rest: Vec<&str> = rest.map(|one| one.name()).collect();
-        coverage.read += 1 + attributes.len() - rest.len();
-        coverage.named += rest.len();
-        for effect in [Effect::Nothing, Effect::AtLimits, Effect::Changes] {
-            let those = rest.iter().filter(|name| rules.effect(name) == effect);
-            let names: Vec<_> = those.copied().collect();
-            if !names.is_empty() {
-                element.left_out(effect, &format!(" {}", names.join(", ")), idle);
-            }
-        }
-    }
 }
-
-/// Parts without effect, or only at limits, share a finding: the line of the first, and how many there are.
-type Idle = BTreeMap<String, (usize, Effect, usize)>;
-
-/// What becomes of parts that act only at a limit, and of parts that change the motion.
-pub(crate) const AT_LIMITS: &str = "left out (acts only at a limit)";
-pub(crate) const NO_GRAVITY: &str = "no gravity in the file: 9.81 m/s2 against z";
-pub(crate) const LOST: &str = "left out (changes the motion)";
 
 /// An element of one of the files.
 #[derive(Clone, Copy)]
@@ -259,16 +224,52 @@ pub(crate) struct Element<'d> {
 }
 
 impl<'d> Element<'d> {
+    /// What of the element was not read: the attributes by their effect, or an empty text for the whole element.
+    fn rest(self, rules: &Rules, coverage: &mut Coverage) -> Vec<(Effect, String)> {
+        let names: Vec<&str> = self.node.attributes().map(|one| one.name()).collect();
+        let all = 1 + names.len();
+        coverage.all += all;
+        let is_named = self.xml.ledger.borrow().named.contains(&self.key());
+        if is_named || !self.is_read() {
+            coverage.named += all;
+            self.name_all();
+            let whole = (rules.effect(self.tag()), String::new());
+            return if is_named { Vec::new() } else { vec![whole] };
+        }
+        let rest = names.into_iter().filter(|name| !self.has_read(name));
+        let rest: Vec<&str> = rest.collect();
+        coverage.named += rest.len();
+        coverage.read += all - rest.len();
+        let of = |effect| {
+            let those = rest.iter().filter(|name| rules.effect(name) == effect);
+            (effect, those.map(|name| format!(" {name}")).collect())
+        };
+        let all = [Effect::Nothing, Effect::AtLimits, Effect::Changes].map(of);
+        let all = all
+            .into_iter()
+            .map(|(effect, names): (Effect, Vec<String>)| (effect, names.join(",")));
+        all.filter(|(_, names)| !names.is_empty()).collect()
+    }
+
+    /// Whether an attribute is read. Names are part of every message. A default is read if elements of that name are asked for it, or
+    /// for nothing.
+    fn has_read(self, name: &str) -> bool {
+        let ledger = self.xml.ledger.borrow();
+        let start = self.node.attribute_node(name).map(|one| one.range().start);
+        let is_default = self.node.ancestors().any(|one| one.has_tag_name("default"));
+        let known = ledger.known.get(self.tag());
+        name == "name"
+            || start.is_some_and(|start| ledger.read.contains(&(self.source, start)))
+            || is_default && known.is_none_or(|known| known.contains(name))
+    }
+
     pub(crate) fn tag(&self) -> &'d str {
         self.node.tag_name().name()
     }
 
-    pub(crate) fn line(&self) -> usize {
-        self.xml.files[self.source].line(self.node.range().start)
-    }
-
     pub(crate) fn place(&self) -> Place {
-        self.xml.files[self.source].place(self.line())
+        let file = &self.xml.files[self.source];
+        file.place(file.line(self.node.range().start))
     }
 
     /// Tag and name, as messages call it.
@@ -279,8 +280,7 @@ impl<'d> Element<'d> {
         }
     }
 
-    /// Its file and its first byte there.
-    fn key(&self) -> (usize, usize) {
+    fn key(&self) -> Key {
         (self.source, self.node.range().start)
     }
 
@@ -290,19 +290,8 @@ impl<'d> Element<'d> {
         self
     }
 
-    fn left_out(&self, effect: Effect, attributes: &str, idle: &mut Idle) {
-        let what = match effect {
-            Effect::Kept | Effect::Changes => {
-                let text = format!(
-                    "{}{attributes}: left out (may change the motion)",
-                    self.label()
-                );
-                return self.note(effect, text);
-            }
-            _ => format!("{}{attributes}", self.tag()),
-        };
-        let (_, _, count) = idle.entry(what).or_insert((self.line(), effect, 0));
-        *count += 1;
+    fn is_read(self) -> bool {
+        self.xml.ledger.borrow().read.contains(&self.key())
     }
 
     /// Its child elements; includes are replaced by what they include. It counts as read.
@@ -311,12 +300,15 @@ impl<'d> Element<'d> {
         for node in self.read().node.children().filter(Node::is_element) {
             let child = Self { node, ..self };
             let file = node.attribute("file").filter(|_| child.tag() == "include");
-            let Some(source) = file.and_then(|file| self.xml.included(file)) else {
+            let included = |file| self.xml.files.iter().position(|one| &*one.file == file);
+            let Some(source) = file.and_then(included) else {
                 children.push(child);
                 continue;
             };
             let _ = child.attribute("file");
-            let root = self.xml.root(source);
+            let root = self
+                .xml
+                .element(source, self.xml.trees[source].root_element());
             // Each file is included once.
             if !root.is_read() {
                 children.extend(root.children());
@@ -331,20 +323,6 @@ impl<'d> Element<'d> {
         children.map(Self::read).collect()
     }
 
-    fn is_read(self) -> bool {
-        self.xml.ledger.borrow().read.contains(&self.key())
-    }
-
-    /// The children of a child.
-    pub(crate) fn inner(self, tag: &str) -> Vec<Self> {
-        self.child(tag).map(Self::children).unwrap_or_default()
-    }
-
-    /// Its name, or another.
-    pub(crate) fn name_or(&self, other: impl FnOnce() -> String) -> String {
-        self.attribute("name").map_or_else(other, str::to_owned)
-    }
-
     /// The first child of this name, which counts as read.
     pub(crate) fn child(self, tag: &str) -> Option<Self> {
         let is = |one: &Node<'_, '_>| one.is_element() && one.tag_name().name() == tag;
@@ -352,31 +330,47 @@ impl<'d> Element<'d> {
         Some(Self { node, ..self }.read())
     }
 
-    /// An attribute, which counts as read, as does the element.
+    /// The children of a child.
+    pub(crate) fn inner(self, tag: &str) -> Vec<Self> {
+        self.child(tag).map(Self::children).unwrap_or_default()
+    }
+
+    /// Attributes that the element does not have are those of others, the nearest first.
+    pub(crate) fn with_defaults(self, defaults: &[Self]) -> Self {
+        let ids = defaults.iter().map(|one| (one.source, one.node.id()));
+        let mut ledger = self.xml.ledger.borrow_mut();
+        ledger.defaults.insert(self.key(), ids.collect());
+        self
+    }
+
+    /// An attribute, or its default, which counts as read, as does the element.
     pub(crate) fn attribute(&self, name: &str) -> Option<&'d str> {
         self.read();
         let mut ledger = self.xml.ledger.borrow_mut();
-        ledger
-            .known
-            .insert((self.tag().to_owned(), name.to_owned()));
-        let attribute = self.node.attribute_node(name)?;
-        ledger.read.insert((self.source, attribute.range().start));
-        Some(attribute.value())
+        let known = ledger.known.entry(self.tag().to_owned()).or_default();
+        known.insert(name.to_owned());
+        let mut all = vec![(self.source, self.node.id())];
+        all.extend(ledger.defaults.get(&self.key()).into_iter().flatten());
+        all.into_iter().find_map(|(source, id)| {
+            let node = self.xml.trees[source].get_node(id)?;
+            let attribute = node.attribute_node(name)?;
+            ledger.read.insert((source, attribute.range().start));
+            Some(attribute.value())
+        })
     }
 
-    /// Whether a reader asks elements of this name for this attribute, or never asks them for anything.
-    pub(crate) fn is_known(&self, attribute: &str) -> bool {
-        let ledger = self.xml.ledger.borrow();
-        let tag = self.tag();
-        ledger
-            .known
-            .contains(&(tag.to_owned(), attribute.to_owned()))
-            || !ledger.known.iter().any(|(one, _)| one == tag)
+    /// An attribute, or a child with the value as its text or in `value`: formats differ in this.
+    pub(crate) fn given(&self, name: &str) -> Option<&'d str> {
+        let in_child = || {
+            let child = self.child(name)?;
+            child.attribute("value").or(Some(child.text()))
+        };
+        self.attribute(name).or_else(in_child)
     }
 
-    /// The names of its attributes.
-    pub(crate) fn names(&self) -> Vec<&'d str> {
-        self.node.attributes().map(|one| one.name()).collect()
+    /// Its name, or another.
+    pub(crate) fn name_or(&self, other: impl FnOnce() -> String) -> String {
+        self.attribute("name").map_or_else(other, str::to_owned)
     }
 
     /// Its text, which counts as read.
@@ -384,9 +378,17 @@ impl<'d> Element<'d> {
         self.read().node.text().unwrap_or_default().trim()
     }
 
-    /// The text of a child.
-    pub(crate) fn child_text(self, tag: &str) -> Option<&'d str> {
-        self.child(tag).map(Self::text)
+    pub(crate) fn is(&self, name: &str, value: &str) -> bool {
+        self.attribute(name) == Some(value)
+    }
+
+    /// Whether a child says that something is so, or not so.
+    pub(crate) fn says(self, tag: &str) -> Option<bool> {
+        match self.given(tag)? {
+            "true" | "1" => Some(true),
+            "false" | "0" => Some(false),
+            _ => None,
+        }
     }
 
     /// Leaves the element with all inside out.
@@ -396,16 +398,15 @@ impl<'d> Element<'d> {
     }
 
     pub(crate) fn note(&self, effect: Effect, text: impl Into<String>) {
-        self.xml.findings.add(&self.place(), effect, text);
+        self.place().note(effect, text);
     }
 
     pub(crate) fn kept(&self, text: impl Into<String>) {
-        self.note(Effect::Kept, text);
+        self.place().kept(text);
     }
 
-    /// Something of the element that changes the motion is left out.
     pub(crate) fn lost(&self, what: impl std::fmt::Display) {
-        self.note(Effect::Changes, format!("{what}: {LOST}"));
+        self.place().lost(what);
     }
 
     fn name_all(&self) {
@@ -415,17 +416,18 @@ impl<'d> Element<'d> {
         }
     }
 
+    /// An error at the tag.
     pub(crate) fn error(&self, message: impl Into<String>) -> DoorError {
         self.error_with(message, "")
     }
 
     /// An error at the tag, with what may help.
     pub(crate) fn error_with(&self, message: impl Into<String>, help: &str) -> DoorError {
-        let range = self.node.range();
+        let Range { start, end } = self.node.range();
         let file = &self.xml.files[self.source];
-        let tag = file.text.get(range.clone()).and_then(|text| text.find('>'));
-        let span = (range.start, tag.map_or(1, |end| end + 1));
-        file.error(span, message.into(), help)
+        let tag = file.text.get(start..end).and_then(|text| text.find('>'));
+        let span = start..start + tag.map_or(1, |end| end + 1);
+        file.error(span, &message.into(), help)
     }
 
     /// The part that a name of the element refers to.
@@ -438,7 +440,7 @@ impl<'d> Element<'d> {
     }
 
     /// The numbers of a text that belongs to this element.
-    pub(crate) fn numbers(&self, what: &str, text: &str) -> Result<Vec<f64>, DoorError> {
+    fn parsed(&self, what: &str, text: &str) -> Result<Vec<f64>, DoorError> {
         let words = text.split(|c: char| c.is_whitespace() || c == ',');
         let number = |word: &str| word.parse().ok().filter(|x: &f64| x.is_finite());
         let numbers = words.filter(|word| !word.is_empty()).map(number).collect();
@@ -452,41 +454,35 @@ impl<'d> Element<'d> {
         what: &str,
         text: &str,
     ) -> Result<[f64; N], DoorError> {
-        let numbers = self.numbers(what, text)?;
+        let numbers = self.parsed(what, text)?;
         let (label, count) = (self.label(), numbers.len());
         let wrong = format!("`{what}` of {label} has {count} numbers in place of {N}");
         numbers.try_into().map_err(|_| self.error(wrong))
     }
 
-    /// An attribute of `N` numbers.
+    pub(crate) fn numbers(&self, name: &str) -> Result<Option<Vec<f64>>, DoorError> {
+        let text = self.given(name);
+        text.map(|text| self.parsed(name, text)).transpose()
+    }
+
     pub(crate) fn vector<const N: usize>(&self, name: &str) -> Result<Option<[f64; N]>, DoorError> {
-        let text = self.attribute(name);
+        let text = self.given(name);
         text.map(|text| self.exactly(name, text)).transpose()
     }
 
-    /// An attribute of a number, or its default.
+    /// A number, or its default. Of several, which are coefficients of powers, the first.
     pub(crate) fn value(&self, name: &str, default: f64) -> Result<f64, DoorError> {
-        Ok(self.vector::<1>(name)?.map_or(default, |[x]| x))
-    }
-
-    /// `N` numbers in a child.
-    pub(crate) fn child_vector<const N: usize>(
-        self,
-        tag: &str,
-    ) -> Result<Option<[f64; N]>, DoorError> {
-        let child = self.child(tag);
-        child.map(|one| one.exactly(tag, one.text())).transpose()
-    }
-
-    /// The number in a child, or its default.
-    pub(crate) fn child_value(self, tag: &str, default: f64) -> Result<f64, DoorError> {
-        Ok(self.child_vector::<1>(tag)?.map_or(default, |[x]| x))
-    }
-
-    /// Whether a child says that something is so.
-    pub(crate) fn says(self, tag: &str) -> bool {
-        self.child_text(tag)
-            .is_some_and(|word| word == "true" || word == "1")
+        match self.numbers(name)?.as_deref() {
+            None => Ok(default),
+            Some([first, others @ ..]) => {
+                if others.iter().any(|x| *x != 0.0) {
+                    let label = self.label();
+                    self.lost(format!("{label} {name}: all but the first number"));
+                }
+                Ok(*first)
+            }
+            Some([]) => Err(self.error(format!("`{name}` of {} is empty", self.label()))),
+        }
     }
 
     /// A mass of 0 or more.

@@ -109,8 +109,8 @@ fn what_has_no_counterpart_is_named_by_its_line() {
         "x1.xml:11: joint B armature 0.002, not on the ground: no exact counterpart: left out (changes the torque by 0.002 × its \
             acceleration)",
         "x1.xml:12: geom mesh part: inertia of a mesh: left out (changes the motion)",
-        "x1.xml:16: body box, free, joined to nothing: left out",
         "x1.xml:16: body box gravcomp, fluidshape: left out (gravcomp 1 cancels the weight)",
+        "x1.xml:16: body box, free, joined to nothing: left out",
         "x1.xml:20: contact pair: left out (changes the motion if touched)",
         "x1.xml:21: tendon rope: kept as a spring between s0 and s1 (straight, two sites), its range left out (acts only at a limit)",
         "x1.xml:22: equality poly, polynomial of degree 2: coupling in the plane",

@@ -41,7 +41,7 @@ pub(crate) fn import_model(
         close: close.map_err(PyValueError::new_err)?,
         loops,
         fix,
-        flatten: plane,
+        spatial: !plane,
         tolerance,
     };
     let import = py.detach(|| dwell::import(path, &options)).or_raise(py)?;

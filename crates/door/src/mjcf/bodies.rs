@@ -1,128 +1,92 @@
 //! The tree of bodies.
 
 use super::Reader;
-use super::contacts::Shape;
-use super::defaults::Item;
-use super::shapes;
 use crate::error::DoorError;
-use crate::finding::Effect;
-use crate::model::{Along, End, Joint, Kind, Load};
+use crate::finding::{AT_LIMITS, Effect};
+use crate::model::{Action, Along, End, Joint, Kind, Load, both};
 use crate::pose::{Matrix, Pose, scaled};
-use crate::xml::{AT_LIMITS, Element};
+use crate::xml::Element;
 
-/// What a body holds, each part with its frame in the body's and the class around it.
-#[derive(Default)]
-pub(super) struct Contents<'d> {
-    joints: Vec<(Item<'d>, Pose)>,
-    free: Option<Element<'d>>,
-    shapes: Vec<(Item<'d>, Pose)>,
-    inertial: Option<(Item<'d>, Pose)>,
-    sites: Vec<(Item<'d>, Pose)>,
-    pub(super) bodies: Vec<(Element<'d>, Pose, Option<&'d str>)>,
+/// A part of a body, with the frame in which its pose is, in the frame of the ground.
+pub(super) struct Part<'d> {
+    element: Element<'d>,
+    frame: Pose,
+    class: Option<&'d str>,
 }
 
-impl<'d> Reader<'d, '_> {
-    /// Collects the parts of a body or a frame.
-    pub(super) fn collect(
+impl<'d> Reader<'d> {
+    /// The parts of a body, those in frames among them.
+    pub(super) fn parts(
         &self,
-        element: Element<'d>,
+        of: Element<'d>,
         frame: Pose,
         class: Option<&'d str>,
-        contents: &mut Contents<'d>,
-    ) -> Result<(), DoorError> {
-        for child in element.children() {
-            let item = |class| self.defaults.item(child.read(), class);
-            match child.tag() {
-                "joint" => contents.joints.push((item(class)?, frame)),
-                "freejoint" => contents.free = Some(child.read()),
-                "geom" => contents.shapes.push((item(class)?, frame)),
-                "site" => contents.sites.push((item(class)?, frame)),
-                "inertial" => contents.inertial = Some((item(class)?, frame)),
-                "body" => contents.bodies.push((child.read(), frame, class)),
+    ) -> Result<Vec<Part<'d>>, DoorError> {
+        let mut parts = Vec::new();
+        for element in of.children() {
+            match element.tag() {
                 "frame" => {
-                    let inner = frame.then(item(None)?.pose(self.angles)?);
-                    let class = child.attribute("childclass").or(class);
-                    self.collect(child, inner, class, contents)?;
+                    let inner = frame.then(self.pose(element)?);
+                    let class = element.attribute("childclass").or(class);
+                    parts.extend(self.parts(element, inner, class)?);
+                }
+                "joint" | "freejoint" | "geom" | "site" | "inertial" | "body" => {
+                    let classed = element.tag() != "body";
+                    if classed {
+                        self.classed(element, class)?;
+                    }
+                    parts.push(Part {
+                        element,
+                        frame,
+                        class,
+                    });
                 }
                 _ => {}
             }
         }
-        Ok(())
+        Ok(parts)
     }
 
-    pub(super) fn body(
-        &mut self,
-        element: Element<'d>,
-        parent: usize,
-        outer: Pose,
-        class: Option<&'d str>,
-    ) -> Result<(), DoorError> {
-        let pose = outer.then(self.defaults.item(element, None)?.pose(self.angles)?);
-        let world = self.model.bodies[parent].pose.then(pose);
-        let class = element.attribute("childclass").or(class);
-        let number = self.model.bodies.len();
-        let name = element.name_or(|| format!("body{number}"));
-        let mut contents = Contents::default();
-        self.collect(element, Pose::IDENTITY, class, &mut contents)?;
-        let is_free = |(item, _): &(Item<'d>, Pose)| item.is("type", "free");
-        if let Some(position) = contents.joints.iter().position(is_free) {
-            contents.free = Some(contents.joints.remove(position).0.element);
-        }
-        // Between several joints of a body are bodies without mass.
-        let mut body = parent;
-        let count = contents.joints.len();
-        for k in 0..count.max(1) {
-            let name = if k + 1 < count {
-                format!("{name}_{}", k + 1)
-            } else {
-                name.clone()
+    fn body(&mut self, part: &Part<'d>, parent: usize) -> Result<(), DoorError> {
+        let element = part.element;
+        let world = part.frame.then(self.pose(element)?);
+        let class = element.attribute("childclass").or(part.class);
+        let name = element.name_or(|| format!("body{}", self.model.bodies.len()));
+        let parts = self.parts(element, world, class)?;
+        let is_joint = |part: &&Part<'d>| part.element.tag().ends_with("joint");
+        let (mut body, mut is_free, mut count) = (parent, false, 0);
+        let joints = parts.iter().filter(is_joint).count();
+        for part in parts.iter().filter(is_joint) {
+            count += 1;
+            // Between several joints of a body are bodies without mass.
+            let name = match count < joints {
+                true => format!("{name}_{count}"),
+                false => name.clone(),
             };
-            let next = self.model.push_body(&name, element.place(), world);
-            let first = std::mem::replace(&mut body, next);
-            if let Some((item, frame)) = contents.joints.get(k) {
-                self.joint(item, *frame, [first, body])?;
+            let first = body;
+            body = self.model.push_body(&name, element.place(), world);
+            is_free = part.element.tag() == "freejoint" || part.element.is("type", "free");
+            if !is_free {
+                self.joint(part, [first, body])?;
             }
         }
-        if contents.free.is_some() {
-            self.order.push((None, 7));
-            self.floating.push((body, element));
-        } else if count == 0 {
-            let second = End::new(body, Pose::IDENTITY);
-            let ends = [self.model.seen_from(parent, &second), second];
-            self.push_joint(format!("{name}_fixed"), element, Kind::Fixed, ends);
+        if joints == 0 {
+            body = self.model.push_body(&name, element.place(), world);
+            let ends = both([parent, body], world);
+            let joint = Joint::new(format!("{name}_fixed"), element.place(), Kind::Fixed, ends);
+            self.model.push_tree_joint(joint);
             let _ = element.attribute("mocap");
         }
-        self.fill(body, &contents)?;
-        if contents.free.is_none() {
-            self.gravity_compensation(element, body)?;
+        if is_free {
+            self.order.push((None, 7));
         }
-        for (child, pose, class) in contents.bodies {
-            self.body(child, body, pose, class)?;
-        }
-        Ok(())
+        self.fill(body, &parts)?;
+        self.external_forces(element, body, is_free, &parts)
     }
 
-    /// A joint of the tree.
-    pub(super) fn push_joint(
-        &mut self,
-        name: String,
-        element: Element<'d>,
-        kind: Kind,
-        ends: [End; 2],
-    ) {
-        let mut joint = Joint::new(name, element.place(), kind, ends);
-        joint.in_tree = true;
-        self.model.joints.push(joint);
-    }
-
-    fn joint(
-        &mut self,
-        item: &Item<'d>,
-        frame: Pose,
-        [first, second]: [usize; 2],
-    ) -> Result<(), DoorError> {
-        let element = item.element;
-        let word = item.text("type").unwrap_or("hinge");
+    fn joint(&mut self, part: &Part<'d>, bodies: [usize; 2]) -> Result<(), DoorError> {
+        let element = part.element;
+        let word = element.attribute("type").unwrap_or("hinge");
         let kind = match word {
             "hinge" => Some(Kind::Hinge),
             "slide" => Some(Kind::Slide),
@@ -130,131 +94,165 @@ impl<'d> Reader<'d, '_> {
             _ => None,
         };
         let kind = element.known(kind, "type of joint", word)?;
-        let axis = element.unit(item.vector("axis")?.unwrap_or([0.0, 0.0, 1.0]))?;
-        let place = Pose::along(item.vector("pos")?.unwrap_or_default(), axis);
-        let second = End::new(second, frame.then(place));
-        let ends = [self.model.seen_from(first, &second), second];
-        let body = &self.model.bodies[second.body].name;
-        let name = element.name_or(|| format!("{body}_joint"));
+        let axis = element.unit(element.vector("axis")?.unwrap_or([0.0, 0.0, 1.0]))?;
+        let place = Pose::along(element.vector("pos")?.unwrap_or_default(), axis);
+        let name = element.name_or(|| format!("{}_joint", self.model.bodies[bodies[1]].name));
+        let ends = both(bodies, part.frame.then(place));
+        let mut joint = Joint::new(name, element.place(), kind, ends);
+        self.along(element, &mut joint)?;
+        let number = self.model.push_tree_joint(joint);
         let count = if kind == Kind::Ball { 4 } else { 1 };
-        self.order.push((Some(self.model.joints.len()), count));
-        let (along, reference) = self.along(item, kind, &name)?;
-        self.push_joint(name, element, kind, ends);
-        if let Some(joint) = self.model.joints.last_mut().filter(|_| kind != Kind::Ball) {
-            (joint.along, joint.drawn) = (along, reference);
-        }
+        self.order.push((Some(number), count));
         Ok(())
     }
 
     /// What acts along a coordinate, and the coordinate as drawn.
-    fn along(&self, item: &Item<'d>, kind: Kind, name: &str) -> Result<(Along, f64), DoorError> {
-        let unit = if kind == Kind::Slide {
-            1.0
-        } else {
-            self.angles.unit
+    fn along(&self, element: Element<'d>, joint: &mut Joint) -> Result<(), DoorError> {
+        let unit = match joint.kind {
+            Kind::Slide => 1.0,
+            _ => self.angle,
         };
-        let range = item
-            .vector::<2>("range")?
-            .map(|range| range.map(|x| x * unit));
-        let limited = match item.text("limited") {
+        let limited = match element.attribute("limited") {
             Some("true") => true,
             Some("false") => false,
             _ => !self.limits_need_word,
         };
+        let range = element.vector::<2>("range")?.filter(|_| limited);
         let along = Along {
-            damping: item.value("damping", 0.0)?,
-            friction: item.value("frictionloss", 0.0)?,
-            stiffness: item.value("stiffness", 0.0)?,
-            spring_reference: item.value("springref", 0.0)? * unit,
-            armature: item.value("armature", 0.0)?,
-            limits: range.filter(|_| limited),
-        };
-        if item.text("actuatorfrcrange").is_some() {
-            let text = format!("joint {name} actuatorfrcrange: left out (limit of a drive)");
-            item.element.note(Effect::AtLimits, text);
-        }
-        if item.text("springdamper").is_some() {
-            item.element.lost(format!("joint {name} springdamper"));
-        }
-        if kind == Kind::Ball && along.limits.is_some() {
-            let text = format!("joint {name} range: {AT_LIMITS}");
-            item.element.note(Effect::AtLimits, text);
-        }
-        let unlimited = Along {
-            limits: None,
-            ..along
-        };
-        let zero = Along {
-            spring_reference: along.spring_reference,
+            damping: element.value("damping", 0.0)?,
+            friction: element.value("frictionloss", 0.0)?,
+            stiffness: element.value("stiffness", 0.0)?,
+            armature: element.value("armature", 0.0)?,
             ..Along::default()
         };
-        if kind == Kind::Ball && unlimited != zero {
-            item.element.lost(format!(
-                "joint {name}: damping, friction, stiffness or armature of a ball"
-            ));
+        let label = format!("joint {}", joint.name);
+        let drawn = element.value("ref", 0.0)? * unit;
+        let spring_reference = element.value("springref", 0.0)? * unit;
+        if element.attribute("actuatorfrcrange").is_some() {
+            let text = format!("{label} actuatorfrcrange: left out (limit of a drive)");
+            element.note(Effect::AtLimits, text);
         }
-        Ok((along, item.value("ref", 0.0)? * unit))
-    }
-
-    /// Masses, points and shapes of a body.
-    pub(super) fn fill(&mut self, body: usize, contents: &Contents<'d>) -> Result<(), DoorError> {
-        for (item, frame) in &contents.sites {
-            let pose = frame.then(item.pose(self.angles)?);
-            if let Some(name) = item.element.attribute("name") {
-                self.sites.insert(name, (body, pose));
-                self.model.push_frame(name, body, pose);
-                self.model.bodies[body]
-                    .points
-                    .push((name.to_owned(), pose.origin));
-            }
-            let _ = ["size", "type", "fromto"].map(|size| item.text(size));
+        if element.attribute("springdamper").is_some() {
+            element.lost(format!("{label} springdamper"));
         }
-        let always = self.from_shapes == Some(true);
-        match &contents.inertial {
-            Some((item, _)) if always => {
-                let text = "inertial: not used, for `inertiafromgeom` is true";
-                item.element.leave(Effect::Nothing, text);
-            }
-            Some((item, frame)) => self.inertial(item, *frame, body)?,
-            None => {}
+        if joint.kind != Kind::Ball {
+            joint.drawn = drawn;
+            joint.along = Along {
+                spring_reference,
+                limits: range.map(|range| range.map(|x| x * unit)),
+                ..along
+            };
+            return Ok(());
         }
-        let takes = self.from_shapes.unwrap_or(contents.inertial.is_none());
-        for (item, frame) in &contents.shapes {
-            let mass = shapes::mass(item, self.angles, takes)?;
-            self.shapes.push(Shape::new(item, body)?);
-            if let Some((mass, center, inertia)) = mass.filter(|_| takes) {
-                let inertia = inertia.turned(frame.turn);
-                self.model.bodies[body].add_mass(mass, frame.point(center), inertia);
-            }
+        if range.is_some() {
+            element.note(Effect::AtLimits, format!("{label} range: {AT_LIMITS}"));
+        }
+        if along != Along::default() {
+            let what = "damping, friction, stiffness or armature of a ball";
+            element.lost(format!("{label}: {what}"));
         }
         Ok(())
     }
 
-    fn inertial(&mut self, item: &Item<'d>, frame: Pose, body: usize) -> Result<(), DoorError> {
-        let pose = frame.then(item.pose(self.angles)?);
-        let mass = item.element.mass(item.value("mass", -1.0)?)?;
-        let full = item.vector("fullinertia")?.map(Matrix::symmetric);
-        let inertia = full.or(item.vector("diaginertia")?.map(Matrix::diagonal));
-        let inertia = inertia.unwrap_or(Matrix::ZERO).turned(pose.turn);
-        self.model.bodies[body].add_mass(mass, pose.origin, inertia);
+    /// Masses, points, shapes and inner bodies of a body.
+    pub(super) fn fill(&mut self, body: usize, parts: &[Part<'d>]) -> Result<(), DoorError> {
+        let mut inertials = parts.iter().filter(|part| part.element.tag() == "inertial");
+        let takes = self.from_shapes.unwrap_or(inertials.next().is_none());
+        if let Some(second) = inertials.next() {
+            return Err(second.element.error("a body has one inertial"));
+        }
+        for Part { element, frame, .. } in parts {
+            match element.tag() {
+                "inertial" if self.from_shapes == Some(true) => {
+                    let text = "inertial: not used, for `inertiafromgeom` is true";
+                    element.leave(Effect::Nothing, text);
+                }
+                "inertial" => self.inertial(*element, *frame, body)?,
+                "geom" => {
+                    if let Some((mass, frame, tensor)) = self.mass_of(*element, *frame, takes)? {
+                        self.model.bodies[body].add_mass(mass, frame, tensor);
+                    }
+                    self.shapes.push((*element, body));
+                }
+                "site" => self.site(*element, *frame, body)?,
+                _ => {}
+            }
+        }
+        for part in parts.iter().filter(|part| part.element.tag() == "body") {
+            self.body(part, body)?;
+        }
         Ok(())
     }
 
-    /// A constant force against the weight.
-    fn gravity_compensation(&mut self, element: Element<'d>, body: usize) -> Result<(), DoorError> {
+    fn site(&mut self, element: Element<'d>, frame: Pose, body: usize) -> Result<(), DoorError> {
+        let frame = frame.then(self.pose(element)?);
+        if let Some(name) = element.attribute("name") {
+            let point = (name.to_owned(), frame.origin);
+            self.model.bodies[body].points.push(point);
+            self.model
+                .frames
+                .push((name.to_owned(), End { body, frame }));
+        }
+        let _ = ["size", "type", "fromto"].map(|size| element.attribute(size));
+        Ok(())
+    }
+
+    fn inertial(&mut self, of: Element<'d>, frame: Pose, body: usize) -> Result<(), DoorError> {
+        let frame = frame.then(self.pose(of)?);
+        let mass = of.mass(of.value("mass", -1.0)?)?;
+        let full = of.vector("fullinertia")?.map(Matrix::symmetric);
+        let tensor = full.or(of.vector("diaginertia")?.map(Matrix::diagonal));
+        self.model.bodies[body].add_mass(mass, frame, tensor.unwrap_or(Matrix::ZERO));
+        Ok(())
+    }
+
+    /// Forces against the weight are kept, except those of bodies that float; forces of a fluid are not.
+    fn external_forces(
+        &mut self,
+        element: Element<'d>,
+        body: usize,
+        is_free: bool,
+        parts: &[Part<'d>],
+    ) -> Result<(), DoorError> {
+        let of = &self.model.bodies[body];
         let share = element.value("gravcomp", 0.0)?;
+        let geoms = parts
+            .iter()
+            .map(|part| part.element)
+            .filter(|one| one.tag() == "geom");
+        let in_fluid = |geom: &Element<'d>| {
+            geom.attribute("fluidshape")
+                .is_some_and(|shape| shape != "none")
+        };
+        let fluid: Vec<Element<'d>> = geoms.filter(in_fluid).collect();
+        if is_free {
+            let weight = (share != 0.0).then_some("gravcomp");
+            let fluid = (!fluid.is_empty()).then_some("fluidshape");
+            let forces: Vec<&str> = weight.into_iter().chain(fluid).collect();
+            if !forces.is_empty() {
+                let what = format!("body {} {}", of.name, forces.join(", "));
+                let text = format!("{what}: left out (gravcomp 1 cancels the weight)");
+                element.note(Effect::Changes, text);
+            }
+            return Ok(());
+        }
+        for geom in fluid {
+            geom.lost(format!("{} fluidshape", geom.label()));
+        }
         if share != 0.0 {
-            let of = &self.model.bodies[body];
             element.kept(format!(
                 "body {} gravcomp {share}: kept as a force",
                 of.name
             ));
-            self.model.loads.push(Load::Force {
+            let load = Load {
                 name: format!("gravcomp_{}", of.name),
-                at: (body, of.center),
-                force: scaled(self.model.gravity, -share * of.mass),
-                turns: false,
-            });
+                at: vec![(body, of.center)],
+                action: Action::Force {
+                    force: scaled(self.model.gravity, -share * of.mass),
+                    turns: false,
+                },
+            };
+            self.model.loads.push(load);
         }
         Ok(())
     }

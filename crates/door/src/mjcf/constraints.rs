@@ -1,28 +1,25 @@
-//! Equality constraints and tendons.
+//! Equality constraints, tendons and actuators.
 
 use super::Reader;
-use super::defaults::Item;
 use crate::error::DoorError;
-use crate::finding::Effect;
-use crate::model::{Coupling, End, GROUND, Joint, Kind, Load};
+use crate::finding::{AT_LIMITS, Effect, LOST};
+use crate::model::{Action, Coupling, End, GROUND, Joint, Kind, Load};
 use crate::pose::{Matrix, Pose, length, sub};
-use crate::xml::{AT_LIMITS, Element, LOST};
+use crate::xml::Element;
 
-impl<'d> Reader<'d, '_> {
+impl<'d> Reader<'d> {
     pub(super) fn constraint(&mut self, element: Element<'d>) -> Result<(), DoorError> {
-        let item = self.defaults.item(element, None)?;
+        self.classed(element, None)?;
         let name = self.model.loop_name(element.attribute("name"));
-        if item.is("active", "false") {
-            element.leave(
-                Effect::Kept,
-                format!("equality {name}: not active, left out"),
-            );
+        if element.is("active", "false") {
+            let text = format!("equality {name}: not active, left out");
+            element.leave(Effect::Kept, text);
             return Ok(());
         }
         let (kind, ends) = match element.tag() {
-            "joint" => return self.joint_equality(&item, name),
-            "connect" => (Kind::Ball, self.connect(&item, &name)?),
-            "weld" => (Kind::Fixed, self.weld(&item)?),
+            "joint" => return self.joint_equality(element, name),
+            "connect" => (Kind::Ball, self.connect(element, &name)?),
+            "weld" => (Kind::Fixed, self.weld(element)?),
             tag => {
                 element.leave(Effect::Changes, format!("equality {name}, {tag}: {LOST}"));
                 return Ok(());
@@ -31,92 +28,93 @@ impl<'d> Reader<'d, '_> {
         if ends[0].body == ends[1].body {
             return Err(element.error("the constraint connects a body with itself"));
         }
-        self.model
-            .joints
-            .push(Joint::new(name, element.place(), kind, ends));
+        let joint = Joint::new(name, element.place(), kind, ends);
+        self.model.joints.push(joint);
         Ok(())
     }
 
-    fn site(&self, element: &Element<'d>, name: &str) -> Result<End, DoorError> {
-        let site = self
-            .sites
-            .get(name)
-            .map(|(body, frame)| End::new(*body, *frame));
-        element.known(site, "site", name)
+    fn site_named(&self, element: Element<'d>, name: &str) -> Result<End, DoorError> {
+        let site = self.model.frames.iter().find(|(one, _)| one == name);
+        element.known(site.map(|(_, end)| *end), "site", name)
     }
 
     /// The two ends at sites, if they are given by sites.
-    fn ends_at_sites(&self, element: &Element<'d>) -> Result<Option<[End; 2]>, DoorError> {
+    fn ends_at_sites(&self, element: Element<'d>) -> Result<Option<[End; 2]>, DoorError> {
         let sites = element.attribute("site1").zip(element.attribute("site2"));
-        let ends = |(one, other)| Ok([self.site(element, one)?, self.site(element, other)?]);
-        sites.map(ends).transpose()
+        let site = |name| self.site_named(element, name);
+        let ends = sites.map(|(one, other)| Ok([site(one)?, site(other)?]));
+        ends.transpose()
     }
 
-    fn body_named(&self, element: &Element<'d>, attribute: &str) -> Result<usize, DoorError> {
+    fn body_named(&self, element: Element<'d>, attribute: &str) -> Result<usize, DoorError> {
         let name = element.attribute(attribute).unwrap_or("world");
-        let body = self
-            .model
-            .bodies
-            .iter()
-            .skip(1)
-            .position(|body| body.name == name);
+        let mut bodies = self.model.bodies.iter().skip(1);
+        let body = bodies.position(|body| body.name == name).map(|k| k + 1);
         let ground = (name == "world").then_some(GROUND);
-        element.known(ground.or(body.map(|k| k + 1)), "body", name)
+        element.known(ground.or(body), "body", name)
     }
 
-    fn connect(&self, item: &Item<'d>, name: &str) -> Result<[End; 2], DoorError> {
-        let element = item.element;
-        if let Some(ends) = self.ends_at_sites(&element)? {
+    fn connect(&self, element: Element<'d>, name: &str) -> Result<[End; 2], DoorError> {
+        if let Some(ends) = self.ends_at_sites(element)? {
             return Ok(ends);
         }
-        let anchor = item.vector("anchor")?;
+        let anchor = element.vector("anchor")?;
         let anchor =
             anchor.ok_or_else(|| element.error("a connect needs an anchor, or two sites"))?;
-        let first = End::new(self.body_named(&element, "body1")?, Pose::at(anchor));
+        let bodies = [
+            self.body_named(element, "body1")?,
+            self.body_named(element, "body2")?,
+        ];
+        let [first, second] = bodies.map(|body| &self.model.bodies[body]);
         // The point on the second body is where the anchor is in the reference pose, whatever was meant.
-        let second = self
-            .model
-            .seen_from(self.body_named(&element, "body2")?, &first);
-        let [x, y, z] = second.frame.origin;
-        let body = &self.model.bodies[second.body].name;
-        let mut text = format!("derived: `{name}` on {body} at ({x:.6}, {y:.6}, {z:.6})");
+        let frame = first.pose.then(Pose::new(anchor, Matrix::IDENTITY));
+        let [x, y, z] = second.pose.inverse().point(frame.origin);
+        let mut text = format!(
+            "derived: `{name}` on {} at ({x:.6}, {y:.6}, {z:.6})",
+            second.name
+        );
         let mut joints = self.model.joints.iter();
-        if let Some(joint) = joints.find(|joint| joint.second.body == second.body) {
-            let radius = length(sub(second.frame.origin, joint.second.frame.origin));
+        if let Some(joint) = joints.find(|joint| joint.ends[1].body == bodies[1]) {
+            let radius = length(sub(frame.origin, joint.origin()));
             text += &format!(", {radius:.6} m from `{}`", joint.name);
         }
         element.kept(text);
-        Ok([first, second])
+        Ok(crate::model::both(bodies, frame))
     }
 
-    fn weld(&self, item: &Item<'d>) -> Result<[End; 2], DoorError> {
-        let element = item.element;
-        if let Some(ends) = self.ends_at_sites(&element)? {
+    fn weld(&self, element: Element<'d>) -> Result<[End; 2], DoorError> {
+        if let Some(ends) = self.ends_at_sites(element)? {
             return Ok(ends);
         }
         let bodies = [
-            self.body_named(&element, "body1")?,
-            self.body_named(&element, "body2")?,
+            self.body_named(element, "body1")?,
+            self.body_named(element, "body2")?,
         ];
-        let anchor = item.vector("anchor")?.unwrap_or_default();
-        let second = End::new(bodies[1], Pose::at(anchor));
-        let relative = item
+        let [first, second] = bodies.map(|body| self.model.bodies[body].pose);
+        let anchor = Pose::new(
+            element.vector("anchor")?.unwrap_or_default(),
+            Matrix::IDENTITY,
+        );
+        // Without a quaternion the bodies are welded as they are in the reference pose.
+        let relative = element
             .vector::<7>("relpose")?
             .and_then(|[x, y, z, quat @ ..]| {
-                let pose = Pose::new([x, y, z], Matrix::quaternion(quat)?);
-                Some(End::new(bodies[0], pose.then(second.frame)))
+                let turn = Matrix::quaternion(quat)?;
+                Some(first.then(Pose::new([x, y, z], turn)))
             });
-        Ok([
-            relative.unwrap_or_else(|| self.model.seen_from(bodies[0], &second)),
-            second,
-        ])
+        let frames = [relative.unwrap_or(second), second].map(|frame| frame.then(anchor));
+        Ok([0, 1].map(|k| End {
+            body: bodies[k],
+            frame: frames[k],
+        }))
     }
 
-    fn joint_equality(&mut self, item: &Item<'d>, name: String) -> Result<(), DoorError> {
-        let element = item.element;
+    fn joint_equality(&mut self, element: Element<'d>, name: String) -> Result<(), DoorError> {
         let one = element.attribute("joint1").unwrap_or_default();
-        let dependent = self.joint_named(&element, one)?;
-        let polynomial = item.numbers("polycoef")?.unwrap_or_else(|| vec![0.0, 1.0]);
+        let dependent = self.joint_named(element, one)?;
+        let polynomial = element
+            .numbers("polycoef")?
+            .unwrap_or_else(|| vec![0.0, 1.0]);
         let Some(other) = element.attribute("joint2") else {
             if polynomial.first().is_none_or(|offset| *offset == 0.0) {
                 self.model.joints[dependent].kind = Kind::Fixed;
@@ -126,7 +124,7 @@ impl<'d> Reader<'d, '_> {
             }
             return Ok(());
         };
-        let independent = self.joint_named(&element, other)?;
+        let independent = self.joint_named(element, other)?;
         let references = [dependent, independent].map(|joint| self.model.joints[joint].drawn);
         self.model.couplings.push(Coupling {
             name,
@@ -139,52 +137,98 @@ impl<'d> Reader<'d, '_> {
         Ok(())
     }
 
+    fn joint_named(&self, element: Element<'d>, name: &str) -> Result<usize, DoorError> {
+        element.known(self.model.joint_named(name), "joint", name)
+    }
+
     /// A straight tendon between two sites is a spring.
     pub(super) fn tendon(&mut self, element: Element<'d>) -> Result<(), DoorError> {
+        self.classed(element, None)?;
         let name = element.attribute("name").unwrap_or("tendon").to_owned();
-        let item = self.defaults.item(element, None)?;
         let parts = element.children();
         let sites: Vec<_> = parts
             .iter()
             .filter_map(|part| part.attribute("site"))
             .collect();
         let ([one, other], "spatial", 2) = (&sites[..], element.tag(), parts.len()) else {
-            element.leave(
-                Effect::Changes,
-                format!("tendon {name}, {}: {LOST}", element.tag()),
-            );
+            let text = format!("tendon {name}, {}: {LOST}", element.tag());
+            element.leave(Effect::Changes, text);
             return Ok(());
         };
-        let ends = [self.site(&element, one)?, self.site(&element, other)?];
-        let places = ends.map(|end| self.model.drawn(&end).origin);
-        let free_length = item.value("springlength", -1.0)?;
-        let (stiffness, damping) = (item.value("stiffness", 0.0)?, item.value("damping", 0.0)?);
+        let ends = [
+            self.site_named(element, one)?,
+            self.site_named(element, other)?,
+        ];
+        let places = ends.map(|end| end.frame.origin);
         for active in ["frictionloss", "armature"] {
-            if item.value(active, 0.0)? != 0.0 {
+            if element.value(active, 0.0)? != 0.0 {
                 element.lost(format!("tendon {name} {active}"));
             }
         }
-        let limited = item.text("range").is_some() && !item.is("limited", "false");
+        let limited = element.attribute("range").is_some() && !element.is("limited", "false");
         let (effect, range) = match limited {
             true => (Effect::AtLimits, format!(", its range {AT_LIMITS}")),
             false => (Effect::Kept, String::new()),
         };
         let between = format!("between {one} and {other} (straight, two sites)");
-        element.note(
-            effect,
-            format!("tendon {name}: kept as a spring {between}{range}"),
-        );
-        self.model.loads.push(Load::Spring {
+        let text = format!("tendon {name}: kept as a spring {between}{range}");
+        element.note(effect, text);
+        let length = length(sub(places[0], places[1]));
+        self.model.loads.push(Load {
             name,
-            ends: ends.map(|end| (end.body, end.frame.origin)),
-            stiffness,
-            damping,
-            free_length: if free_length < 0.0 {
-                length(sub(places[0], places[1]))
-            } else {
-                free_length
+            at: ends.map(|end| (end.body, end.frame.origin)).to_vec(),
+            action: Action::Spring {
+                stiffness: element.value("stiffness", 0.0)?,
+                damping: element.value("damping", 0.0)?,
+                free_length: match element.value("springlength", -1.0)? {
+                    given if given >= 0.0 => given,
+                    _ => length,
+                },
             },
         });
+        Ok(())
+    }
+
+    /// An actuator of a joint drives it.
+    pub(super) fn actuator(&mut self, element: Element<'d>) -> Result<(), DoorError> {
+        self.classed(element, None)?;
+        let tag = element.tag();
+        let name = element.attribute("joint");
+        let joint = name
+            .map(|name| self.joint_named(element, name))
+            .transpose()?;
+        let drives = ["motor", "position", "velocity", "general", "intvelocity"].contains(&tag);
+        let joint = joint.filter(|joint| drives && self.model.joints[*joint].is_driveable());
+        let Some((name, joint)) = name.zip(joint) else {
+            let of = name.map_or(String::new(), |joint| format!(" of {joint}"));
+            element.leave(Effect::Changes, format!("{tag} actuator{of}: {LOST}"));
+            return Ok(());
+        };
+        let gear = element.numbers("gear")?;
+        let gear = gear.and_then(|gear| gear.first().copied()).unwrap_or(1.0);
+        let (text, gains) = match tag {
+            "motor" => {
+                let text =
+                    format!("motor of {name}: drives it, with {gear} N m or N for a control of 1");
+                (text, None)
+            }
+            "position" => {
+                let gains = [element.value("kp", 1.0)?, element.value("kv", 0.0)?];
+                let text = "position actuator: servo: kept as a drive (kp, kv)";
+                (text.to_owned(), Some(gains))
+            }
+            "velocity" => {
+                let gains = [0.0, element.value("kv", 1.0)?];
+                let text = "velocity actuator: servo: kept as a drive (kv)";
+                (text.to_owned(), Some(gains))
+            }
+            _ => {
+                let text = format!("{tag} actuator of {name}: drives it; its own law is left out");
+                (text, None)
+            }
+        };
+        element.kept(text);
+        self.model.drive(joint).servo = gains.map(|gains| gains.map(|gain| gain * gear * gear));
         Ok(())
     }
 }

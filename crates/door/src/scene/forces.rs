@@ -2,120 +2,99 @@
 
 use super::Writer;
 use super::text::{number, quoted};
-use crate::finding::Effect;
-use crate::model::{Coupling, Joint, Kind, Load};
+use crate::finding::{AT_LIMITS, Effect, LOST};
+use crate::model::{Action, Coupling, Kind, Load};
 use crate::names::{allowed, free_name};
 use crate::pose::{Vector, dot, length, scaled, sub};
-use crate::xml::{AT_LIMITS, LOST};
 use std::collections::HashSet;
+
+/// The names of the points at which a load acts.
+fn point_names(load: &Load) -> Vec<String> {
+    let name = allowed(&load.name);
+    match load.at.len() {
+        1 => vec![format!("at_{name}")],
+        count => (1..=count).map(|k| format!("at_{name}_{k}")).collect(),
+    }
+}
 
 impl Writer<'_> {
     /// Points of a body at which loads act.
-    pub(super) fn load_points(&self, number: usize) -> Vec<(String, Vector)> {
-        let pose = self.model.bodies[number].pose;
-        let points = self.model.loads.iter().flat_map(|load| match load {
-            Load::Spring { name, ends, .. } => {
-                vec![
-                    (format!("{name}_1"), ends[0]),
-                    (format!("{name}_2"), ends[1]),
-                ]
-            }
-            Load::Force { name, at, .. } => vec![(name.clone(), *at)],
-        });
-        let here = points.filter(|(_, (body, _))| *body == number);
-        here.map(|(name, (_, point))| (format!("at_{}", allowed(&name)), pose.point(point)))
-            .collect()
+    pub(super) fn load_points(&self, of: usize) -> Vec<(String, Vector)> {
+        let loads = self.model.loads.iter();
+        let points = loads.flat_map(|load| point_names(load).into_iter().zip(&load.at));
+        let here = points.filter(|(_, (body, _))| *body == of);
+        here.map(|(name, (_, point))| (name, *point)).collect()
     }
 
     /// Whether a load or a coupling depends on the coordinate of a joint.
     pub(super) fn needs_coordinate(&self, joint: usize) -> bool {
-        let Joint { along, .. } = &self.model.joints[joint];
-        let slides = !self.model.joints[joint].is_angle();
-        let flat = self.plane.is_some();
+        let (of, flat) = (&self.model.joints[joint], self.plane.is_some());
+        let along = of.along;
+        let slides = along.stiffness != 0.0 || flat && along.damping != 0.0;
+        let forced = along.friction != 0.0 || !of.is_angle() && slides;
         let coupled = |one: &Coupling| flat && [one.dependent, one.independent].contains(&joint);
-        let forced = along.friction != 0.0
-            || slides && (along.stiffness != 0.0 || flat && along.damping != 0.0);
-        self.model.joints[joint].is_driveable() && forced
-            || self.model.couplings.iter().any(coupled)
+        of.is_driveable() && forced || self.model.couplings.iter().any(coupled)
     }
 
     /// A coupling of joint coordinates, which scenes in the plane have.
     pub(super) fn coupling(&mut self, coupling: &Coupling) {
-        let degree = coupling
-            .polynomial
-            .iter()
-            .rposition(|c| *c != 0.0)
-            .unwrap_or(0);
+        let degree = coupling.polynomial.iter().rposition(|c| *c != 0.0);
+        let degree = degree.unwrap_or(0);
         let numbers = [coupling.dependent, coupling.independent];
-        let joints = numbers.map(|k| &self.model.joints[k]);
+        let [dependent, independent] = numbers.map(|k| &self.model.joints[k]);
+        let simple = |kind| matches!(kind, Kind::Hinge | Kind::Slide);
         let what = format!("equality {}, polynomial of degree {degree}", coupling.name);
-        let simple = joints
-            .iter()
-            .all(|joint| matches!(joint.kind, Kind::Hinge | Kind::Slide));
-        if self.plane.is_none() || !simple {
-            let text = format!("{what}: coupling in space: {LOST}");
-            return self.model.note(&coupling.place, Effect::Changes, text);
+        if self.plane.is_none() || !simple(dependent.kind) || !simple(independent.kind) {
+            return coupling.place.lost(format!("{what}: coupling in space"));
         }
-        self.model.note(
-            &coupling.place,
-            Effect::Kept,
-            format!("{what}: coupling in the plane"),
-        );
-        let [dependent, independent] = joints.map(|joint| joint.drawn);
-        let x = match independent - coupling.references[1] {
+        coupling
+            .place
+            .kept(format!("{what}: coupling in the plane"));
+        let x = match independent.drawn - coupling.references[1] {
             0.0 => "x".to_owned(),
-            shift => format!("(x + ({shift}))"),
+            shift => format!("(x + ({}))", number(shift)),
         };
-        let terms = coupling
-            .polynomial
-            .iter()
-            .zip(0..)
-            .filter(|(c, _)| **c != 0.0);
-        let mut terms: Vec<String> = terms
-            .map(|(c, power)| match power {
-                0 => format!("({c})"),
-                1 => format!("({c})*{x}"),
-                _ => format!("({c})*{x}^{power}"),
+        let mut polynomial = coupling.polynomial.clone();
+        if let Some(constant) = polynomial.first_mut() {
+            *constant += coupling.references[0] - dependent.drawn;
+        }
+        let terms = polynomial.iter().enumerate().filter(|(_, c)| **c != 0.0);
+        let mut law: Vec<String> = terms
+            .map(|(power, c)| match (power, number(*c)) {
+                (0, c) => c,
+                (1, c) => format!("({c})*{x}"),
+                (_, c) => format!("({c})*{x}^{power}"),
             })
             .collect();
-        let offset = coupling.references[0] - dependent;
-        if offset != 0.0 || terms.is_empty() {
-            terms.push(format!("({offset})"));
+        if law.is_empty() {
+            law.push("0".to_owned());
         }
         let names = numbers
             .map(|k| quoted(&self.names.coordinates[k]))
             .join(", ");
         let mut taken: HashSet<String> = self.names.joints.iter().cloned().collect();
         let name = free_name(&allowed(&coupling.name), &mut taken);
-        let law = quoted(&terms.join(" + "));
+        let law = quoted(&law.join(" + "));
         self.text
             .entry(&name, &format!("coupling = [{names}], expression = {law}"));
     }
 
     pub(super) fn loads(&mut self) {
-        self.text.table(&["loads"]);
+        self.text.table("loads");
+        let size = length(self.model.gravity);
         let gravity = self.in_plane(self.model.gravity);
         // What is left of gravity along the normal is rounding.
-        if length(gravity) > 1e-14 * length(self.model.gravity) {
-            self.load("weight", &format!("gravity = {}", self.vector(gravity)));
+        if length(gravity) > 1e-14 * size {
+            self.load(
+                "weight",
+                &format!("gravity = {}", self.vector(gravity, 1e-15 * size)),
+            );
         }
         for joint in 0..self.model.joints.len() {
             self.along(joint);
         }
         for load in &self.model.loads {
-            match load {
-                Load::Spring { name, ends, .. } => {
-                    self.spring(load, &allowed(name), ends.map(|(body, _)| body));
-                }
-                Load::Force {
-                    name,
-                    at,
-                    force,
-                    turns,
-                } => {
-                    self.force(&allowed(name), at.0, *force, *turns);
-                }
-            }
+            self.action(load);
         }
         self.servos();
         self.stops();
@@ -133,6 +112,11 @@ impl Writer<'_> {
         self.text.entry(&name, keys);
     }
 
+    fn note(&self, joint: usize, effect: Effect, text: &str) {
+        let of = &self.model.joints[joint];
+        of.place.note(effect, format!("joint {} {text}", of.name));
+    }
+
     /// Damping, friction and stiffness along the coordinate of a joint.
     fn along(&mut self, joint: usize) {
         let of = &self.model.joints[joint];
@@ -144,11 +128,13 @@ impl Writer<'_> {
             let text = format!("damping, friction or stiffness: {LOST}");
             return self.note(joint, Effect::Changes, &text);
         }
-        let name = self.names.joints[joint].clone();
-        let q = self.names.coordinates[joint].clone();
+        let (name, q) = (
+            self.names.joints[joint].clone(),
+            &self.names.coordinates[joint],
+        );
         // Of pairs of bodies in the plane, of joints in space.
         let (force, on) = match (&self.plane, of.is_angle()) {
-            (Some(plane), true) => ("torque", self.turning_pair(joint, plane)),
+            (Some(plane), true) => ("torque", self.turning_pair(of, plane)),
             (None, true) => ("joint-torque", quoted(&name)),
             (_, false) => ("slide-force", quoted(&name)),
         };
@@ -156,96 +142,87 @@ impl Writer<'_> {
         let [damping, friction, stiffness] =
             [along.damping, along.friction, along.stiffness].map(number);
         let free = number(along.spring_reference - of.drawn);
-        if along.damping != 0.0 {
-            let keys = match (of.is_angle(), self.plane.is_some()) {
-                (true, _) => format!("rotational-damper = {on}, damping = {damping}"),
-                (false, false) => format!("slide-damper = {on}, damping = {damping}"),
-                (false, true) => law(format!("-({damping})*{q}.velocity")),
-            };
-            self.load(&format!("damping_{name}"), &keys);
-        }
+        let damper = match (of.is_angle(), self.plane.is_some()) {
+            (true, _) => format!("rotational-damper = {on}, damping = {damping}"),
+            (false, false) => format!("slide-damper = {on}, damping = {damping}"),
+            (false, true) => law(format!("-({damping})*{q}.velocity")),
+        };
+        let rubs = law(format!("-({friction})*sign({q}.velocity)"));
+        let spring = match of.is_angle() {
+            true => format!("torsion-spring = {on}, stiffness = {stiffness}, free-angle = {free}"),
+            false => law(format!("-({stiffness})*({q} - ({free}))")),
+        };
         if along.friction != 0.0 {
             let word = self.model.terms[0];
             let text = format!("{word} {friction}: kept as a load -{friction}*sign(rate)");
             self.note(joint, Effect::Kept, &text);
-            let keys = law(format!("-({friction})*sign({q}.velocity)"));
-            self.load(&format!("friction_{name}"), &keys);
         }
-        if along.stiffness != 0.0 {
-            let keys = match of.is_angle() {
-                true => {
-                    format!("torsion-spring = {on}, stiffness = {stiffness}, free-angle = {free}")
+        for (value, what, keys) in [
+            (along.damping, "damping", damper),
+            (along.friction, "friction", rubs),
+            (along.stiffness, "spring", spring),
+        ] {
+            if value != 0.0 {
+                self.load(&format!("{what}_{name}"), &keys);
+            }
+        }
+    }
+
+    fn action(&mut self, load: &Load) {
+        let name = allowed(&load.name);
+        let ends = load.at.iter().zip(point_names(load));
+        let ends =
+            ends.map(|((body, _), point)| quoted(&format!("{}.{point}", self.names.bodies[*body])));
+        let ends = ends.collect::<Vec<_>>().join(", ");
+        match &load.action {
+            Action::Spring {
+                stiffness,
+                damping,
+                free_length,
+            } => {
+                let [k, c, free] = [*stiffness, *damping, *free_length].map(number);
+                if *stiffness != 0.0 {
+                    let keys = format!("spring = [{ends}], stiffness = {k}, free-length = {free}");
+                    self.load(&name, &keys);
                 }
-                false => law(format!("-({stiffness})*({q} - ({free}))")),
-            };
-            self.load(&format!("spring_{name}"), &keys);
-        }
-    }
-
-    fn spring(&mut self, load: &Load, name: &str, bodies: [usize; 2]) {
-        let Load::Spring {
-            stiffness,
-            damping,
-            free_length,
-            ..
-        } = load
-        else {
-            return;
-        };
-        let bodies = bodies.map(|body| &self.names.bodies[body]);
-        let ends = [1, 2]
-            .map(|k| quoted(&format!("{}.at_{name}_{k}", bodies[k - 1])))
-            .join(", ");
-        let [k, c, free] = [*stiffness, *damping, *free_length].map(number);
-        if *stiffness != 0.0 {
-            let keys = format!("spring = [{ends}], stiffness = {k}, free-length = {free}");
-            self.load(name, &keys);
-        }
-        if *damping != 0.0 {
-            self.load(
-                &format!("{name}_damper"),
-                &format!("damper = [{ends}], damping = {c}"),
-            );
-        }
-    }
-
-    fn force(&mut self, name: &str, body: usize, force: Vector, turns: bool) {
-        let turned = self.model.bodies[body].pose.turn.apply(force);
-        let force = if turns { turned } else { force };
-        let size = length(self.in_plane(force));
-        let point = quoted(&format!("{}.at_{name}", self.names.bodies[body]));
-        let frame = if turns { ", frame = \"body\"" } else { "" };
-        let (direction, size_text) = (self.vector(force), number(size));
-        if size > 0.0 {
-            let keys =
-                format!("force = {point}, direction = {direction}, magnitude = {size_text}{frame}");
-            self.load(name, &keys);
+                if *damping != 0.0 {
+                    let keys = format!("damper = [{ends}], damping = {c}");
+                    self.load(&format!("{name}_damper"), &keys);
+                }
+            }
+            Action::Force { force, turns } => {
+                let size = length(self.in_plane(*force));
+                let frame = if *turns { ", frame = \"body\"" } else { "" };
+                let (direction, magnitude) = (self.vector(*force, 0.0), number(size));
+                if size > 0.0 {
+                    let keys = format!(
+                        "force = {ends}, direction = {direction}, magnitude = {magnitude}{frame}"
+                    );
+                    self.load(&name, &keys);
+                }
+            }
         }
     }
 
     /// Servos act in free motions.
     fn servos(&mut self) {
-        let drives = &self.model.drives;
-        let servos = drives
-            .iter()
-            .filter_map(|drive| Some((drive.joint, drive.servo?)));
+        let servos = self.model.drives.iter();
+        let servos = servos.filter_map(|drive| Some((drive.joint, drive.servo?)));
         let servos: Vec<_> = servos.collect();
         if !servos.is_empty() {
-            self.text.table(&["drives"]);
+            self.text.table("drives");
         }
-        for (joint, [proportional, derivative]) in servos {
-            let (q, drawn) = (
-                &self.names.coordinates[joint],
-                self.model.joints[joint].drawn,
-            );
+        for (joint, gains) in servos {
+            let q = &self.names.coordinates[joint];
+            let drawn = number(self.model.joints[joint].drawn);
+            let [proportional, derivative] = gains.map(number);
             let law = format!("-({proportional})*({q} + ({drawn})) - ({derivative})*{q}.velocity");
-            let name = free_name(&format!("servo_{q}"), &mut self.load_names);
             let keys = format!(
                 "applied-force = {}, magnitude = {}",
                 quoted(q),
                 quoted(&law)
             );
-            self.text.entry(&name, &keys);
+            self.load(&format!("servo_{q}"), &keys);
         }
     }
 
@@ -259,24 +236,29 @@ impl Writer<'_> {
             };
             let [low, high] = limits.map(|limit| limit - joint.drawn);
             let driven = self.model.drives.iter().any(|drive| drive.joint == k);
-            if driven && low <= 0.0 && high >= 0.0 && low < high {
-                self.note(
-                    k,
-                    Effect::Kept,
-                    &format!("{word}: kept as a stop where free"),
-                );
-                stops.push((k, [low, high].map(number)));
-            } else {
+            if !(driven && low <= 0.0 && high >= 0.0 && low < high) {
                 self.note(k, Effect::AtLimits, &format!("{word}: {AT_LIMITS}"));
+                continue;
             }
+            self.note(
+                k,
+                Effect::Kept,
+                &format!("{word}: kept as a stop where free"),
+            );
+            let q = &self.names.coordinates[k];
+            let mut keys = format!("coordinate = {}", quoted(q));
+            for (key, bound) in [("min", low), ("max", high)] {
+                if bound.is_finite() {
+                    keys += &format!(", {key} = {}", number(bound));
+                }
+            }
+            stops.push((format!("limits_{q}"), keys));
         }
         if !stops.is_empty() {
-            self.text.table(&["stops"]);
+            self.text.table("stops");
         }
-        for (joint, [low, high]) in stops {
-            let q = &self.names.coordinates[joint];
-            let keys = format!("coordinate = {}, min = {low}, max = {high}", quoted(q));
-            self.text.entry(&format!("limits_{q}"), &keys);
+        for (name, keys) in stops {
+            self.text.entry(&name, &keys);
         }
     }
 }

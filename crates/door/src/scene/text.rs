@@ -5,7 +5,7 @@ use crate::error::DoorError;
 /// The largest number that a scene may have.
 const LARGEST: f64 = 1e60;
 /// In place of a number that no scene may have; it is in no other text.
-const WRONG: char = '\u{1}';
+const WRONG: char = '\u{FFFF}';
 
 #[derive(Default)]
 pub(super) struct Text(String);
@@ -16,9 +16,8 @@ impl Text {
         self.0 += "\n";
     }
 
-    pub(super) fn table(&mut self, path: &[&str]) {
-        let path: Vec<String> = path.iter().map(|name| key(name)).collect();
-        self.line(&format!("\n[{}]", path.join(".")));
+    pub(super) fn table(&mut self, path: &str) {
+        self.line(&format!("\n[{path}]"));
     }
 
     pub(super) fn pair(&mut self, name: &str, value: impl std::fmt::Display) {
@@ -31,14 +30,18 @@ impl Text {
     }
 
     pub(super) fn finish(self) -> Result<String, DoorError> {
-        match self.0.lines().find(|line| line.contains(WRONG)) {
-            Some(line) => Err(DoorError::Number(line.chars().take(100).collect())),
-            None => Ok(self.0),
-        }
+        let Some(line) = self.0.lines().find(|line| line.contains(WRONG)) else {
+            return Ok(self.0);
+        };
+        let near: String = line.replace(WRONG, "?").chars().take(100).collect();
+        let message = format!("a number is not finite, or above {LARGEST:e}, near `{near}`");
+        Err(DoorError::new(message, ""))
     }
 }
 
+/// A number with 15 digits, which leaves the last rounding out.
 pub(super) fn number(value: f64) -> String {
+    let value = format!("{value:.14e}").parse().unwrap_or(value);
     match value {
         0.0 => "0".to_owned(),
         value if value.is_nan() || value.abs() > LARGEST => WRONG.to_string(),
@@ -61,13 +64,14 @@ pub(super) fn quoted(text: &str) -> String {
 /// A key, in quotes if it needs them.
 pub(super) fn key(name: &str) -> String {
     let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    let bare = !name.is_empty() && name.chars().all(is_bare);
-    if bare { name.to_owned() } else { quoted(name) }
+    match name.chars().all(is_bare) {
+        true => name.to_owned(),
+        false => quoted(name),
+    }
 }
 
 /// A comment of one line.
 pub(crate) fn comment(text: &str) -> String {
-    format!("# {}", text.replace(char::is_control, " "))
-        .trim_end()
-        .to_owned()
+    let line = format!("# {}", text.replace(char::is_control, " "));
+    line.trim_end().to_owned()
 }

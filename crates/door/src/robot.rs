@@ -1,0 +1,353 @@
+//! URDF, the format of ROS, and SDF, the format of Gazebo: links at named frames, and joints between them.
+
+mod joints;
+mod loops;
+
+use crate::error::DoorError;
+use crate::finding::{AT_LIMITS, Effect, LOST};
+use crate::model::{Action, End, GROUND, Load, Model};
+use crate::options::ImportOptions;
+use crate::pose::{Matrix, Pose, scaled};
+use crate::settle::Read;
+use crate::xml::{Element, Rules, Xml};
+use std::collections::HashMap;
+
+const RULES: Rules = Rules {
+    idle: "visual sensor light material gui scene audio audio_source camera projector particle_emitter battery physics self_collide selfCollide \
+        static name version type xmlns author description license default canonical_link spherical_coordinates atmosphere magnetic_field wind \
+        enable_wind allow_auto_disable must_be_base_link max_step_size real_time_factor real_time_update_rate provide_feedback \
+        safety_controller calibration role state_name drake capsule mechanicalReduction hardwareInterface rpy ros2_control color mu1 mu2 kp kd \
+        minDepth maxVel",
+    limits: "collision limit effort velocity acceleration jerk stiffness dissipation",
+};
+
+const MODEL: &str = "__model__";
+const WORLD: &str = "world";
+const NO_GRAVITY: &str = "no gravity in the file: 9.81 m/s2 against z";
+
+/// A named frame: where it is, from which frame, and to which frame or link it is attached.
+#[derive(Clone, Copy)]
+struct Frame<'d> {
+    element: Element<'d>,
+    pose: Pose,
+    relative_to: &'d str,
+    attached_to: &'d str,
+}
+
+struct Reader<'d> {
+    model: Model,
+    frames: HashMap<&'d str, Frame<'d>>,
+    /// The names of the frames in their order.
+    names: Vec<&'d str>,
+    links: HashMap<&'d str, usize>,
+    model_pose: Pose,
+    is_sdf: bool,
+}
+
+impl<'d> Reader<'d> {
+    fn new(title: &str, root: Element<'d>, is_sdf: bool) -> Self {
+        Self {
+            model: Model::new(title, root.place()),
+            frames: HashMap::new(),
+            names: Vec::new(),
+            links: HashMap::new(),
+            model_pose: Pose::IDENTITY,
+            is_sdf,
+        }
+    }
+}
+
+/// Reads URDF. The frame of a link is that of the joint on which it hangs, in the frame of the link before.
+pub(crate) fn urdf(xml: &Xml<'_>, options: &ImportOptions) -> Result<Read, DoorError> {
+    let root = xml.root();
+    root.kept(NO_GRAVITY);
+    let title = root.attribute("name").unwrap_or("URDF model");
+    let mut reader = Reader::new(title, root, false);
+    for link in root.called("link") {
+        reader.frame(link)?;
+    }
+    let joints = root.called("joint");
+    for joint in &joints {
+        reader.hang(*joint)?;
+    }
+    reader.place_links()?;
+    for joint in &joints {
+        let child = joints::side(*joint, &["child"]);
+        let name = name(*joint)?;
+        reader.joint(name, *joint, reader.in_world(child, joint)?)?;
+        if let Some(joint) = reader.model.joints.last_mut() {
+            joint.in_tree = true;
+        }
+        let drives = joint.attribute("independent").unwrap_or_default();
+        if drives.eq_ignore_ascii_case("true") {
+            reader.model.drive(reader.model.joints.len() - 1);
+        }
+    }
+    reader.hold_roots();
+    for joint in joints {
+        reader.mimic(name(joint)?, joint)?;
+    }
+    for part in root.children() {
+        match part.tag() {
+            "transmission" => reader.transmission(part),
+            "gazebo" => reader.gazebo(part)?,
+            "loop_joint" | "loop" | "loop_constraint" => reader.loop_element(part)?,
+            _ => {}
+        }
+    }
+    if let Some(text) = &options.loops {
+        reader.extended(text)?;
+    }
+    Ok(Read {
+        coverage: xml.name_the_rest(&RULES),
+        model: reader.model,
+        moves: Vec::new(),
+    })
+}
+
+pub(crate) fn sdf(xml: &Xml<'_>, _: &ImportOptions) -> Result<Read, DoorError> {
+    let root = xml.root();
+    let _ = root.attribute("version");
+    let world = root.child("world");
+    if world.is_none() {
+        root.kept(NO_GRAVITY);
+    }
+    let models = world.unwrap_or(root).called("model");
+    let moves = |one: &Element<'_>| one.says("static") != Some(true);
+    let (moving, still): (Vec<_>, Vec<_>) = models.into_iter().partition(moves);
+    let Some((element, others)) = moving.split_first() else {
+        return Err(root.error("the file has no model that moves"));
+    };
+    for other in others {
+        let text = format!("{}: {LOST}; one model is imported", other.label());
+        other.leave(Effect::Changes, text);
+    }
+    for other in still {
+        let text = format!("{}, static: {AT_LIMITS}", other.label());
+        other.leave(Effect::AtLimits, text);
+    }
+    let title = element.attribute("name").unwrap_or("SDF model");
+    let mut reader = Reader::new(title, root, true);
+    if let Some(world) = world {
+        let _ = world.attribute("name");
+        reader.model.gravity = world.vector("gravity")?.unwrap_or([0.0, 0.0, -9.8]);
+    }
+    for part in element.children() {
+        if ["link", "frame", "joint"].contains(&part.tag()) {
+            reader.frame(part)?;
+        }
+    }
+    let (own, _) = pose(*element)?;
+    if let Some(name) = element.attribute("placement_frame") {
+        reader.model_pose = own.then(reader.in_world(name, element)?.inverse());
+    } else {
+        reader.model_pose = own;
+    }
+    reader.place_links()?;
+    for name in reader.names.clone() {
+        let element = reader.frames[name].element;
+        let frame = reader.in_world(name, &element)?;
+        match element.tag() {
+            "joint" => reader.joint(name, element, frame)?,
+            "frame" => {
+                let body = reader.body_of(name, &element)?;
+                reader
+                    .model
+                    .frames
+                    .push((name.to_owned(), End { body, frame }));
+            }
+            _ => {}
+        }
+    }
+    for name in reader.names.clone() {
+        if let Some(axis) = reader.frames[name].element.child("axis") {
+            reader.mimic(name, axis)?;
+        }
+    }
+    Ok(Read {
+        coverage: xml.name_the_rest(&RULES),
+        model: reader.model,
+        moves: Vec::new(),
+    })
+}
+
+fn name<'d>(element: Element<'d>) -> Result<&'d str, DoorError> {
+    let name = element.attribute("name");
+    name.ok_or_else(|| element.error(format!("a {} needs a name", element.tag())))
+}
+
+/// The pose of an element in its `origin` (URDF) or its `pose` (SDF), with the frame that it names.
+fn pose<'d>(element: Element<'d>) -> Result<(Pose, Option<&'d str>), DoorError> {
+    if let Some(origin) = element.child("origin") {
+        return Ok((xyz_rpy(origin)?, None));
+    }
+    let Some(pose) = element.child("pose") else {
+        return Ok((Pose::IDENTITY, None));
+    };
+    let relative_to = pose.attribute("relative_to").or(pose.attribute("frame"));
+    let relative_to = relative_to.filter(|name| !name.is_empty());
+    let unit = match pose.is("degrees", "true") {
+        true => 1f64.to_radians(),
+        false => 1.0,
+    };
+    let text = pose.text();
+    let pose = if pose.is("rotation_format", "quat_xyzw") {
+        let [x, y, z, qx, qy, qz, qw] = pose.exactly("pose", text)?;
+        let turn = Matrix::quaternion([qw, qx, qy, qz]);
+        let zero = || pose.error("the quaternion is zero");
+        Pose::new([x, y, z], turn.ok_or_else(zero)?)
+    } else if text.is_empty() {
+        Pose::IDENTITY
+    } else {
+        let [x, y, z, angles @ ..] = pose.exactly::<6>("pose", text)?;
+        let turn = Matrix::roll_pitch_yaw(scaled(angles, unit));
+        Pose::new([x, y, z], turn)
+    };
+    Ok((pose, relative_to))
+}
+
+/// A pose in the attributes of URDF.
+fn xyz_rpy(element: Element<'_>) -> Result<Pose, DoorError> {
+    let turn = Matrix::roll_pitch_yaw(element.vector("rpy")?.unwrap_or_default());
+    Ok(Pose::new(element.vector("xyz")?.unwrap_or_default(), turn))
+}
+
+impl<'d> Reader<'d> {
+    /// The frame of a link, a frame or a joint.
+    fn frame(&mut self, element: Element<'d>) -> Result<(), DoorError> {
+        let (tag, name) = (element.tag(), name(element)?);
+        let attached_to = match tag {
+            "frame" => element.attribute("attached_to"),
+            "joint" => element.given("child"),
+            _ => None,
+        };
+        let attached_to = attached_to.filter(|to| !to.is_empty()).unwrap_or(MODEL);
+        let (pose, relative_to) = pose(element)?;
+        let frame = Frame {
+            element,
+            pose,
+            relative_to: relative_to.unwrap_or(attached_to),
+            attached_to,
+        };
+        if self.frames.insert(name, frame).is_some() {
+            return Err(element.error(format!("the name `{name}` is given twice")));
+        }
+        self.names.push(name);
+        if tag == "link" {
+            let body = self.model.push_body(name, element.place(), Pose::IDENTITY);
+            self.links.insert(name, body);
+        }
+        Ok(())
+    }
+
+    /// Hangs the child of a URDF joint on the parent.
+    fn hang(&mut self, joint: Element<'d>) -> Result<(), DoorError> {
+        let [parent, child] = ["parent", "child"].map(|tag| joints::side(joint, &[tag]));
+        joint.known(self.links.get(parent), "link", parent)?;
+        let frame = joint.known(self.frames.get_mut(child), "link", child)?;
+        if frame.relative_to != MODEL {
+            let message = format!("the link of {} has another parent", joint.label());
+            let help = "loops are closed by elements of their own, such as `loop_joint`";
+            return Err(joint.error_with(message, help));
+        }
+        (frame.pose, frame.relative_to) = (pose(joint)?.0, parent);
+        Ok(())
+    }
+
+    fn hold_roots(&mut self) {
+        for name in &self.names {
+            let body = self.links[name];
+            if self.frames[name].relative_to == MODEL {
+                let text = format!("link {name}, the root: is the ground");
+                self.model.bodies[body].place.kept(text);
+                self.model.hold(body);
+            }
+        }
+    }
+
+    /// Where a frame is in the world.
+    fn in_world(&self, name: &str, at: &Element<'d>) -> Result<Pose, DoorError> {
+        let (mut frame, mut pose) = (name, Pose::IDENTITY);
+        for _ in 0..=self.frames.len() {
+            match (self.frames.get(frame), frame) {
+                (Some(one), _) => (frame, pose) = (one.relative_to, one.pose.then(pose)),
+                (None, MODEL) => return Ok(self.model_pose.then(pose)),
+                (None, WORLD) => return Ok(pose),
+                (None, _) => return at.known(None, "frame", frame),
+            }
+        }
+        Err(at.error(format!("the frame `{name}` refers to itself")))
+    }
+
+    /// The link that a frame moves with.
+    fn body_of(&self, name: &str, at: &Element<'d>) -> Result<usize, DoorError> {
+        let mut frame = name;
+        for _ in 0..=self.frames.len() {
+            match (self.links.get(frame), self.frames.get(frame), frame) {
+                (Some(body), ..) => return Ok(*body),
+                (_, Some(one), _) => frame = one.attached_to,
+                (.., WORLD) => return Ok(GROUND),
+                // The model is where its first link is.
+                (.., MODEL) => return Ok(self.model.bodies.len().min(2) - 1),
+                _ => return at.known(None, "frame", frame),
+            }
+        }
+        Err(at.error(format!("the frame `{name}` refers to itself")))
+    }
+
+    /// Poses and masses of the links.
+    fn place_links(&mut self) -> Result<(), DoorError> {
+        for name in self.names.clone() {
+            let Some(body) = self.links.get(name).copied() else {
+                continue;
+            };
+            let link = self.frames[name].element;
+            let world = self.in_world(name, &link)?;
+            self.model.bodies[body].pose = world;
+            self.inertial(link, body, world)?;
+        }
+        Ok(())
+    }
+
+    fn inertial(&mut self, link: Element<'d>, body: usize, world: Pose) -> Result<(), DoorError> {
+        let label = link.label();
+        // Gazebo takes 1 kg and 1 kg m2 for what is not given.
+        let (mut mass, mut tensor) = match self.is_sdf {
+            true => (1.0, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]),
+            false => (0.0, [0.0; 6]),
+        };
+        let mut frame = world;
+        if let Some(inertial) = link.child("inertial") {
+            frame = world.then(pose(inertial)?.0);
+            mass = inertial.mass(inertial.value("mass", if self.is_sdf { 1.0 } else { -1.0 })?)?;
+            if let Some(inertia) = inertial.child("inertia") {
+                let names = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
+                for (element, name) in tensor.iter_mut().zip(names) {
+                    *element = inertia.value(name, *element)?;
+                }
+            }
+        } else if self.is_sdf {
+            link.kept(format!(
+                "{label}: no inertial, so 1 kg and 1 kg m2, as in Gazebo"
+            ));
+        }
+        self.model.bodies[body].add_mass(mass, frame, Matrix::symmetric(tensor));
+        if link.says("kinematic") == Some(true) {
+            link.lost(format!("{label} kinematic"));
+        }
+        if link.says("gravity") == Some(false) {
+            link.kept(format!(
+                "{label} without gravity: kept as a force against its weight"
+            ));
+            self.model.loads.push(Load {
+                name: format!("no_weight_{}", self.model.bodies[body].name),
+                at: vec![(body, frame.origin)],
+                action: Action::Force {
+                    force: scaled(self.model.gravity, -mass),
+                    turns: false,
+                },
+            });
+        }
+        Ok(())
+    }
+}
