@@ -1,11 +1,10 @@
 //! ASMT, the format of OndselSolver and FreeCAD: a tree of lines, indented by tabs.
 
-use crate::error::DoorError;
-use crate::model::{End, GROUND, Joint, Kind, Model, Motion};
+use crate::error::Result;
+use crate::model::{End, GROUND, Joint, Kind, Model};
 use crate::options::ImportOptions;
 use crate::pose::{Matrix, Pose, Vector, cross, dot, length, sub};
-use crate::settle::Read;
-use crate::xml::{Element, Rules, Xml};
+use crate::xml::{Coverage, Element, Rules, Xml};
 use std::collections::HashMap;
 
 const RULES: Rules = Rules {
@@ -69,7 +68,7 @@ struct Reader {
     markers: HashMap<String, End>,
 }
 
-pub(crate) fn read(xml: &Xml<'_>, _: &ImportOptions) -> Result<Read, DoorError> {
+pub(crate) fn read(xml: &Xml<'_>, _: &ImportOptions) -> Result<(Model, Coverage)> {
     let root = xml.root().read();
     let assembly = root.child("Assembly");
     let assembly = assembly.ok_or_else(|| root.error("the file has no assembly"))?;
@@ -102,11 +101,7 @@ pub(crate) fn read(xml: &Xml<'_>, _: &ImportOptions) -> Result<Read, DoorError> 
         let _ = sets.child("GeneralConstraintSets");
     }
     let _ = assembly.child("ForceTorques");
-    Ok(Read {
-        coverage: xml.name_the_rest(&RULES),
-        model: reader.model,
-        moves: Vec::new(),
-    })
+    Ok((reader.model, xml.name_the_rest(&RULES)))
 }
 
 fn name<'d>(element: Element<'d>) -> &'d str {
@@ -114,7 +109,7 @@ fn name<'d>(element: Element<'d>) -> &'d str {
 }
 
 /// Position and rotation.
-fn pose(element: Element<'_>) -> Result<Pose, DoorError> {
+fn pose(element: Element<'_>) -> Result<Pose> {
     let origin = element.vector("Position3D")?.unwrap_or_default();
     let rows = element.vector("RotationMatrix")?;
     let [a, b, c, d, e, f, g, h, i] = rows.unwrap_or([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
@@ -129,25 +124,19 @@ fn pose(element: Element<'_>) -> Result<Pose, DoorError> {
 
 impl Reader {
     /// The markers of a part, or of the assembly.
-    fn markers(
-        &mut self,
-        of: Element<'_>,
-        body: usize,
-        outer: Pose,
-        path: &str,
-    ) -> Result<(), DoorError> {
+    fn markers(&mut self, of: Element<'_>, body: usize, outer: Pose, path: &str) -> Result<()> {
         for point in of.inner("RefPoints") {
             let outer = outer.then(pose(point.read())?);
             for marker in point.inner("Markers") {
                 let frame = outer.then(pose(marker.read())?);
                 let path = format!("{path}/{}", name(marker));
-                self.markers.insert(path, End { body, frame });
+                self.markers.insert(path, End::new(body, frame));
             }
         }
         Ok(())
     }
 
-    fn part(&mut self, part: Element<'_>, outer: Pose, assembly: &str) -> Result<(), DoorError> {
+    fn part(&mut self, part: Element<'_>, outer: Pose, assembly: &str) -> Result<()> {
         let name = name(part.read());
         let world = outer.then(pose(part)?);
         let body = self.model.push_body(name, part.place(), world);
@@ -165,12 +154,12 @@ impl Reader {
         self.markers(part, body, world, &format!("/{assembly}/{name}"))
     }
 
-    fn end(&self, joint: Element<'_>, key: &str) -> Result<End, DoorError> {
+    fn end(&self, joint: Element<'_>, key: &str) -> Result<End> {
         let path = joint.given(key).unwrap_or_default();
         joint.known(self.markers.get(path).copied(), "marker", path)
     }
 
-    fn joint(&mut self, element: Element<'_>) -> Result<(), DoorError> {
+    fn joint(&mut self, element: Element<'_>) -> Result<()> {
         let name = name(element);
         let kind = match element.tag() {
             "RevoluteJoint" => Kind::Hinge,
@@ -203,7 +192,7 @@ impl Reader {
         Ok(())
     }
 
-    fn motion(&mut self, element: Element<'_>, duration: f64) -> Result<(), DoorError> {
+    fn motion(&mut self, element: Element<'_>, duration: f64) -> Result<()> {
         let path = element.given("MotionJoint").unwrap_or_default();
         let name = path.rsplit('/').next().unwrap_or_default();
         let joint = self.model.driveable(name);
@@ -216,7 +205,7 @@ impl Reader {
         let expression = element.known(expression(law), "law that is read as", law)?;
         let _ = element.given("Name");
         element.kept(format!("motion of {name}: {key} = {law}, drives it"));
-        self.model.drive(joint).motion = Motion::Expression(expression, duration);
+        self.model.drive(joint).law = Some((expression, duration));
         Ok(())
     }
 }

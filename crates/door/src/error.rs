@@ -4,6 +4,8 @@ use std::ops::Range;
 use std::sync::Arc;
 use thiserror::Error;
 
+pub(crate) type Result<T> = std::result::Result<T, DoorError>;
+
 /// The error of an import.
 #[derive(Debug, Clone, Error)]
 #[error("{message}")]

@@ -83,26 +83,20 @@ pub fn import_text(name: &str, text: &str, options: &ImportOptions) -> Result<Im
 }
 
 /// The comments at the head of a scene.
-fn head(name: &str, text: &str, import: &Import, model: &model::Model) -> String {
+fn head(name: &str, text: &str, import: &Import, renamed: &[[String; 2]]) -> String {
     let hash = Sha256::digest(text.as_bytes());
     let hash: String = hash.iter().map(|byte| format!("{byte:02x}")).collect();
-    let mut lines = vec![
-        format!("Imported from {name}"),
-        format!("SHA-256 {hash}"),
-        "Drawn in the frame of the ground, in m, kg and rad. A coordinate is 0 as drawn."
-            .to_owned(),
-    ];
+    let drawn = "Drawn in the frame of the ground, in m, kg and rad. A coordinate is 0 as drawn.";
+    let mut lines = vec![format!("Imported from {name}"), format!("SHA-256 {hash}")];
+    lines.push(drawn.to_owned());
     if let Some([x, y, normal]) = import.plane {
-        lines.push(format!(
-            "Planar: x is {x:?} of the file, y is {y:?}, the normal {normal:?}."
-        ));
+        let axes = format!("x is {x:?} of the file, y is {y:?}, the normal {normal:?}");
+        lines.push(format!("Planar: {axes}."));
     }
-    let renamed = names::Names::new(model).changed(model);
-    let renamed = renamed
-        .iter()
-        .map(|[old, new]| format!("renamed: {old} is {new}"));
-    lines.extend(renamed);
+    for [old, new] in renamed {
+        lines.push(format!("renamed: {old} is {new}"));
+    }
     lines.extend(import.findings.iter().map(ToString::to_string));
-    let lines = lines.iter().map(|line| scene::comment(line));
-    lines.collect::<Vec<_>>().join("\n")
+    let lines: Vec<String> = lines.iter().map(|line| scene::comment(line)).collect();
+    lines.join("\n")
 }

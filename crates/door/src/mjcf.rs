@@ -5,12 +5,11 @@ mod constraints;
 mod defaults;
 mod shapes;
 
-use crate::error::DoorError;
-use crate::model::{Action, GROUND, Model};
+use crate::error::{DoorError, Result};
+use crate::model::{Action, GROUND, Model, Move};
 use crate::options::ImportOptions;
 use crate::pose::{Matrix, Pose, scaled};
-use crate::settle::{Move, Read};
-use crate::xml::{Element, Rules, Xml};
+use crate::xml::{Coverage, Element, Rules, Xml};
 use defaults::Class;
 use std::collections::HashMap;
 
@@ -47,11 +46,10 @@ struct Reader<'d> {
     excluded: Vec<[&'d str; 2]>,
     /// Whether shapes touch each other at all.
     touches: bool,
-    moves: Vec<(usize, Move)>,
 }
 
 /// Reads a model; the first file is that of the root.
-pub(crate) fn read(xml: &Xml<'_>, options: &ImportOptions) -> Result<Read, DoorError> {
+pub(crate) fn read(xml: &Xml<'_>, options: &ImportOptions) -> Result<(Model, Coverage)> {
     let root = xml.root();
     let title = root.attribute("model").unwrap_or("MuJoCo model");
     let mut model = Model::new(title, root.place());
@@ -69,7 +67,6 @@ pub(crate) fn read(xml: &Xml<'_>, options: &ImportOptions) -> Result<Read, DoorE
         order: Vec::new(),
         excluded: Vec::new(),
         touches: true,
-        moves: Vec::new(),
     };
     let sections = root.children();
     let of = |tag: &'static str| sections.iter().filter(move |one| one.tag() == tag);
@@ -92,15 +89,11 @@ pub(crate) fn read(xml: &Xml<'_>, options: &ImportOptions) -> Result<Read, DoorE
     }
     // Only options connect bodies that float with others.
     reader.name_contacts(options.fix.is_none() && options.close.is_empty())?;
-    Ok(Read {
-        coverage: xml.name_the_rest(&RULES),
-        model: reader.model,
-        moves: reader.moves,
-    })
+    Ok((reader.model, xml.name_the_rest(&RULES)))
 }
 
 impl<'d> Reader<'d> {
-    fn compiler(&mut self, section: Element<'d>) -> Result<(), DoorError> {
+    fn compiler(&mut self, section: Element<'d>) -> Result<()> {
         if section.is("angle", "radian") {
             self.angle = 1.0;
         }
@@ -113,15 +106,10 @@ impl<'d> Reader<'d> {
         let from_shapes = section.attribute("inertiafromgeom");
         self.from_shapes = from_shapes.and_then(|word| word.parse().ok());
         self.total_mass = section.value("settotalmass", self.total_mass)?;
-        for bound in ["boundmass", "boundinertia"] {
-            if section.value(bound, 0.0)? > 0.0 {
-                section.lost(format!("compiler {bound}, which lifts small masses"));
-            }
-        }
         Ok(())
     }
 
-    fn option(&mut self, section: Element<'d>) -> Result<(), DoorError> {
+    fn option(&mut self, section: Element<'d>) -> Result<()> {
         let gravity = section.vector("gravity")?;
         self.model.gravity = gravity.unwrap_or(self.model.gravity);
         let mut fluid = Vec::new();
@@ -161,7 +149,7 @@ impl<'d> Reader<'d> {
     }
 
     /// The pose of a keyframe, by the coordinates in the order of the joints.
-    fn keyframe(&mut self, keys: &[Element<'d>], wanted: &str) -> Result<(), DoorError> {
+    fn keyframe(&mut self, keys: &[Element<'d>], wanted: &str) -> Result<()> {
         let name_of = |key: &Element<'d>| key.attribute("name").unwrap_or_default();
         let Some(key) = keys.iter().find(|key| name_of(key) == wanted) else {
             let known = keys.iter().map(name_of);
@@ -175,11 +163,11 @@ impl<'d> Reader<'d> {
             };
             rest = after;
             match (joint, values) {
-                (Some(joint), [value]) => self.moves.push((*joint, Move::To(*value))),
+                (Some(joint), [value]) => self.model.moves.push((*joint, Move::To(*value))),
                 (Some(joint), [w, x, y, z]) => {
                     let turn = Matrix::quaternion([*w, *x, *y, *z]);
                     let turn = turn.map(|turn| (*joint, Move::Turn(turn)));
-                    self.moves.extend(turn);
+                    self.model.moves.extend(turn);
                 }
                 _ => key.kept("key: the pose of a floating body is not taken from it"),
             }

@@ -73,9 +73,15 @@ pub(crate) struct End {
     pub(crate) frame: Pose,
 }
 
+impl End {
+    pub(crate) fn new(body: usize, frame: Pose) -> Self {
+        Self { body, frame }
+    }
+}
+
 /// The same frame of two bodies.
 pub(crate) fn both(bodies: [usize; 2], frame: Pose) -> [End; 2] {
-    bodies.map(|body| End { body, frame })
+    bodies.map(|body| End::new(body, frame))
 }
 
 /// What acts along the coordinate of a joint, and its limits, in the file's own coordinate.
@@ -93,6 +99,8 @@ pub(crate) struct Along {
 #[derive(Debug, Clone)]
 pub(crate) struct Joint {
     pub(crate) name: String,
+    /// The name of its coordinate in the scene.
+    pub(crate) coordinate: String,
     pub(crate) place: Place,
     pub(crate) kind: Kind,
     pub(crate) ends: [End; 2],
@@ -108,6 +116,7 @@ impl Joint {
     pub(crate) fn new(name: impl Into<String>, place: Place, kind: Kind, ends: [End; 2]) -> Self {
         Self {
             name: name.into(),
+            coordinate: String::new(),
             place,
             kind,
             ends,
@@ -187,18 +196,17 @@ pub(crate) enum Action {
 #[derive(Debug, Clone)]
 pub(crate) struct Drive {
     pub(crate) joint: usize,
-    pub(crate) motion: Motion,
+    /// The file's coordinate as an expression in t, and its duration.
+    pub(crate) law: Option<(String, f64)>,
     /// Gains kp and kv of a servo that holds the file's coordinate at zero.
     pub(crate) servo: Option<[f64; 2]>,
 }
 
-/// How the file moves a drive.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Motion {
-    Unknown,
-    Speed(f64),
-    /// The file's coordinate as a function of t, over a duration.
-    Expression(String, f64),
+/// A move to a value of the file's coordinate, or a turn of the second body in that body's axes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Move {
+    To(f64),
+    Turn(Matrix),
 }
 
 #[derive(Debug, Clone)]
@@ -212,6 +220,8 @@ pub(crate) struct Model {
     pub(crate) drives: Vec<Drive>,
     /// Named frames, besides those of bodies, which `--close` may name.
     pub(crate) frames: Vec<(String, End)>,
+    /// How joints are moved before they are drawn.
+    pub(crate) moves: Vec<(usize, Move)>,
     /// The file's words for friction and limits of a joint.
     pub(crate) terms: [&'static str; 2],
 }
@@ -227,6 +237,7 @@ impl Model {
             loads: Vec::new(),
             drives: Vec::new(),
             frames: Vec::new(),
+            moves: Vec::new(),
             terms: ["friction", "limit"],
         };
         model.push_body("ground", file, Pose::IDENTITY);
@@ -245,6 +256,22 @@ impl Model {
             points: Vec::new(),
         });
         self.bodies.len() - 1
+    }
+
+    /// A force against a share of the weight of a body.
+    pub(crate) fn lighten(&mut self, body: usize, share: f64) {
+        let Body {
+            name, mass, center, ..
+        } = &self.bodies[body];
+        let force = scaled(self.gravity, -share * mass);
+        self.loads.push(Load {
+            name: format!("no_weight_{name}"),
+            at: vec![(body, *center)],
+            action: Action::Force {
+                force,
+                turns: false,
+            },
+        });
     }
 
     /// Fixes a body to the ground where it is.
@@ -287,7 +314,7 @@ impl Model {
         if known.is_none() {
             self.drives.push(Drive {
                 joint,
-                motion: Motion::Unknown,
+                law: None,
                 servo: None,
             });
         }

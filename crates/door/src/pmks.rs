@@ -1,10 +1,9 @@
 //! Links of PMKS+: a query in which numbers are digits of base 64, thousandths of their unit.
 
-use crate::error::DoorError;
+use crate::error::{DoorError, Result};
 use crate::finding::{Effect, Place};
-use crate::model::{Action, GROUND, Joint, Kind, Load, Model, Motion, both};
+use crate::model::{Action, GROUND, Joint, Kind, Load, Model, both};
 use crate::pose::{Matrix, Pose, Vector, scaled, sub, unit};
-use crate::settle::Read;
 use crate::xml::{Coverage, TextFile};
 use std::f64::consts::TAU;
 
@@ -46,7 +45,7 @@ pub(crate) fn is_link(text: &str) -> bool {
     text.contains('.') && !text.trim().contains(char::is_whitespace)
 }
 
-pub(crate) fn read(file: &TextFile) -> Result<Read, DoorError> {
+pub(crate) fn read(file: &TextFile) -> Result<(Model, Coverage)> {
     let text = file.text.trim();
     if !is_link(text) {
         return Err(DoorError::new(
@@ -86,7 +85,7 @@ pub(crate) fn read(file: &TextFile) -> Result<Read, DoorError> {
     let mut lists = lists.split(|field| field.is_empty());
     let [joints, links, forces] = [(); 3].map(|()| lists.next().unwrap_or_default());
     let pins = joints.iter().map(|joint| reader.pin(joint));
-    let mut pins = pins.collect::<Result<Vec<_>, _>>()?;
+    let mut pins = pins.collect::<Result<Vec<_>>>()?;
     for link in links {
         reader.link(link, &mut pins)?;
     }
@@ -101,15 +100,8 @@ pub(crate) fn read(file: &TextFile) -> Result<Read, DoorError> {
         .filter(|token| !token.is_empty())
         .count();
     let named = all.min(links.len() + 1 + integers.split(',').count());
-    Ok(Read {
-        model: reader.model,
-        moves: Vec::new(),
-        coverage: Coverage {
-            all,
-            read: all - named,
-            named,
-        },
-    })
+    let read = all - named;
+    Ok((reader.model, Coverage { all, read, named }))
 }
 
 impl Reader<'_> {
@@ -119,7 +111,7 @@ impl Reader<'_> {
     }
 
     /// A whole number of 0 or more.
-    fn whole(&self, text: &str) -> Result<u64, DoorError> {
+    fn whole(&self, text: &str) -> Result<u64> {
         let mut digits = text.chars().map(|c| DIGITS.find(c));
         let step = |value: u64, digit: usize| value.checked_mul(64)?.checked_add(digit as u64);
         let value = digits.try_fold(0u64, |value, digit| step(value, digit?));
@@ -127,7 +119,7 @@ impl Reader<'_> {
     }
 
     /// A leading zero means that the number is negative.
-    fn whole_or_negative(&self, text: &str) -> Result<f64, DoorError> {
+    fn whole_or_negative(&self, text: &str) -> Result<f64> {
         match text.strip_prefix('0') {
             Some(digits) if !digits.is_empty() => Ok(-(self.whole(digits)? as f64)),
             _ => Ok(self.whole(text)? as f64),
@@ -135,11 +127,11 @@ impl Reader<'_> {
     }
 
     /// Thousandths.
-    fn decimal(&self, text: &str) -> Result<f64, DoorError> {
+    fn decimal(&self, text: &str) -> Result<f64> {
         Ok(self.whole_or_negative(text)? / 1000.0)
     }
 
-    fn read_units(&mut self, enums: &str) -> Result<(), DoorError> {
+    fn read_units(&mut self, enums: &str) -> Result<()> {
         // Length, angle, force; a fourth digit is cut off by its encoder.
         let digit = |k: usize| enums.get(k..=k).map_or(Ok(9), |digit| self.whole(digit));
         let (length, mass) = match digit(0)? {
@@ -157,7 +149,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn point(&self, x: &str, y: &str) -> Result<Vector, DoorError> {
+    fn point(&self, x: &str, y: &str) -> Result<Vector> {
         let point = [self.decimal(x)?, self.decimal(y)?, 0.0];
         Ok(scaled(point, self.units[0]))
     }
@@ -167,14 +159,14 @@ impl Reader<'_> {
         &self,
         what: &str,
         text: &'f str,
-    ) -> Result<([&'f str; N], Vec<&'f str>), DoorError> {
+    ) -> Result<([&'f str; N], Vec<&'f str>)> {
         let mut all = text.split(',');
         let first: Vec<&str> = all.by_ref().take(N).collect();
         let few = |_| self.error(&format!("the {what} `{text}` has too few fields"));
         Ok((first.try_into().map_err(few)?, all.collect()))
     }
 
-    fn pin(&self, text: &str) -> Result<Pin, DoorError> {
+    fn pin(&self, text: &str) -> Result<Pin> {
         let ([id, name, x, y, angle], _) = self.fields("joint", text)?;
         let (flags, id) = split_first(id);
         let flags = self.whole(flags)?;
@@ -189,7 +181,7 @@ impl Reader<'_> {
         })
     }
 
-    fn link(&mut self, text: &str, pins: &mut [Pin]) -> Result<(), DoorError> {
+    fn link(&mut self, text: &str, pins: &mut [Pin]) -> Result<()> {
         let ([id, name, mass, moment, x, y, _colour], joints) = self.fields("link", text)?;
         let (root, kind_and_id) = split_first(id);
         let (_kind, id) = split_first(kind_and_id);
@@ -226,13 +218,19 @@ impl Reader<'_> {
 
     /// The joints of a pin: its first body with each of the others.
     fn joints(&mut self, pin: &Pin, speeds: [f64; 2]) {
-        let (kind, axis, speed) = match pin.flags {
+        let z = [0.0, 0.0, 1.0];
+        let (kind, axis, speed, range) = match pin.flags {
             flags if flags & PRISMATIC != 0 => {
                 let axis = [pin.angle.cos(), pin.angle.sin(), 0.0];
-                (Kind::Slide, axis, speeds[1])
+                (Kind::Slide, axis, speeds[1], self.units[0])
             }
-            flags if flags & WELDED != 0 => (Kind::Fixed, [0.0, 0.0, 1.0], 0.0),
-            _ => (Kind::Hinge, [0.0, 0.0, 1.0], speeds[0]),
+            flags if flags & WELDED != 0 => (Kind::Fixed, z, 0.0, 0.0),
+            _ => (Kind::Hinge, z, speeds[0], TAU),
+        };
+        // A revolution, or a unit of length.
+        let law = match speed {
+            0.0 => ("0".to_owned(), 1.0),
+            _ => (format!("{speed}*t"), range / speed.abs()),
         };
         let first = self.model.joints.len();
         for other in pin.bodies.iter().skip(1) {
@@ -246,11 +244,11 @@ impl Reader<'_> {
         }
         let drives = pin.flags & INPUT != 0 && kind != Kind::Fixed;
         if drives && self.model.joints.len() > first {
-            self.model.drive(first).motion = Motion::Speed(speed);
+            self.model.drive(first).law = Some(law);
         }
     }
 
-    fn force(&mut self, text: &str) -> Result<(), DoorError> {
+    fn force(&mut self, text: &str) -> Result<()> {
         let ([id, link, name, sx, sy, ex, ey, size], _) = self.fields("force", text)?;
         let flags = self.whole(split_first(id).0)?;
         let mut bodies = self.model.bodies.iter();

@@ -3,13 +3,12 @@
 mod joints;
 mod loops;
 
-use crate::error::DoorError;
+use crate::error::Result;
 use crate::finding::{AT_LIMITS, Effect, LOST};
-use crate::model::{Action, End, GROUND, Load, Model};
+use crate::model::{End, GROUND, Model};
 use crate::options::ImportOptions;
 use crate::pose::{Matrix, Pose, scaled};
-use crate::settle::Read;
-use crate::xml::{Element, Rules, Xml};
+use crate::xml::{Coverage, Element, Rules, Xml};
 use std::collections::HashMap;
 
 const RULES: Rules = Rules {
@@ -58,7 +57,7 @@ impl<'d> Reader<'d> {
 }
 
 /// Reads URDF. The frame of a link is that of the joint on which it hangs, in the frame of the link before.
-pub(crate) fn urdf(xml: &Xml<'_>, options: &ImportOptions) -> Result<Read, DoorError> {
+pub(crate) fn urdf(xml: &Xml<'_>, options: &ImportOptions) -> Result<(Model, Coverage)> {
     let root = xml.root();
     root.kept(NO_GRAVITY);
     let title = root.attribute("name").unwrap_or("URDF model");
@@ -98,14 +97,10 @@ pub(crate) fn urdf(xml: &Xml<'_>, options: &ImportOptions) -> Result<Read, DoorE
     if let Some(text) = &options.loops {
         reader.extended(text)?;
     }
-    Ok(Read {
-        coverage: xml.name_the_rest(&RULES),
-        model: reader.model,
-        moves: Vec::new(),
-    })
+    Ok((reader.model, xml.name_the_rest(&RULES)))
 }
 
-pub(crate) fn sdf(xml: &Xml<'_>, _: &ImportOptions) -> Result<Read, DoorError> {
+pub(crate) fn sdf(xml: &Xml<'_>, _: &ImportOptions) -> Result<(Model, Coverage)> {
     let root = xml.root();
     let _ = root.attribute("version");
     let world = root.child("world");
@@ -151,10 +146,8 @@ pub(crate) fn sdf(xml: &Xml<'_>, _: &ImportOptions) -> Result<Read, DoorError> {
             "joint" => reader.joint(name, element, frame)?,
             "frame" => {
                 let body = reader.body_of(name, &element)?;
-                reader
-                    .model
-                    .frames
-                    .push((name.to_owned(), End { body, frame }));
+                let frame = (name.to_owned(), End::new(body, frame));
+                reader.model.frames.push(frame);
             }
             _ => {}
         }
@@ -164,20 +157,16 @@ pub(crate) fn sdf(xml: &Xml<'_>, _: &ImportOptions) -> Result<Read, DoorError> {
             reader.mimic(name, axis)?;
         }
     }
-    Ok(Read {
-        coverage: xml.name_the_rest(&RULES),
-        model: reader.model,
-        moves: Vec::new(),
-    })
+    Ok((reader.model, xml.name_the_rest(&RULES)))
 }
 
-fn name<'d>(element: Element<'d>) -> Result<&'d str, DoorError> {
+fn name<'d>(element: Element<'d>) -> Result<&'d str> {
     let name = element.attribute("name");
     name.ok_or_else(|| element.error(format!("a {} needs a name", element.tag())))
 }
 
 /// The pose of an element in its `origin` (URDF) or its `pose` (SDF), with the frame that it names.
-fn pose<'d>(element: Element<'d>) -> Result<(Pose, Option<&'d str>), DoorError> {
+fn pose<'d>(element: Element<'d>) -> Result<(Pose, Option<&'d str>)> {
     if let Some(origin) = element.child("origin") {
         return Ok((xyz_rpy(origin)?, None));
     }
@@ -207,14 +196,14 @@ fn pose<'d>(element: Element<'d>) -> Result<(Pose, Option<&'d str>), DoorError> 
 }
 
 /// A pose in the attributes of URDF.
-fn xyz_rpy(element: Element<'_>) -> Result<Pose, DoorError> {
+fn xyz_rpy(element: Element<'_>) -> Result<Pose> {
     let turn = Matrix::roll_pitch_yaw(element.vector("rpy")?.unwrap_or_default());
     Ok(Pose::new(element.vector("xyz")?.unwrap_or_default(), turn))
 }
 
 impl<'d> Reader<'d> {
     /// The frame of a link, a frame or a joint.
-    fn frame(&mut self, element: Element<'d>) -> Result<(), DoorError> {
+    fn frame(&mut self, element: Element<'d>) -> Result<()> {
         let (tag, name) = (element.tag(), name(element)?);
         let attached_to = match tag {
             "frame" => element.attribute("attached_to"),
@@ -241,7 +230,7 @@ impl<'d> Reader<'d> {
     }
 
     /// Hangs the child of a URDF joint on the parent.
-    fn hang(&mut self, joint: Element<'d>) -> Result<(), DoorError> {
+    fn hang(&mut self, joint: Element<'d>) -> Result<()> {
         let [parent, child] = ["parent", "child"].map(|tag| joints::side(joint, &[tag]));
         joint.known(self.links.get(parent), "link", parent)?;
         let frame = joint.known(self.frames.get_mut(child), "link", child)?;
@@ -266,7 +255,7 @@ impl<'d> Reader<'d> {
     }
 
     /// Where a frame is in the world.
-    fn in_world(&self, name: &str, at: &Element<'d>) -> Result<Pose, DoorError> {
+    fn in_world(&self, name: &str, at: &Element<'d>) -> Result<Pose> {
         let (mut frame, mut pose) = (name, Pose::IDENTITY);
         for _ in 0..=self.frames.len() {
             match (self.frames.get(frame), frame) {
@@ -280,7 +269,7 @@ impl<'d> Reader<'d> {
     }
 
     /// The link that a frame moves with.
-    fn body_of(&self, name: &str, at: &Element<'d>) -> Result<usize, DoorError> {
+    fn body_of(&self, name: &str, at: &Element<'d>) -> Result<usize> {
         let mut frame = name;
         for _ in 0..=self.frames.len() {
             match (self.links.get(frame), self.frames.get(frame), frame) {
@@ -296,7 +285,7 @@ impl<'d> Reader<'d> {
     }
 
     /// Poses and masses of the links.
-    fn place_links(&mut self) -> Result<(), DoorError> {
+    fn place_links(&mut self) -> Result<()> {
         for name in self.names.clone() {
             let Some(body) = self.links.get(name).copied() else {
                 continue;
@@ -309,7 +298,7 @@ impl<'d> Reader<'d> {
         Ok(())
     }
 
-    fn inertial(&mut self, link: Element<'d>, body: usize, world: Pose) -> Result<(), DoorError> {
+    fn inertial(&mut self, link: Element<'d>, body: usize, world: Pose) -> Result<()> {
         let label = link.label();
         // Gazebo takes 1 kg and 1 kg m2 for what is not given.
         let (mut mass, mut tensor) = match self.is_sdf {
@@ -339,14 +328,7 @@ impl<'d> Reader<'d> {
             link.kept(format!(
                 "{label} without gravity: kept as a force against its weight"
             ));
-            self.model.loads.push(Load {
-                name: format!("no_weight_{}", self.model.bodies[body].name),
-                at: vec![(body, frame.origin)],
-                action: Action::Force {
-                    force: scaled(self.model.gravity, -mass),
-                    turns: false,
-                },
-            });
+            self.model.lighten(body, 1.0);
         }
         Ok(())
     }

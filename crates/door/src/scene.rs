@@ -3,13 +3,12 @@
 mod forces;
 mod text;
 
-use crate::error::DoorError;
-use crate::model::{Drive, GROUND, Joint, Kind, Model, Motion};
-use crate::names::{Names, allowed, free_name};
+use crate::error::Result;
+use crate::model::{Drive, GROUND, Joint, Kind, Model};
+use crate::names::allowed;
 use crate::plane::{Plane, size};
 use crate::pose::{Matrix, Pose, Vector, add, cross, dot, length, scaled, sub, unit};
 use std::collections::HashSet;
-use std::f64::consts::TAU;
 pub(crate) use text::comment;
 use text::{Text, key, list, number, quoted};
 
@@ -21,7 +20,6 @@ const ROUNDING: f64 = 1e-16;
 struct Writer<'m> {
     model: &'m Model,
     plane: Option<Plane>,
-    names: Names,
     size: f64,
     /// The names of loads and drives.
     load_names: HashSet<String>,
@@ -29,13 +27,12 @@ struct Writer<'m> {
 }
 
 /// The scene of a model.
-pub(crate) fn write(model: &Model, plane: Option<Plane>) -> Result<String, DoorError> {
+pub(crate) fn write(model: &Model, plane: Option<Plane>) -> Result<String> {
     let mut writer = Writer {
         model,
         plane,
         size: size(model),
-        names: Names::new(model),
-        load_names: HashSet::new(),
+        load_names: model.loads.iter().map(|load| load.name.clone()).collect(),
         text: Text::default(),
     };
     writer.text.pair("title", quoted(&model.title));
@@ -96,26 +93,22 @@ impl Writer<'_> {
     fn body(&mut self, of: usize) {
         let body = &self.model.bodies[of];
         let mut points: Vec<(String, Vector)> = Vec::new();
-        for (joint, name) in self.model.joints.iter().zip(&self.names.joints) {
+        for joint in &self.model.joints {
             let ends = joint.bodies().into_iter().zip(self.ends(joint));
             let here = ends.filter(|(body, _)| *body == of);
-            points.extend(here.map(|(_, end)| (name.clone(), end.origin)));
+            points.extend(here.map(|(_, end)| (joint.name.clone(), end.origin)));
         }
         points.extend(self.load_points(of));
-        let mut taken: HashSet<String> = points.iter().map(|(name, _)| name.clone()).collect();
         for (name, point) in &body.points {
             let name = allowed(name);
-            if !taken.contains(&name) {
-                points.push((free_name(&name, &mut taken), *point));
+            if points.iter().all(|(one, _)| *one != name) {
+                points.push((name, *point));
             }
         }
-        let points = points
-            .iter()
-            .map(|(name, at)| format!("{} = {}", key(name), self.point(*at)));
-        let points = points.collect::<Vec<_>>().join(", ");
-        self.text
-            .table(&format!("bodies.{}", key(&self.names.bodies[of])));
-        self.text.entry("points", &points);
+        let point = |(name, at): &(String, Vector)| format!("{} = {}", key(name), self.point(*at));
+        let points: Vec<String> = points.iter().map(point).collect();
+        self.text.table(&format!("bodies.{}", key(&body.name)));
+        self.text.entry("points", &points.join(", "));
         if of != GROUND {
             self.masses(of);
         }
@@ -147,17 +140,16 @@ impl Writer<'_> {
 
     fn joints(&mut self) {
         self.text.table("joints");
-        for (joint, name) in self.model.joints.iter().zip(&self.names.joints) {
-            let ends = joint
-                .bodies()
-                .map(|body| quoted(&format!("{}.{name}", self.names.bodies[body])));
+        for joint in &self.model.joints {
+            let end = |body: usize| format!("\"{}.{}\"", self.model.bodies[body].name, joint.name);
+            let ends = joint.bodies().map(end);
             let places = self.ends(joint);
             let (kind, rest) = match &self.plane {
                 Some(plane) => self.planar_keys(joint, plane, places),
                 None => self.spatial_keys(joint, places),
             };
             let keys = format!("{kind} = [{}]{rest}", ends.join(", "));
-            self.text.entry(name, &keys);
+            self.text.entry(&joint.name, &keys);
         }
         for coupling in &self.model.couplings {
             self.coupling(coupling);
@@ -215,7 +207,8 @@ impl Writer<'_> {
 
     /// The bodies of an angle in the plane, in the order in which it is positive.
     fn turning_pair(&self, joint: &Joint, plane: &Plane) -> String {
-        let mut bodies = joint.bodies().map(|body| quoted(&self.names.bodies[body]));
+        let name = |body: usize| quoted(&self.model.bodies[body].name);
+        let mut bodies = joint.bodies().map(name);
         if dot(joint.axis(), plane.normal) < 0.0 {
             bodies.reverse();
         }
@@ -223,30 +216,28 @@ impl Writer<'_> {
     }
 
     fn coordinates(&mut self) {
-        let is_driven = |k: &usize| self.model.drives.iter().any(|drive| drive.joint == *k);
-        let driven = self.model.drives.iter().map(|drive| drive.joint).collect();
-        let others =
-            (0..self.model.joints.len()).filter(|k| !is_driven(k) && self.needs_coordinate(*k));
-        let in_plane = if self.plane.is_some() {
-            "length"
-        } else {
-            "travel"
-        };
-        for (table, joints, travel) in [
+        let joints = &self.model.joints;
+        let driven: Vec<usize> = self.model.drives.iter().map(|drive| drive.joint).collect();
+        let others = (0..joints.len()).filter(|joint| !driven.contains(joint));
+        let others = others
+            .filter(|joint| self.needs_coordinate(*joint))
+            .collect();
+        let in_plane = ["travel", "length"][usize::from(self.plane.is_some())];
+        for (table, numbers, travel) in [
             ("actuators", driven, in_plane),
-            ("coordinates", others.collect::<Vec<usize>>(), "travel"),
+            ("coordinates", others, "travel"),
         ] {
-            if !joints.is_empty() {
+            if !numbers.is_empty() {
                 self.text.table(table);
             }
-            for k in joints {
-                let (joint, name) = (&self.model.joints[k], quoted(&self.names.joints[k]));
+            for joint in numbers.into_iter().map(|joint| &joints[joint]) {
+                let name = quoted(&joint.name);
                 let keys = match (joint.is_angle(), &self.plane) {
                     (true, Some(plane)) => format!("angle = {}", self.turning_pair(joint, plane)),
                     (true, None) => format!("angle = {name}"),
                     (false, _) => format!("{travel} = {name}"),
                 };
-                self.text.entry(&self.names.coordinates[k], &keys);
+                self.text.entry(&joint.coordinate, &keys);
             }
         }
     }
@@ -254,69 +245,64 @@ impl Writer<'_> {
     fn assembly(&mut self) {
         self.text.table("assembly");
         for drive in &self.model.drives {
-            let drawn = self.model.joints[drive.joint].drawn;
-            let name = &self.names.coordinates[drive.joint];
-            if drawn != 0.0 {
-                let text = format!("{name} is the file's coordinate minus {}.", number(drawn));
+            let Joint {
+                coordinate, drawn, ..
+            } = &self.model.joints[drive.joint];
+            if *drawn != 0.0 {
+                let text = format!(
+                    "{coordinate} is the file's coordinate minus {}.",
+                    number(*drawn)
+                );
                 self.text.line(&comment(&text));
             }
-            self.text.pair(name, 0);
+            self.text.pair(coordinate, 0);
         }
         if self.plane.is_none() {
             return;
         }
         // Bodies and slides of a planar scene need guesses, also where they are drawn.
-        let bodies = (1..self.model.bodies.len()).filter(|body| self.model.has(*body));
-        let bodies = bodies.map(|body| &self.names.bodies[body]);
-        let joints = self.model.joints.iter().zip(&self.names.joints);
-        let slides = joints.filter(|(joint, _)| joint.kind == Kind::Slide);
-        let slides = slides.map(|(_, name)| name);
-        let slides = slides.filter(|name| !self.names.bodies.contains(name));
-        bodies
-            .chain(slides)
-            .for_each(|name| self.text.pair(name, 0));
+        let bodies = self.model.bodies.iter().enumerate().skip(1);
+        let bodies = bodies.filter(|(body, _)| self.model.has(*body));
+        let mut names: Vec<&String> = bodies.map(|(_, body)| &body.name).collect();
+        for joint in &self.model.joints {
+            if joint.kind == Kind::Slide && !names.contains(&&joint.name) {
+                names.push(&joint.name);
+            }
+        }
+        names.into_iter().for_each(|name| self.text.pair(name, 0));
     }
 
     fn motion(&mut self) {
-        let law = |drive: &Drive| {
-            let drawn = self.model.joints[drive.joint].drawn;
-            match &drive.motion {
-                Motion::Unknown => None,
-                Motion::Speed(0.0) => Some(("expression = \"0\"".to_owned(), 1.0)),
-                Motion::Speed(speed) => {
-                    Some((format!("speed = {}", number(*speed)), TAU / speed.abs()))
-                }
-                Motion::Expression(law, duration) => {
-                    let law = match drawn {
-                        0.0 => law.clone(),
-                        _ => format!("{law} - ({})", number(drawn)),
-                    };
-                    Some((format!("expression = {}", quoted(&law)), *duration))
-                }
-            }
-        };
-        let drives = self.model.drives.iter();
-        let laws: Option<Vec<(String, f64)>> = drives.clone().map(law).collect();
-        let names = drives.map(|drive| &self.names.coordinates[drive.joint]);
-        let names: Vec<&String> = names.collect();
+        let drives = &self.model.drives;
+        let law = |drive: &Drive| drive.law.clone();
+        let laws: Option<Vec<(String, f64)>> = drives.iter().map(law).collect();
         let Some(laws) = laws else {
-            let what = match names.len() {
+            let what = match drives.len() {
                 1 => "a sweep takes its place",
                 _ => "kinetostatics needs [prescribed]: a duration and laws of the actuators",
             };
             let text = format!("The file has no law of motion: {what}.");
             self.text.line(&format!("\n{}", comment(&text)));
-            if names.len() == 1 {
+            if drives.len() == 1 {
                 self.text.line("[coordinate-sweep]\nspeed = 1");
             }
             return;
         };
-        let durations = laws.iter().map(|(_, duration)| *duration);
+        let duration = laws
+            .iter()
+            .fold(f64::MAX, |least, (_, one)| least.min(*one));
         self.text.table("prescribed");
-        self.text
-            .pair("duration", number(durations.fold(f64::MAX, f64::min)));
-        for (name, (law, _)) in names.into_iter().zip(laws) {
-            self.text.entry(name, &law);
+        self.text.pair("duration", number(duration));
+        for (drive, (law, _)) in drives.iter().zip(laws) {
+            let Joint {
+                coordinate, drawn, ..
+            } = &self.model.joints[drive.joint];
+            let law = match drawn {
+                0.0 => law,
+                _ => format!("{law} - ({})", number(*drawn)),
+            };
+            let keys = format!("expression = {}", quoted(&law));
+            self.text.entry(coordinate, &keys);
         }
     }
 }

@@ -1,34 +1,18 @@
 //! From what a file says to a mechanism that can be drawn: its pose, its drives, and one body for all that is fixed together.
 
-use crate::error::DoorError;
+use crate::error::{DoorError, Result};
 use crate::finding::Effect;
 use crate::mobility::freedoms;
-use crate::model::{Action, Coupling, Drive, End, GROUND, Joint, Kind, Model};
+use crate::model::{Action, Coupling, Drive, End, GROUND, Joint, Kind, Model, Move};
 use crate::options::{Closing, ImportOptions};
 use crate::pose::{Matrix, Pose, scaled};
-use crate::xml::Coverage;
 use std::f64::consts::TAU;
 
-/// A joint is moved before it is drawn: to a value of the file's coordinate, or by a turn of its second body in that body's axes.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Move {
-    To(f64),
-    Turn(Matrix),
-}
-
-/// What a reader returns.
-pub(crate) struct Read {
-    pub(crate) model: Model,
-    pub(crate) moves: Vec<(usize, Move)>,
-    pub(crate) coverage: Coverage,
-}
-
 /// Moves, closes, holds and merges as the options ask, and selects the drives.
-pub(crate) fn settle(read: Read, options: &ImportOptions) -> Result<Model, DoorError> {
-    let (mut model, mut moves) = (read.model, read.moves);
+pub(crate) fn settle(model: &mut Model, options: &ImportOptions) -> Result<()> {
     model.span();
     for closing in &options.close {
-        close(&mut model, closing)?;
+        close(model, closing)?;
     }
     if let Some(name) = &options.fix {
         let names = model.bodies.iter().map(|body| body.name.as_str());
@@ -39,22 +23,23 @@ pub(crate) fn settle(read: Read, options: &ImportOptions) -> Result<Model, DoorE
         model.hold(body);
     }
     model.span();
-    check_floating(&mut model)?;
+    check_floating(model)?;
     for (name, value) in &options.start {
-        moves.push((driveable(&model, name)?, Move::To(*value)));
+        model
+            .moves
+            .push((driveable(model, name)?, Move::To(*value)));
     }
-    for (joint, by) in moves {
-        move_joint(&mut model, joint, by);
+    for (joint, by) in model.moves.clone() {
+        move_joint(model, joint, by);
     }
     for coupling in model.couplings.clone() {
         let [value, _] = coupling.at(model.joints[coupling.independent].drawn);
-        move_joint(&mut model, coupling.dependent, Move::To(value));
+        move_joint(model, coupling.dependent, Move::To(value));
     }
-    select_drives(&mut model, options)?;
-    merge_fixed(&mut model);
-    keep_armatures(&mut model);
-    count_drives(&model)?;
-    Ok(model)
+    select_drives(model, options)?;
+    merge_fixed(model);
+    keep_armatures(model);
+    count_drives(model)
 }
 
 fn driveable_names(model: &Model) -> impl Iterator<Item = &str> {
@@ -63,13 +48,13 @@ fn driveable_names(model: &Model) -> impl Iterator<Item = &str> {
 }
 
 /// A joint with one coordinate by its name.
-pub(crate) fn driveable(model: &Model, name: &str) -> Result<usize, DoorError> {
+pub(crate) fn driveable(model: &Model, name: &str) -> Result<usize> {
     let what = "joint with one coordinate";
     let joint = model.driveable(name);
     joint.ok_or_else(|| DoorError::unknown(what, name, driveable_names(model)))
 }
 
-fn close(model: &mut Model, closing: &Closing) -> Result<(), DoorError> {
+fn close(model: &mut Model, closing: &Closing) -> Result<()> {
     let [first, second] = &closing.frames;
     let ends = [frame(model, first)?, frame(model, second)?];
     let kind = match closing.kind.as_str() {
@@ -84,11 +69,9 @@ fn close(model: &mut Model, closing: &Closing) -> Result<(), DoorError> {
 }
 
 /// A frame of the file by its name: that of a body, another, or that of a joint.
-pub(crate) fn frame(model: &Model, name: &str) -> Result<End, DoorError> {
-    let bodies = model.bodies.iter().enumerate().map(|(body, of)| {
-        let frame = of.pose;
-        (&of.name, End { body, frame })
-    });
+pub(crate) fn frame(model: &Model, name: &str) -> Result<End> {
+    let bodies = model.bodies.iter().enumerate();
+    let bodies = bodies.map(|(body, of)| (&of.name, End::new(body, of.pose)));
     let joints = model
         .joints
         .iter()
@@ -102,7 +85,7 @@ pub(crate) fn frame(model: &Model, name: &str) -> Result<End, DoorError> {
 }
 
 /// Bodies that no joint connects with anything are left out; others have to be held.
-fn check_floating(model: &mut Model) -> Result<(), DoorError> {
+fn check_floating(model: &Model) -> Result<()> {
     let component = model.components(|_, _| true);
     let roots = (1..component.len()).filter(|body| component[*body] == *body);
     let (floating, free): (Vec<usize>, Vec<usize>) = roots.partition(|body| model.is_used(*body));
@@ -169,7 +152,7 @@ fn move_joint(model: &mut Model, joint: usize, by: Move) {
     }
 }
 
-fn select_drives(model: &mut Model, options: &ImportOptions) -> Result<(), DoorError> {
+fn select_drives(model: &mut Model, options: &ImportOptions) -> Result<()> {
     if !options.drives.is_empty() {
         let former = std::mem::take(&mut model.drives);
         for name in &options.drives {
@@ -261,30 +244,34 @@ fn keep_armatures(model: &mut Model) {
 }
 
 /// As many joints have to drive as there are degrees of freedom.
-fn count_drives(model: &Model) -> Result<(), DoorError> {
+fn count_drives(model: &Model) -> Result<()> {
     let joints = driveable_names(model).collect::<Vec<_>>().join(", ");
     if joints.is_empty() {
         return Err(DoorError::new("the model has no joint that may drive", ""));
     }
     let counted = |count: usize, one: &str, more: &str| match count {
+        0 => format!("no {more}"),
         1 => format!("1 {one}"),
         _ => format!("{count} {more}"),
     };
     let (needed, drives) = (freedoms(model), model.drives.len());
-    let freedoms = counted(needed, "degree of freedom", "degrees of freedom");
+    let has = counted(needed, "degree of freedom", "degrees of freedom");
+    let text = format!(
+        "the model has {has} and {}",
+        counted(drives, "drive", "drives")
+    );
     let wanted = counted(needed, "joint", "joints");
-    let help = format!("give --drive for {wanted} among {joints}");
+    let help = match drives < needed {
+        true => format!("give --drive for {wanted} among {joints}"),
+        false => String::new(),
+    };
     if drives == 0 {
-        let help = if needed == 0 { "" } else { &help };
-        let message = format!("the model has {freedoms} and no drive");
-        return Err(DoorError::new(message, help));
+        return Err(DoorError::new(text, help));
     }
     if drives != needed {
-        let text = format!(
-            "{freedoms}, but {}: {help}",
-            counted(drives, "drive", "drives")
-        );
-        model.bodies[GROUND].place.kept(text);
+        model.bodies[GROUND]
+            .place
+            .kept(format!("{text} {help}").trim_end());
     }
     Ok(())
 }

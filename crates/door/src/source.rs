@@ -1,10 +1,12 @@
 //! Which files are read, and by which reader.
 
-use crate::error::DoorError;
+use crate::error::{DoorError, Result};
 use crate::finding::{Findings, sorted};
+use crate::model::Model;
+use crate::names::rename;
 use crate::options::{Format, ImportOptions};
-use crate::settle::{Read, settle};
-use crate::xml::{TextFile, Xml};
+use crate::settle::settle;
+use crate::xml::{Coverage, TextFile, Xml};
 use crate::{Import, asmt, head, mjcf, plane, pmks, robot, scene};
 use std::io::Read as _;
 use std::path::{Component, Path};
@@ -13,7 +15,7 @@ use std::path::{Component, Path};
 const LARGEST: usize = 64 << 20;
 
 /// Reads a file of text.
-pub(crate) fn read(path: &Path, name: &str) -> Result<String, DoorError> {
+pub(crate) fn read(path: &Path, name: &str) -> Result<String> {
     let failed = |reason: String| DoorError::new(format!("`{name}` cannot be read: {reason}"), "");
     let mut text = String::new();
     let file = std::fs::File::open(path);
@@ -29,7 +31,7 @@ pub(crate) fn import(
     text: &str,
     options: &ImportOptions,
     folder: Option<&Path>,
-) -> Result<Import, DoorError> {
+) -> Result<Import> {
     let format = options.from.or_else(|| format(name, text));
     let format = format.ok_or_else(|| {
         let message = format!("neither the ending nor the beginning of `{name}` shows its format");
@@ -46,7 +48,7 @@ pub(crate) fn import(
     }
     let findings = Findings::default();
     let file = TextFile::new(name, text, &findings);
-    let read = match format {
+    let (mut model, coverage) = match format {
         Format::Mjcf => of_xml(format, &with_includes(file, folder)?, options)?,
         Format::Urdf | Format::Sdf => of_xml(format, &[file], options)?,
         Format::Asmt => {
@@ -56,8 +58,8 @@ pub(crate) fn import(
         }
         Format::Pmks => pmks::read(&file)?,
     };
-    let coverage = read.coverage;
-    let model = settle(read, options)?;
+    settle(&mut model, options)?;
+    let renamed = rename(&mut model);
     let plane = plane::find(&model, options);
     let mut import = Import {
         scene: scene::write(&model, plane)?,
@@ -66,7 +68,7 @@ pub(crate) fn import(
         coverage,
     };
     // The scene begins with all findings, among them those of its writer.
-    import.scene = format!("{}\n{}", head(name, text, &import, &model), import.scene);
+    import.scene = format!("{}\n{}", head(name, text, &import, &renamed), import.scene);
     Ok(import)
 }
 
@@ -92,7 +94,7 @@ fn format(name: &str, text: &str) -> Option<Format> {
 }
 
 /// The file and those that it includes, each once.
-fn with_includes(file: TextFile, folder: Option<&Path>) -> Result<Vec<TextFile>, DoorError> {
+fn with_includes(file: TextFile, folder: Option<&Path>) -> Result<Vec<TextFile>> {
     let mut files = vec![file];
     let mut next = 0;
     while let Some(from) = files.get(next) {
@@ -129,9 +131,13 @@ fn with_includes(file: TextFile, folder: Option<&Path>) -> Result<Vec<TextFile>,
     Ok(files)
 }
 
-fn of_xml(format: Format, files: &[TextFile], options: &ImportOptions) -> Result<Read, DoorError> {
+fn of_xml(
+    format: Format,
+    files: &[TextFile],
+    options: &ImportOptions,
+) -> Result<(Model, Coverage)> {
     let trees = files.iter().map(TextFile::parse);
-    let trees = trees.collect::<Result<Vec<_>, _>>()?;
+    let trees = trees.collect::<Result<Vec<_>>>()?;
     let xml = Xml::new(files, &trees);
     let root = xml.root();
     let (expected, read) = match format {

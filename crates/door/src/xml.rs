@@ -1,6 +1,6 @@
 //! XML files of which every element and attribute is read, or named with its line.
 
-use crate::error::{DoorError, Part};
+use crate::error::{DoorError, Part, Result};
 use crate::finding::{AT_LIMITS, Effect, Findings, Place};
 use crate::pose::{Vector, unit};
 use roxmltree::{Document, Node, NodeId, ParsingOptions};
@@ -74,7 +74,7 @@ impl TextFile {
     }
 
     /// The parsed text. External entities are never read: a document type is refused.
-    pub(crate) fn parse(&self) -> Result<Document<'_>, DoorError> {
+    pub(crate) fn parse(&self) -> Result<Document<'_>> {
         let options = ParsingOptions {
             nodes_limit: 2_000_000,
             ..ParsingOptions::default()
@@ -431,16 +431,16 @@ impl<'d> Element<'d> {
     }
 
     /// The part that a name of the element refers to.
-    pub(crate) fn known<T>(&self, part: Option<T>, what: &str, name: &str) -> Result<T, DoorError> {
+    pub(crate) fn known<T>(&self, part: Option<T>, what: &str, name: &str) -> Result<T> {
         part.ok_or_else(|| self.error(format!("there is no {what} `{name}`")))
     }
 
-    pub(crate) fn unit(&self, axis: Vector) -> Result<Vector, DoorError> {
+    pub(crate) fn unit(&self, axis: Vector) -> Result<Vector> {
         unit(axis).ok_or_else(|| self.error("the axis is zero"))
     }
 
     /// The numbers of a text that belongs to this element.
-    fn parsed(&self, what: &str, text: &str) -> Result<Vec<f64>, DoorError> {
+    fn parsed(&self, what: &str, text: &str) -> Result<Vec<f64>> {
         let words = text.split(|c: char| c.is_whitespace() || c == ',');
         let number = |word: &str| word.parse().ok().filter(|x: &f64| x.is_finite());
         let numbers = words.filter(|word| !word.is_empty()).map(number).collect();
@@ -449,29 +449,25 @@ impl<'d> Element<'d> {
     }
 
     /// Exactly `N` numbers.
-    pub(crate) fn exactly<const N: usize>(
-        &self,
-        what: &str,
-        text: &str,
-    ) -> Result<[f64; N], DoorError> {
+    pub(crate) fn exactly<const N: usize>(&self, what: &str, text: &str) -> Result<[f64; N]> {
         let numbers = self.parsed(what, text)?;
         let (label, count) = (self.label(), numbers.len());
         let wrong = format!("`{what}` of {label} has {count} numbers in place of {N}");
         numbers.try_into().map_err(|_| self.error(wrong))
     }
 
-    pub(crate) fn numbers(&self, name: &str) -> Result<Option<Vec<f64>>, DoorError> {
+    pub(crate) fn numbers(&self, name: &str) -> Result<Option<Vec<f64>>> {
         let text = self.given(name);
         text.map(|text| self.parsed(name, text)).transpose()
     }
 
-    pub(crate) fn vector<const N: usize>(&self, name: &str) -> Result<Option<[f64; N]>, DoorError> {
+    pub(crate) fn vector<const N: usize>(&self, name: &str) -> Result<Option<[f64; N]>> {
         let text = self.given(name);
         text.map(|text| self.exactly(name, text)).transpose()
     }
 
     /// A number, or its default. Of several, which are coefficients of powers, the first.
-    pub(crate) fn value(&self, name: &str, default: f64) -> Result<f64, DoorError> {
+    pub(crate) fn value(&self, name: &str, default: f64) -> Result<f64> {
         match self.numbers(name)?.as_deref() {
             None => Ok(default),
             Some([first, others @ ..]) => {
@@ -486,7 +482,7 @@ impl<'d> Element<'d> {
     }
 
     /// A mass of 0 or more.
-    pub(crate) fn mass(&self, mass: f64) -> Result<f64, DoorError> {
+    pub(crate) fn mass(&self, mass: f64) -> Result<f64> {
         let valid = (mass >= 0.0).then_some(mass);
         valid.ok_or_else(|| self.error("the mass has to be 0 or more"))
     }

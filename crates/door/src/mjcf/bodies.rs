@@ -1,10 +1,10 @@
 //! The tree of bodies.
 
 use super::Reader;
-use crate::error::DoorError;
+use crate::error::Result;
 use crate::finding::{AT_LIMITS, Effect};
-use crate::model::{Action, Along, End, Joint, Kind, Load, both};
-use crate::pose::{Matrix, Pose, scaled};
+use crate::model::{Along, End, Joint, Kind, both};
+use crate::pose::{Matrix, Pose};
 use crate::xml::Element;
 
 /// A part of a body, with the frame in which its pose is, in the frame of the ground.
@@ -21,7 +21,7 @@ impl<'d> Reader<'d> {
         of: Element<'d>,
         frame: Pose,
         class: Option<&'d str>,
-    ) -> Result<Vec<Part<'d>>, DoorError> {
+    ) -> Result<Vec<Part<'d>>> {
         let mut parts = Vec::new();
         for element in of.children() {
             match element.tag() {
@@ -31,10 +31,7 @@ impl<'d> Reader<'d> {
                     parts.extend(self.parts(element, inner, class)?);
                 }
                 "joint" | "freejoint" | "geom" | "site" | "inertial" | "body" => {
-                    let classed = element.tag() != "body";
-                    if classed {
-                        self.classed(element, class)?;
-                    }
+                    self.classed(element, class)?;
                     parts.push(Part {
                         element,
                         frame,
@@ -47,7 +44,7 @@ impl<'d> Reader<'d> {
         Ok(parts)
     }
 
-    fn body(&mut self, part: &Part<'d>, parent: usize) -> Result<(), DoorError> {
+    fn body(&mut self, part: &Part<'d>, parent: usize) -> Result<()> {
         let element = part.element;
         let world = part.frame.then(self.pose(element)?);
         let class = element.attribute("childclass").or(part.class);
@@ -84,7 +81,7 @@ impl<'d> Reader<'d> {
         self.external_forces(element, body, is_free, &parts)
     }
 
-    fn joint(&mut self, part: &Part<'d>, bodies: [usize; 2]) -> Result<(), DoorError> {
+    fn joint(&mut self, part: &Part<'d>, bodies: [usize; 2]) -> Result<()> {
         let element = part.element;
         let word = element.attribute("type").unwrap_or("hinge");
         let kind = match word {
@@ -107,7 +104,7 @@ impl<'d> Reader<'d> {
     }
 
     /// What acts along a coordinate, and the coordinate as drawn.
-    fn along(&self, element: Element<'d>, joint: &mut Joint) -> Result<(), DoorError> {
+    fn along(&self, element: Element<'d>, joint: &mut Joint) -> Result<()> {
         let unit = match joint.kind {
             Kind::Slide => 1.0,
             _ => self.angle,
@@ -132,9 +129,6 @@ impl<'d> Reader<'d> {
             let text = format!("{label} actuatorfrcrange: left out (limit of a drive)");
             element.note(Effect::AtLimits, text);
         }
-        if element.attribute("springdamper").is_some() {
-            element.lost(format!("{label} springdamper"));
-        }
         if joint.kind != Kind::Ball {
             joint.drawn = drawn;
             joint.along = Along {
@@ -155,7 +149,7 @@ impl<'d> Reader<'d> {
     }
 
     /// Masses, points, shapes and inner bodies of a body.
-    pub(super) fn fill(&mut self, body: usize, parts: &[Part<'d>]) -> Result<(), DoorError> {
+    pub(super) fn fill(&mut self, body: usize, parts: &[Part<'d>]) -> Result<()> {
         let mut inertials = parts.iter().filter(|part| part.element.tag() == "inertial");
         let takes = self.from_shapes.unwrap_or(inertials.next().is_none());
         if let Some(second) = inertials.next() {
@@ -184,20 +178,19 @@ impl<'d> Reader<'d> {
         Ok(())
     }
 
-    fn site(&mut self, element: Element<'d>, frame: Pose, body: usize) -> Result<(), DoorError> {
+    fn site(&mut self, element: Element<'d>, frame: Pose, body: usize) -> Result<()> {
         let frame = frame.then(self.pose(element)?);
         if let Some(name) = element.attribute("name") {
             let point = (name.to_owned(), frame.origin);
             self.model.bodies[body].points.push(point);
-            self.model
-                .frames
-                .push((name.to_owned(), End { body, frame }));
+            let frame = (name.to_owned(), End::new(body, frame));
+            self.model.frames.push(frame);
         }
         let _ = ["size", "type", "fromto"].map(|size| element.attribute(size));
         Ok(())
     }
 
-    fn inertial(&mut self, of: Element<'d>, frame: Pose, body: usize) -> Result<(), DoorError> {
+    fn inertial(&mut self, of: Element<'d>, frame: Pose, body: usize) -> Result<()> {
         let frame = frame.then(self.pose(of)?);
         let mass = of.mass(of.value("mass", -1.0)?)?;
         let full = of.vector("fullinertia")?.map(Matrix::symmetric);
@@ -213,46 +206,28 @@ impl<'d> Reader<'d> {
         body: usize,
         is_free: bool,
         parts: &[Part<'d>],
-    ) -> Result<(), DoorError> {
-        let of = &self.model.bodies[body];
+    ) -> Result<()> {
         let share = element.value("gravcomp", 0.0)?;
-        let geoms = parts
-            .iter()
-            .map(|part| part.element)
-            .filter(|one| one.tag() == "geom");
-        let in_fluid = |geom: &Element<'d>| {
-            geom.attribute("fluidshape")
-                .is_some_and(|shape| shape != "none")
-        };
-        let fluid: Vec<Element<'d>> = geoms.filter(in_fluid).collect();
-        if is_free {
-            let weight = (share != 0.0).then_some("gravcomp");
-            let fluid = (!fluid.is_empty()).then_some("fluidshape");
-            let forces: Vec<&str> = weight.into_iter().chain(fluid).collect();
-            if !forces.is_empty() {
-                let what = format!("body {} {}", of.name, forces.join(", "));
-                let text = format!("{what}: left out (gravcomp 1 cancels the weight)");
-                element.note(Effect::Changes, text);
+        let label = format!("body {}", self.model.bodies[body].name);
+        if !is_free {
+            if share != 0.0 {
+                element.kept(format!("{label} gravcomp {share}: kept as a force"));
+                self.model.lighten(body, share);
             }
             return Ok(());
         }
-        for geom in fluid {
-            geom.lost(format!("{} fluidshape", geom.label()));
-        }
-        if share != 0.0 {
-            element.kept(format!(
-                "body {} gravcomp {share}: kept as a force",
-                of.name
-            ));
-            let load = Load {
-                name: format!("gravcomp_{}", of.name),
-                at: vec![(body, of.center)],
-                action: Action::Force {
-                    force: scaled(self.model.gravity, -share * of.mass),
-                    turns: false,
-                },
-            };
-            self.model.loads.push(load);
+        let geoms = parts.iter().map(|part| part.element);
+        let fluid = geoms.filter_map(|one| one.attribute("fluidshape"));
+        let forces = [
+            ("gravcomp", share != 0.0),
+            ("fluidshape", fluid.count() > 0),
+        ];
+        let acting = forces.iter().filter(|(_, acts)| *acts);
+        let names: Vec<&str> = acting.map(|(name, _)| *name).collect();
+        if !names.is_empty() {
+            let what = format!("{label} {}", names.join(", "));
+            let text = format!("{what}: left out (gravcomp 1 cancels the weight)");
+            element.note(Effect::Changes, text);
         }
         Ok(())
     }

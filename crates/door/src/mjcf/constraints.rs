@@ -1,14 +1,14 @@
 //! Equality constraints, tendons and actuators.
 
 use super::Reader;
-use crate::error::DoorError;
+use crate::error::Result;
 use crate::finding::{AT_LIMITS, Effect, LOST};
 use crate::model::{Action, Coupling, End, GROUND, Joint, Kind, Load};
 use crate::pose::{Matrix, Pose, length, sub};
 use crate::xml::Element;
 
 impl<'d> Reader<'d> {
-    pub(super) fn constraint(&mut self, element: Element<'d>) -> Result<(), DoorError> {
+    pub(super) fn constraint(&mut self, element: Element<'d>) -> Result<()> {
         self.classed(element, None)?;
         let name = self.model.loop_name(element.attribute("name"));
         if element.is("active", "false") {
@@ -33,20 +33,20 @@ impl<'d> Reader<'d> {
         Ok(())
     }
 
-    fn site_named(&self, element: Element<'d>, name: &str) -> Result<End, DoorError> {
+    fn site_named(&self, element: Element<'d>, name: &str) -> Result<End> {
         let site = self.model.frames.iter().find(|(one, _)| one == name);
         element.known(site.map(|(_, end)| *end), "site", name)
     }
 
     /// The two ends at sites, if they are given by sites.
-    fn ends_at_sites(&self, element: Element<'d>) -> Result<Option<[End; 2]>, DoorError> {
+    fn ends_at_sites(&self, element: Element<'d>) -> Result<Option<[End; 2]>> {
         let sites = element.attribute("site1").zip(element.attribute("site2"));
         let site = |name| self.site_named(element, name);
         let ends = sites.map(|(one, other)| Ok([site(one)?, site(other)?]));
         ends.transpose()
     }
 
-    fn body_named(&self, element: Element<'d>, attribute: &str) -> Result<usize, DoorError> {
+    fn body_named(&self, element: Element<'d>, attribute: &str) -> Result<usize> {
         let name = element.attribute(attribute).unwrap_or("world");
         let mut bodies = self.model.bodies.iter().skip(1);
         let body = bodies.position(|body| body.name == name).map(|k| k + 1);
@@ -54,7 +54,7 @@ impl<'d> Reader<'d> {
         element.known(ground.or(body), "body", name)
     }
 
-    fn connect(&self, element: Element<'d>, name: &str) -> Result<[End; 2], DoorError> {
+    fn connect(&self, element: Element<'d>, name: &str) -> Result<[End; 2]> {
         if let Some(ends) = self.ends_at_sites(element)? {
             return Ok(ends);
         }
@@ -82,7 +82,7 @@ impl<'d> Reader<'d> {
         Ok(crate::model::both(bodies, frame))
     }
 
-    fn weld(&self, element: Element<'d>) -> Result<[End; 2], DoorError> {
+    fn weld(&self, element: Element<'d>) -> Result<[End; 2]> {
         if let Some(ends) = self.ends_at_sites(element)? {
             return Ok(ends);
         }
@@ -103,13 +103,10 @@ impl<'d> Reader<'d> {
                 Some(first.then(Pose::new([x, y, z], turn)))
             });
         let frames = [relative.unwrap_or(second), second].map(|frame| frame.then(anchor));
-        Ok([0, 1].map(|k| End {
-            body: bodies[k],
-            frame: frames[k],
-        }))
+        Ok([0, 1].map(|k| End::new(bodies[k], frames[k])))
     }
 
-    fn joint_equality(&mut self, element: Element<'d>, name: String) -> Result<(), DoorError> {
+    fn joint_equality(&mut self, element: Element<'d>, name: String) -> Result<()> {
         let one = element.attribute("joint1").unwrap_or_default();
         let dependent = self.joint_named(element, one)?;
         let polynomial = element
@@ -137,12 +134,12 @@ impl<'d> Reader<'d> {
         Ok(())
     }
 
-    fn joint_named(&self, element: Element<'d>, name: &str) -> Result<usize, DoorError> {
+    fn joint_named(&self, element: Element<'d>, name: &str) -> Result<usize> {
         element.known(self.model.joint_named(name), "joint", name)
     }
 
     /// A straight tendon between two sites is a spring.
-    pub(super) fn tendon(&mut self, element: Element<'d>) -> Result<(), DoorError> {
+    pub(super) fn tendon(&mut self, element: Element<'d>) -> Result<()> {
         self.classed(element, None)?;
         let name = element.attribute("name").unwrap_or("tendon").to_owned();
         let parts = element.children();
@@ -160,11 +157,6 @@ impl<'d> Reader<'d> {
             self.site_named(element, other)?,
         ];
         let places = ends.map(|end| end.frame.origin);
-        for active in ["frictionloss", "armature"] {
-            if element.value(active, 0.0)? != 0.0 {
-                element.lost(format!("tendon {name} {active}"));
-            }
-        }
         let limited = element.attribute("range").is_some() && !element.is("limited", "false");
         let (effect, range) = match limited {
             true => (Effect::AtLimits, format!(", its range {AT_LIMITS}")),
@@ -190,7 +182,7 @@ impl<'d> Reader<'d> {
     }
 
     /// An actuator of a joint drives it.
-    pub(super) fn actuator(&mut self, element: Element<'d>) -> Result<(), DoorError> {
+    pub(super) fn actuator(&mut self, element: Element<'d>) -> Result<()> {
         self.classed(element, None)?;
         let tag = element.tag();
         let name = element.attribute("joint");

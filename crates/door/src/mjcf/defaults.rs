@@ -1,7 +1,7 @@
 //! Classes of defaults, and the frames of elements.
 
 use super::Reader;
-use crate::error::DoorError;
+use crate::error::Result;
 use crate::pose::{Matrix, Pose, cross, length, scaled, unit};
 use crate::xml::Element;
 
@@ -38,7 +38,7 @@ impl<'d> Reader<'d> {
         &self,
         element: Element<'d>,
         inherited: Option<&'d str>,
-    ) -> Result<Element<'d>, DoorError> {
+    ) -> Result<Element<'d>> {
         let own = element.attribute("class");
         let mut class = own.or(inherited).or(self.main_class).unwrap_or(MAIN);
         let unknown = own.is_some() && !self.classes.contains_key(class);
@@ -57,7 +57,7 @@ impl<'d> Reader<'d> {
     }
 
     /// The frame of an element in that around it.
-    pub(super) fn pose(&self, of: Element<'d>) -> Result<Pose, DoorError> {
+    pub(super) fn pose(&self, of: Element<'d>) -> Result<Pose> {
         let origin = of.vector("pos")?.unwrap_or_default();
         let turn = if let Some(quat) = of.vector("quat")? {
             Matrix::quaternion(quat)

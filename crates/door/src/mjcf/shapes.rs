@@ -2,7 +2,7 @@
 
 use super::Reader;
 use super::defaults::shortest_to;
-use crate::error::DoorError;
+use crate::error::Result;
 use crate::finding::Effect;
 use crate::model::{GROUND, Joint, Kind};
 use crate::pose::{Matrix, Pose, Vector, add, length, scaled, sub};
@@ -20,7 +20,7 @@ impl<'d> Reader<'d> {
         geom: Element<'d>,
         frame: Pose,
         takes: bool,
-    ) -> Result<Option<(f64, Pose, Matrix)>, DoorError> {
+    ) -> Result<Option<(f64, Pose, Matrix)>> {
         let kind = geom.attribute("type").unwrap_or("sphere");
         let mut pose = frame.then(self.pose(geom)?);
         let mut size = geom.numbers("size")?.unwrap_or_default();
@@ -58,9 +58,6 @@ impl<'d> Reader<'d> {
         }
         let mass = geom.value("density", DENSITY)? * volume;
         let mass = geom.mass(geom.value("mass", mass)?)?;
-        if geom.is("shellinertia", "true") && takes {
-            geom.lost(format!("{} shellinertia, taken as solid", geom.label()));
-        }
         let tensor = Matrix::diagonal(scaled(gyration, mass));
         Ok(takes.then_some((mass, pose, tensor)))
     }
@@ -75,7 +72,7 @@ impl<'d> Reader<'d> {
     }
 
     /// Names the geoms of the world that others can touch, and the first of the others.
-    pub(super) fn name_contacts(&self, floating_alone: bool) -> Result<(), DoorError> {
+    pub(super) fn name_contacts(&self, floating_alone: bool) -> Result<()> {
         let is_fixed = |joint: &Joint| joint.in_tree && joint.kind == Kind::Fixed;
         let fixed = self.model.components(|_, joint| is_fixed(joint));
         let (mut still, mut moving) = (Vec::new(), Vec::new());

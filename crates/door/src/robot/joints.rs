@@ -1,7 +1,7 @@
 //! Joints of URDF and SDF.
 
 use super::Reader;
-use crate::error::DoorError;
+use crate::error::{DoorError, Result};
 use crate::model::{Along, Coupling, End, Joint, Kind};
 use crate::pose::{Pose, Vector};
 use crate::xml::Element;
@@ -16,12 +16,7 @@ pub(super) fn side<'d>(joint: Element<'d>, tags: &[&str]) -> &'d str {
 
 impl<'d> Reader<'d> {
     /// A joint at a frame of the world.
-    pub(super) fn joint(
-        &mut self,
-        name: &str,
-        element: Element<'d>,
-        world: Pose,
-    ) -> Result<(), DoorError> {
+    pub(super) fn joint(&mut self, name: &str, element: Element<'d>, world: Pose) -> Result<()> {
         let body = |tag| self.body_of(side(element, &[tag]), &element);
         let bodies = [body("parent")?, body("child")?];
         if bodies[0] == bodies[1] {
@@ -33,10 +28,7 @@ impl<'d> Reader<'d> {
             Kind::Universal => self.axis(element, "axis2", kind, &world)?,
             _ => first,
         };
-        let end = |body, axis| End {
-            body,
-            frame: Pose::along(world.origin, axis),
-        };
+        let end = |body, axis| End::new(body, Pose::along(world.origin, axis));
         let ends = [end(bodies[0], first), end(bodies[1], second)];
         let mut joint = Joint::new(name, element.place(), kind, ends);
         joint.along = match element.child("axis") {
@@ -44,13 +36,7 @@ impl<'d> Reader<'d> {
             _ => along(element)?,
         };
         self.model.joints.push(joint);
-        let frame = (
-            name.to_owned(),
-            End {
-                body: bodies[1],
-                frame: world,
-            },
-        );
+        let frame = (name.to_owned(), End::new(bodies[1], world));
         self.model.frames.push(frame);
         Ok(())
     }
@@ -62,7 +48,7 @@ impl<'d> Reader<'d> {
         tag: &str,
         kind: Kind,
         joint: &Pose,
-    ) -> Result<Vector, DoorError> {
+    ) -> Result<Vector> {
         let default = match self.is_sdf {
             true => [0.0, 0.0, 1.0],
             false => [1.0, 0.0, 0.0],
@@ -87,7 +73,7 @@ impl<'d> Reader<'d> {
     }
 
     /// The coupling of a joint, once all joints are known.
-    pub(super) fn mimic(&mut self, name: &str, of: Element<'d>) -> Result<(), DoorError> {
+    pub(super) fn mimic(&mut self, name: &str, of: Element<'d>) -> Result<()> {
         let Some(mimic) = of.child("mimic") else {
             return Ok(());
         };
@@ -122,7 +108,7 @@ impl<'d> Reader<'d> {
 }
 
 /// The kind of a joint, by the names of all dialects.
-pub(super) fn kind(element: Element<'_>) -> Result<Kind, DoorError> {
+pub(super) fn kind(element: Element<'_>) -> Result<Kind> {
     let name = element.attribute("type").unwrap_or("revolute");
     match name.to_ascii_lowercase().as_str() {
         "revolute" | "continuous" => Ok(Kind::Hinge),
@@ -139,7 +125,7 @@ pub(super) fn kind(element: Element<'_>) -> Result<Kind, DoorError> {
 }
 
 /// The travel for one revolution, m.
-fn pitch(element: Element<'_>) -> Result<f64, DoorError> {
+fn pitch(element: Element<'_>) -> Result<f64> {
     let pitch = element.value("screw_thread_pitch", 0.0)?;
     // The former number is in rad/m, and positive for a left-hand thread.
     let former = element.value("thread_pitch", 0.0)?;
@@ -151,7 +137,7 @@ fn pitch(element: Element<'_>) -> Result<f64, DoorError> {
 }
 
 /// What acts along the coordinate, of a joint of URDF or an axis of SDF.
-fn along(of: Element<'_>) -> Result<Along, DoorError> {
+fn along(of: Element<'_>) -> Result<Along> {
     let mut along = Along::default();
     for dynamics in [of.child("dynamics"), of.child("joint_properties")]
         .into_iter()

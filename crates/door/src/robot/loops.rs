@@ -2,7 +2,7 @@
 
 use super::joints::{kind, side};
 use super::{Reader, pose, xyz_rpy};
-use crate::error::DoorError;
+use crate::error::Result;
 use crate::model::{End, Joint, Kind};
 use crate::pose::{Pose, length, sub};
 use crate::settle::{driveable, frame};
@@ -21,7 +21,7 @@ impl<'d> Reader<'d> {
     }
 
     /// A joint of SDF in a `gazebo` element; its pose is in the child.
-    pub(super) fn gazebo(&mut self, element: Element<'d>) -> Result<(), DoorError> {
+    pub(super) fn gazebo(&mut self, element: Element<'d>) -> Result<()> {
         let _ = element.attribute("reference");
         for joint in element.called("joint") {
             let child = self.in_world(side(joint, &["child"]), &joint)?;
@@ -35,7 +35,7 @@ impl<'d> Reader<'d> {
     }
 
     /// `loop_joint` of Isaac Sim, `loop` and `loop_constraint` of URDF+: each link has its own frame.
-    pub(super) fn loop_element(&mut self, element: Element<'d>) -> Result<(), DoorError> {
+    pub(super) fn loop_element(&mut self, element: Element<'d>) -> Result<()> {
         let kind = kind(element)?;
         let axis = self.axis(element, "axis", kind, &Pose::IDENTITY)?;
         let end = |tags: &[&str], beside: &str| {
@@ -48,7 +48,7 @@ impl<'d> Reader<'d> {
             let frame = origin.map_or(Ok(Pose::IDENTITY), xyz_rpy)?;
             let frame = frame.then(Pose::along([0.0; 3], axis));
             let frame = self.model.bodies[body].pose.then(frame);
-            Ok(End { body, frame })
+            Ok(End::new(body, frame))
         };
         // One exporter writes `sucessor`.
         let ends = [
@@ -66,7 +66,7 @@ impl<'d> Reader<'d> {
     }
 
     /// The YAML file of an extended URDF: `closed_loop`, `type`, `name_mot`.
-    pub(super) fn extended(&mut self, text: &str) -> Result<(), DoorError> {
+    pub(super) fn extended(&mut self, text: &str) -> Result<()> {
         let list = |key: &str| {
             let value = |line: &'_ str| {
                 line.trim()

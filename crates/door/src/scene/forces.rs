@@ -3,14 +3,13 @@
 use super::Writer;
 use super::text::{number, quoted};
 use crate::finding::{AT_LIMITS, Effect, LOST};
-use crate::model::{Action, Coupling, Kind, Load};
-use crate::names::{allowed, free_name};
+use crate::model::{Action, Coupling, Joint, Kind, Load};
+use crate::names::free_name;
 use crate::pose::{Vector, dot, length, scaled, sub};
-use std::collections::HashSet;
 
 /// The names of the points at which a load acts.
 fn point_names(load: &Load) -> Vec<String> {
-    let name = allowed(&load.name);
+    let name = &load.name;
     match load.at.len() {
         1 => vec![format!("at_{name}")],
         count => (1..=count).map(|k| format!("at_{name}_{k}")).collect(),
@@ -47,9 +46,8 @@ impl Writer<'_> {
         if self.plane.is_none() || !simple(dependent.kind) || !simple(independent.kind) {
             return coupling.place.lost(format!("{what}: coupling in space"));
         }
-        coupling
-            .place
-            .kept(format!("{what}: coupling in the plane"));
+        let text = format!("{what}: coupling in the plane");
+        coupling.place.kept(text);
         let x = match independent.drawn - coupling.references[1] {
             0.0 => "x".to_owned(),
             shift => format!("(x + ({}))", number(shift)),
@@ -69,14 +67,10 @@ impl Writer<'_> {
         if law.is_empty() {
             law.push("0".to_owned());
         }
-        let names = numbers
-            .map(|k| quoted(&self.names.coordinates[k]))
-            .join(", ");
-        let mut taken: HashSet<String> = self.names.joints.iter().cloned().collect();
-        let name = free_name(&allowed(&coupling.name), &mut taken);
+        let names = [dependent, independent].map(|joint| quoted(&joint.coordinate));
         let law = quoted(&law.join(" + "));
-        self.text
-            .entry(&name, &format!("coupling = [{names}], expression = {law}"));
+        let keys = format!("coupling = [{}], expression = {law}", names.join(", "));
+        self.text.entry(&coupling.name, &keys);
     }
 
     pub(super) fn loads(&mut self) {
@@ -85,10 +79,8 @@ impl Writer<'_> {
         let gravity = self.in_plane(self.model.gravity);
         // What is left of gravity along the normal is rounding.
         if length(gravity) > 1e-14 * size {
-            self.load(
-                "weight",
-                &format!("gravity = {}", self.vector(gravity, 1e-15 * size)),
-            );
+            let keys = format!("gravity = {}", self.vector(gravity, 1e-15 * size));
+            self.load("weight", &keys);
         }
         for joint in 0..self.model.joints.len() {
             self.along(joint);
@@ -128,15 +120,12 @@ impl Writer<'_> {
             let text = format!("damping, friction or stiffness: {LOST}");
             return self.note(joint, Effect::Changes, &text);
         }
-        let (name, q) = (
-            self.names.joints[joint].clone(),
-            &self.names.coordinates[joint],
-        );
+        let (name, q) = (&of.name, &of.coordinate);
         // Of pairs of bodies in the plane, of joints in space.
         let (force, on) = match (&self.plane, of.is_angle()) {
             (Some(plane), true) => ("torque", self.turning_pair(of, plane)),
-            (None, true) => ("joint-torque", quoted(&name)),
-            (_, false) => ("slide-force", quoted(&name)),
+            (None, true) => ("joint-torque", quoted(name)),
+            (_, false) => ("slide-force", quoted(name)),
         };
         let law = |law: String| format!("{force} = {on}, magnitude = {}", quoted(&law));
         let [damping, friction, stiffness] =
@@ -169,11 +158,15 @@ impl Writer<'_> {
     }
 
     fn action(&mut self, load: &Load) {
-        let name = allowed(&load.name);
-        let ends = load.at.iter().zip(point_names(load));
-        let ends =
-            ends.map(|((body, _), point)| quoted(&format!("{}.{point}", self.names.bodies[*body])));
-        let ends = ends.collect::<Vec<_>>().join(", ");
+        let name = &load.name;
+        let bodies = load
+            .at
+            .iter()
+            .map(|(body, _)| &self.model.bodies[*body].name);
+        let ends = bodies.zip(point_names(load));
+        let ends = ends.map(|(body, point)| format!("\"{body}.{point}\""));
+        let ends: Vec<String> = ends.collect();
+        let ends = ends.join(", ");
         match &load.action {
             Action::Spring {
                 stiffness,
@@ -183,7 +176,7 @@ impl Writer<'_> {
                 let [k, c, free] = [*stiffness, *damping, *free_length].map(number);
                 if *stiffness != 0.0 {
                     let keys = format!("spring = [{ends}], stiffness = {k}, free-length = {free}");
-                    self.load(&name, &keys);
+                    self.text.entry(name, &keys);
                 }
                 if *damping != 0.0 {
                     let keys = format!("damper = [{ends}], damping = {c}");
@@ -198,7 +191,7 @@ impl Writer<'_> {
                     let keys = format!(
                         "force = {ends}, direction = {direction}, magnitude = {magnitude}{frame}"
                     );
-                    self.load(&name, &keys);
+                    self.text.entry(name, &keys);
                 }
             }
         }
@@ -213,8 +206,12 @@ impl Writer<'_> {
             self.text.table("drives");
         }
         for (joint, gains) in servos {
-            let q = &self.names.coordinates[joint];
-            let drawn = number(self.model.joints[joint].drawn);
+            let Joint {
+                coordinate: q,
+                drawn,
+                ..
+            } = &self.model.joints[joint];
+            let drawn = number(*drawn);
             let [proportional, derivative] = gains.map(number);
             let law = format!("-({proportional})*({q} + ({drawn})) - ({derivative})*{q}.velocity");
             let keys = format!(
@@ -245,7 +242,7 @@ impl Writer<'_> {
                 Effect::Kept,
                 &format!("{word}: kept as a stop where free"),
             );
-            let q = &self.names.coordinates[k];
+            let q = &joint.coordinate;
             let mut keys = format!("coordinate = {}", quoted(q));
             for (key, bound) in [("min", low), ("max", high)] {
                 if bound.is_finite() {

@@ -1,6 +1,6 @@
 //! TOML text.
 
-use crate::error::DoorError;
+use crate::error::{DoorError, Result};
 
 /// The largest number that a scene may have.
 const LARGEST: f64 = 1e60;
@@ -29,7 +29,7 @@ impl Text {
         self.pair(name, format_args!("{{ {keys} }}"));
     }
 
-    pub(super) fn finish(self) -> Result<String, DoorError> {
+    pub(super) fn finish(self) -> Result<String> {
         let Some(line) = self.0.lines().find(|line| line.contains(WRONG)) else {
             return Ok(self.0);
         };
