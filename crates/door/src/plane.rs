@@ -71,10 +71,10 @@ pub(crate) fn find(model: &Model, options: &ImportOptions) -> Option<Plane> {
         }
         return None;
     }
-    for (joint, _, shown) in deviations
+    let snapped = deviations
         .iter()
-        .filter(|(_, amount, _)| *amount > ROUNDING)
-    {
+        .filter(|(_, amount, _)| *amount > ROUNDING);
+    for (joint, _, shown) in snapped {
         let text = format!("snapped: `{}` by {shown}", joint.name);
         joint.place.kept(text);
     }

@@ -5,10 +5,10 @@ mod loops;
 
 use crate::error::Result;
 use crate::finding::{AT_LIMITS, Effect, LOST};
-use crate::model::{End, GROUND, Model};
+use crate::model::{Body, End, GROUND, Model};
 use crate::options::ImportOptions;
 use crate::pose::{Matrix, Pose, scaled};
-use crate::xml::{Coverage, Element, Rules, Xml};
+use crate::xml::{Coverage, Element, FALSE, Rules, TRUE, Xml};
 use std::collections::HashMap;
 
 const RULES: Rules = Rules {
@@ -25,90 +25,38 @@ const WORLD: &str = "world";
 const NO_GRAVITY: &str = "no gravity in the file: 9.81 m/s2 against z";
 
 /// A named frame: where it is, from which frame, and to which frame or link it is attached.
-#[derive(Clone, Copy)]
 struct Frame<'d> {
-    element: Element<'d>,
     pose: Pose,
     relative_to: &'d str,
     attached_to: &'d str,
+    /// The body of a link.
+    body: Option<usize>,
 }
 
 struct Reader<'d> {
     model: Model,
     frames: HashMap<&'d str, Frame<'d>>,
-    /// The names of the frames in their order.
-    names: Vec<&'d str>,
-    links: HashMap<&'d str, usize>,
+    /// Where the frame of the model is in the world.
     model_pose: Pose,
     is_sdf: bool,
 }
 
-impl<'d> Reader<'d> {
-    fn new(title: &str, root: Element<'d>, is_sdf: bool) -> Self {
-        Self {
-            model: Model::new(title, root.place()),
-            frames: HashMap::new(),
-            names: Vec::new(),
-            links: HashMap::new(),
-            model_pose: Pose::IDENTITY,
-            is_sdf,
-        }
-    }
-}
-
-/// Reads URDF. The frame of a link is that of the joint on which it hangs, in the frame of the link before.
+/// Reads URDF.
 pub(crate) fn urdf(xml: &Xml<'_>, options: &ImportOptions) -> Result<(Model, Coverage)> {
     let root = xml.root();
     root.kept(NO_GRAVITY);
-    let title = root.attribute("name").unwrap_or("URDF model");
-    let mut reader = Reader::new(title, root, false);
-    for link in root.called("link") {
-        reader.frame(link)?;
-    }
-    let joints = root.called("joint");
-    for joint in &joints {
-        reader.hang(*joint)?;
-    }
-    reader.place_links()?;
-    for joint in &joints {
-        let child = joints::side(*joint, &["child"]);
-        let name = name(*joint)?;
-        reader.joint(name, *joint, reader.in_world(child, joint)?)?;
-        if let Some(joint) = reader.model.joints.last_mut() {
-            joint.in_tree = true;
-        }
-        let drives = joint.attribute("independent").unwrap_or_default();
-        if drives.eq_ignore_ascii_case("true") {
-            reader.model.drive(reader.model.joints.len() - 1);
-        }
-    }
-    reader.hold_roots();
-    for joint in joints {
-        reader.mimic(name(joint)?, joint)?;
-    }
-    for part in root.children() {
-        match part.tag() {
-            "transmission" => reader.transmission(part),
-            "gazebo" => reader.gazebo(part)?,
-            "loop_joint" | "loop" | "loop_constraint" => reader.loop_element(part)?,
-            _ => {}
-        }
-    }
-    if let Some(text) = &options.loops {
-        reader.extended(text)?;
-    }
-    Ok((reader.model, xml.name_the_rest(&RULES)))
+    let model = Model::new(root.attribute("name").unwrap_or("URDF model"), root.place());
+    let model = read(model, root, false, options)?;
+    Ok((model, xml.name_the_rest(&RULES)))
 }
 
-pub(crate) fn sdf(xml: &Xml<'_>, _: &ImportOptions) -> Result<(Model, Coverage)> {
+/// Reads the first model of an SDF file that moves.
+pub(crate) fn sdf(xml: &Xml<'_>, options: &ImportOptions) -> Result<(Model, Coverage)> {
     let root = xml.root();
     let _ = root.attribute("version");
     let world = root.child("world");
-    if world.is_none() {
-        root.kept(NO_GRAVITY);
-    }
     let models = world.unwrap_or(root).called("model");
-    let moves = |one: &Element<'_>| one.says("static") != Some(true);
+    let moves = |one: &Element<'_>| !one.says("static", TRUE);
     let (moving, still): (Vec<_>, Vec<_>) = models.into_iter().partition(moves);
     let Some((element, others)) = moving.split_first() else {
         return Err(root.error("the file has no model that moves"));
@@ -122,42 +70,78 @@ pub(crate) fn sdf(xml: &Xml<'_>, _: &ImportOptions) -> Result<(Model, Coverage)>
         other.leave(Effect::AtLimits, text);
     }
     let title = element.attribute("name").unwrap_or("SDF model");
-    let mut reader = Reader::new(title, root, true);
-    if let Some(world) = world {
-        let _ = world.attribute("name");
-        reader.model.gravity = world.vector("gravity")?.unwrap_or([0.0, 0.0, -9.8]);
+    let mut model = Model::new(title, root.place());
+    match world {
+        Some(world) => model.gravity = world.vector("gravity")?.unwrap_or([0.0, 0.0, -9.8]),
+        None => root.kept(NO_GRAVITY),
     }
-    for part in element.children() {
-        if ["link", "frame", "joint"].contains(&part.tag()) {
-            reader.frame(part)?;
+    let model = read(model, *element, true, options)?;
+    Ok((model, xml.name_the_rest(&RULES)))
+}
+
+/// Reads links, frames, joints, and what URDF has besides.
+fn read<'d>(
+    model: Model,
+    element: Element<'d>,
+    is_sdf: bool,
+    options: &ImportOptions,
+) -> Result<Model> {
+    let mut reader = Reader {
+        model,
+        frames: HashMap::new(),
+        model_pose: Pose::IDENTITY,
+        is_sdf,
+    };
+    let parts = element.children();
+    let of = |tag: &'static str| parts.iter().filter(move |part| part.tag() == tag);
+    of("link").try_for_each(|link| reader.frame(*link))?;
+    of("frame").try_for_each(|frame| reader.frame(*frame))?;
+    for joint in of("joint") {
+        match is_sdf {
+            true => reader.frame(*joint)?,
+            false => reader.hang(*joint)?,
         }
     }
-    let (own, _) = pose(*element)?;
-    if let Some(name) = element.attribute("placement_frame") {
-        reader.model_pose = own.then(reader.in_world(name, element)?.inverse());
-    } else {
-        reader.model_pose = own;
+    let (own, _) = pose(element)?;
+    let placed = element.attribute("placement_frame");
+    let placed = placed.map(|name| reader.in_world(name, &element));
+    let placed = placed.transpose()?.unwrap_or(Pose::IDENTITY);
+    reader.model_pose = own.then(placed.inverse());
+    of("link").try_for_each(|link| reader.link(*link))?;
+    for frame in of("frame") {
+        let name = name(*frame)?;
+        let end = End::new(reader.body_of(name, frame)?, reader.in_world(name, frame)?);
+        reader.model.frames.push((name.to_owned(), end));
     }
-    reader.place_links()?;
-    for name in reader.names.clone() {
-        let element = reader.frames[name].element;
-        let frame = reader.in_world(name, &element)?;
-        match element.tag() {
-            "joint" => reader.joint(name, element, frame)?,
-            "frame" => {
-                let body = reader.body_of(name, &element)?;
-                let frame = (name.to_owned(), End::new(body, frame));
-                reader.model.frames.push(frame);
-            }
+    for joint in of("joint") {
+        let name = name(*joint)?;
+        let at = if is_sdf {
+            name
+        } else {
+            joints::side(*joint, &["child"])
+        };
+        reader.joint(name, *joint, reader.in_world(at, joint)?)?;
+        let number = reader.model.joints.len() - 1;
+        reader.model.joints[number].in_tree = !is_sdf;
+        let independent = joint.attribute("independent").unwrap_or_default();
+        if independent.eq_ignore_ascii_case("true") {
+            reader.model.drive(number);
+        }
+    }
+    reader.hold_roots();
+    of("joint").try_for_each(|joint| reader.mimic(*joint))?;
+    of("transmission").for_each(|one| reader.transmission(*one));
+    for part in &parts {
+        match part.tag() {
+            "gazebo" => reader.gazebo(*part)?,
+            "loop_joint" | "loop" | "loop_constraint" => reader.loop_element(*part)?,
             _ => {}
         }
     }
-    for name in reader.names.clone() {
-        if let Some(axis) = reader.frames[name].element.child("axis") {
-            reader.mimic(name, axis)?;
-        }
+    if let Some(text) = &options.loops {
+        reader.extended(text)?;
     }
-    Ok((reader.model, xml.name_the_rest(&RULES)))
+    Ok(reader.model)
 }
 
 fn name<'d>(element: Element<'d>) -> Result<&'d str> {
@@ -212,27 +196,23 @@ impl<'d> Reader<'d> {
         };
         let attached_to = attached_to.filter(|to| !to.is_empty()).unwrap_or(MODEL);
         let (pose, relative_to) = pose(element)?;
+        let link = (tag == "link").then(|| element.place());
         let frame = Frame {
-            element,
             pose,
             relative_to: relative_to.unwrap_or(attached_to),
             attached_to,
+            body: link.map(|place| self.model.push_body(name, place, Pose::IDENTITY)),
         };
-        if self.frames.insert(name, frame).is_some() {
-            return Err(element.error(format!("the name `{name}` is given twice")));
+        match self.frames.insert(name, frame) {
+            Some(_) => Err(element.error(format!("the name `{name}` is given twice"))),
+            None => Ok(()),
         }
-        self.names.push(name);
-        if tag == "link" {
-            let body = self.model.push_body(name, element.place(), Pose::IDENTITY);
-            self.links.insert(name, body);
-        }
-        Ok(())
     }
 
     /// Hangs the child of a URDF joint on the parent.
     fn hang(&mut self, joint: Element<'d>) -> Result<()> {
         let [parent, child] = ["parent", "child"].map(|tag| joints::side(joint, &[tag]));
-        joint.known(self.links.get(parent), "link", parent)?;
+        joint.known(self.frames.get(parent), "link", parent)?;
         let frame = joint.known(self.frames.get_mut(child), "link", child)?;
         if frame.relative_to != MODEL {
             let message = format!("the link of {} has another parent", joint.label());
@@ -243,12 +223,12 @@ impl<'d> Reader<'d> {
         Ok(())
     }
 
+    /// Links of URDF that hang on no joint are the ground.
     fn hold_roots(&mut self) {
-        for name in &self.names {
-            let body = self.links[name];
-            if self.frames[name].relative_to == MODEL {
-                let text = format!("link {name}, the root: is the ground");
-                self.model.bodies[body].place.kept(text);
+        for body in 1..self.model.bodies.len() {
+            let Body { name, place, .. } = &self.model.bodies[body];
+            if !self.is_sdf && self.frames[name.as_str()].relative_to == MODEL {
+                place.kept(format!("link {name}, the root: is the ground"));
                 self.model.hold(body);
             }
         }
@@ -272,33 +252,28 @@ impl<'d> Reader<'d> {
     fn body_of(&self, name: &str, at: &Element<'d>) -> Result<usize> {
         let mut frame = name;
         for _ in 0..=self.frames.len() {
-            match (self.links.get(frame), self.frames.get(frame), frame) {
-                (Some(body), ..) => return Ok(*body),
-                (_, Some(one), _) => frame = one.attached_to,
-                (.., WORLD) => return Ok(GROUND),
+            match (self.frames.get(frame), frame) {
+                (
+                    Some(Frame {
+                        body: Some(body), ..
+                    }),
+                    _,
+                ) => return Ok(*body),
+                (Some(one), _) => frame = one.attached_to,
+                (None, WORLD) => return Ok(GROUND),
                 // The model is where its first link is.
-                (.., MODEL) => return Ok(self.model.bodies.len().min(2) - 1),
-                _ => return at.known(None, "frame", frame),
+                (None, MODEL) => return Ok(self.model.bodies.len().min(2) - 1),
+                (None, _) => return at.known(None, "frame", frame),
             }
         }
         Err(at.error(format!("the frame `{name}` refers to itself")))
     }
 
-    /// Poses and masses of the links.
-    fn place_links(&mut self) -> Result<()> {
-        for name in self.names.clone() {
-            let Some(body) = self.links.get(name).copied() else {
-                continue;
-            };
-            let link = self.frames[name].element;
-            let world = self.in_world(name, &link)?;
-            self.model.bodies[body].pose = world;
-            self.inertial(link, body, world)?;
-        }
-        Ok(())
-    }
-
-    fn inertial(&mut self, link: Element<'d>, body: usize, world: Pose) -> Result<()> {
+    /// The pose and the mass of a link.
+    fn link(&mut self, link: Element<'d>) -> Result<()> {
+        let name = name(link)?;
+        let (body, world) = (self.body_of(name, &link)?, self.in_world(name, &link)?);
+        self.model.bodies[body].pose = world;
         let label = link.label();
         // Gazebo takes 1 kg and 1 kg m2 for what is not given.
         let (mut mass, mut tensor) = match self.is_sdf {
@@ -321,10 +296,10 @@ impl<'d> Reader<'d> {
             ));
         }
         self.model.bodies[body].add_mass(mass, frame, Matrix::symmetric(tensor));
-        if link.says("kinematic") == Some(true) {
+        if link.says("kinematic", TRUE) {
             link.lost(format!("{label} kinematic"));
         }
-        if link.says("gravity") == Some(false) {
+        if link.says("gravity", FALSE) {
             link.kept(format!(
                 "{label} without gravity: kept as a force against its weight"
             ));

@@ -219,9 +219,8 @@ impl Writer<'_> {
         let joints = &self.model.joints;
         let driven: Vec<usize> = self.model.drives.iter().map(|drive| drive.joint).collect();
         let others = (0..joints.len()).filter(|joint| !driven.contains(joint));
-        let others = others
-            .filter(|joint| self.needs_coordinate(*joint))
-            .collect();
+        let others = others.filter(|joint| self.needs_coordinate(*joint));
+        let others = others.collect();
         let in_plane = ["travel", "length"][usize::from(self.plane.is_some())];
         for (table, numbers, travel) in [
             ("actuators", driven, in_plane),
@@ -288,9 +287,8 @@ impl Writer<'_> {
             }
             return;
         };
-        let duration = laws
-            .iter()
-            .fold(f64::MAX, |least, (_, one)| least.min(*one));
+        let durations = laws.iter().map(|(_, duration)| *duration);
+        let duration = durations.fold(f64::MAX, f64::min);
         self.text.table("prescribed");
         self.text.pair("duration", number(duration));
         for (drive, (law, _)) in drives.iter().zip(laws) {

@@ -25,9 +25,8 @@ pub(crate) fn settle(model: &mut Model, options: &ImportOptions) -> Result<()> {
     model.span();
     check_floating(model)?;
     for (name, value) in &options.start {
-        model
-            .moves
-            .push((driveable(model, name)?, Move::To(*value)));
+        let joint = driveable(model, name)?;
+        model.moves.push((joint, Move::To(*value)));
     }
     for (joint, by) in model.moves.clone() {
         move_joint(model, joint, by);
@@ -72,10 +71,8 @@ fn close(model: &mut Model, closing: &Closing) -> Result<()> {
 pub(crate) fn frame(model: &Model, name: &str) -> Result<End> {
     let bodies = model.bodies.iter().enumerate();
     let bodies = bodies.map(|(body, of)| (&of.name, End::new(body, of.pose)));
-    let joints = model
-        .joints
-        .iter()
-        .map(|joint| (&joint.name, joint.ends[1]));
+    let joints = model.joints.iter();
+    let joints = joints.map(|joint| (&joint.name, joint.ends[1]));
     let others = model.frames.iter().map(|(name, end)| (name, *end));
     let mut all = bodies.chain(others).chain(joints);
     let known = all.clone().map(|(one, _)| one.as_str());
@@ -97,10 +94,8 @@ fn check_floating(model: &Model) -> Result<()> {
     if floating.is_empty() {
         return Ok(());
     }
-    let names: Vec<&str> = floating
-        .iter()
-        .map(|body| model.bodies[*body].name.as_str())
-        .collect();
+    let name = |body: &usize| model.bodies[*body].name.as_str();
+    let names: Vec<&str> = floating.iter().map(name).collect();
     let message = format!("nothing holds {}: the base floats", names.join(", "));
     let help = "--fix BODY holds a body where it is drawn";
     Err(DoorError::new(message, help))
@@ -261,17 +256,15 @@ fn count_drives(model: &Model) -> Result<()> {
         counted(drives, "drive", "drives")
     );
     let wanted = counted(needed, "joint", "joints");
-    let help = match drives < needed {
-        true => format!("give --drive for {wanted} among {joints}"),
-        false => String::new(),
-    };
+    let help = format!("give --drive for {wanted} among {joints}");
     if drives == 0 {
-        return Err(DoorError::new(text, help));
+        return Err(DoorError::new(text, if needed == 0 { "" } else { &help }));
     }
-    if drives != needed {
-        model.bodies[GROUND]
-            .place
-            .kept(format!("{text} {help}").trim_end());
+    if drives < needed {
+        let text = format!("{text}: {help}");
+        model.bodies[GROUND].place.kept(text);
+    } else if drives > needed {
+        model.bodies[GROUND].place.kept(text);
     }
     Ok(())
 }

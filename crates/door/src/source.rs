@@ -74,12 +74,10 @@ pub(crate) fn import(
 
 /// The format that the ending of a file shows, or its beginning.
 fn format(name: &str, text: &str) -> Option<Format> {
-    let ending = Path::new(name)
-        .extension()
-        .and_then(|ending| ending.to_str());
+    let ending = Path::new(name).extension();
     let is_xml = text.trim_start().starts_with('<');
     let has = |element: &str| is_xml && text.contains(element);
-    match ending {
+    match ending.and_then(|ending| ending.to_str()) {
         Some("mjcf") => Some(Format::Mjcf),
         Some("urdf") => Some(Format::Urdf),
         Some("sdf" | "world") => Some(Format::Sdf),
@@ -101,10 +99,8 @@ fn with_includes(file: TextFile, folder: Option<&Path>) -> Result<Vec<TextFile>>
         let mut wanted: Vec<TextFile> = Vec::new();
         let mut size: usize = files.iter().map(|file| file.text.len()).sum();
         let tree = from.parse()?;
-        for include in tree
-            .descendants()
-            .filter(|node| node.has_tag_name("include"))
-        {
+        let nodes = tree.descendants();
+        for include in nodes.filter(|node| node.has_tag_name("include")) {
             let file = include.attribute("file").unwrap_or_default();
             if files.iter().chain(&wanted).any(|one| &*one.file == file) {
                 continue;

@@ -157,11 +157,10 @@ pub(crate) struct Xml<'t> {
 
 impl<'t> Xml<'t> {
     pub(crate) fn new(files: &'t [TextFile], trees: &'t [Document<'t>]) -> Self {
-        let ledger = RefCell::default();
         Self {
             files,
             trees,
-            ledger,
+            ledger: RefCell::default(),
         }
     }
 
@@ -192,10 +191,8 @@ impl<'t> Xml<'t> {
                         continue;
                     }
                     let what = format!("{}{attributes}", element.tag());
-                    let (_, count) = shared
-                        .entry((source, what, effect))
-                        .or_insert((element.place().line, 0));
-                    *count += 1;
+                    let first = (element.place().line, 0);
+                    shared.entry((source, what, effect)).or_insert(first).1 += 1;
                 }
             }
         }
@@ -214,6 +211,9 @@ impl<'t> Xml<'t> {
         coverage
     }
 }
+
+pub(crate) const TRUE: [&str; 2] = ["true", "1"];
+pub(crate) const FALSE: [&str; 2] = ["false", "0"];
 
 /// An element of one of the files.
 #[derive(Clone, Copy)]
@@ -242,13 +242,12 @@ impl<'d> Element<'d> {
         coverage.read += all - rest.len();
         let of = |effect| {
             let those = rest.iter().filter(|name| rules.effect(name) == effect);
-            (effect, those.map(|name| format!(" {name}")).collect())
+            let those: Vec<String> = those.map(|name| format!(" {name}")).collect();
+            (effect, those.join(","))
         };
         let all = [Effect::Nothing, Effect::AtLimits, Effect::Changes].map(of);
-        let all = all
-            .into_iter()
-            .map(|(effect, names): (Effect, Vec<String>)| (effect, names.join(",")));
-        all.filter(|(_, names)| !names.is_empty()).collect()
+        let some = all.into_iter().filter(|(_, names)| !names.is_empty());
+        some.collect()
     }
 
     /// Whether an attribute is read. Names are part of every message. A default is read if elements of that name are asked for it, or
@@ -306,9 +305,8 @@ impl<'d> Element<'d> {
                 continue;
             };
             let _ = child.attribute("file");
-            let root = self
-                .xml
-                .element(source, self.xml.trees[source].root_element());
+            let node = self.xml.trees[source].root_element();
+            let root = self.xml.element(source, node);
             // Each file is included once.
             if !root.is_read() {
                 children.extend(root.children());
@@ -382,13 +380,9 @@ impl<'d> Element<'d> {
         self.attribute(name) == Some(value)
     }
 
-    /// Whether a child says that something is so, or not so.
-    pub(crate) fn says(self, tag: &str) -> Option<bool> {
-        match self.given(tag)? {
-            "true" | "1" => Some(true),
-            "false" | "0" => Some(false),
-            _ => None,
-        }
+    /// Whether an attribute or a child is one of these words.
+    pub(crate) fn says(self, name: &str, words: [&str; 2]) -> bool {
+        self.given(name).is_some_and(|word| words.contains(&word))
     }
 
     /// Leaves the element with all inside out.

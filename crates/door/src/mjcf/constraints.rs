@@ -109,9 +109,8 @@ impl<'d> Reader<'d> {
     fn joint_equality(&mut self, element: Element<'d>, name: String) -> Result<()> {
         let one = element.attribute("joint1").unwrap_or_default();
         let dependent = self.joint_named(element, one)?;
-        let polynomial = element
-            .numbers("polycoef")?
-            .unwrap_or_else(|| vec![0.0, 1.0]);
+        let polynomial = element.numbers("polycoef")?.filter(|all| !all.is_empty());
+        let polynomial = polynomial.unwrap_or_else(|| vec![0.0, 1.0]);
         let Some(other) = element.attribute("joint2") else {
             if polynomial.first().is_none_or(|offset| *offset == 0.0) {
                 self.model.joints[dependent].kind = Kind::Fixed;
@@ -143,10 +142,8 @@ impl<'d> Reader<'d> {
         self.classed(element, None)?;
         let name = element.attribute("name").unwrap_or("tendon").to_owned();
         let parts = element.children();
-        let sites: Vec<_> = parts
-            .iter()
-            .filter_map(|part| part.attribute("site"))
-            .collect();
+        let sites = parts.iter().filter_map(|part| part.attribute("site"));
+        let sites: Vec<&str> = sites.collect();
         let ([one, other], "spatial", 2) = (&sites[..], element.tag(), parts.len()) else {
             let text = format!("tendon {name}, {}: {LOST}", element.tag());
             element.leave(Effect::Changes, text);
@@ -186,9 +183,8 @@ impl<'d> Reader<'d> {
         self.classed(element, None)?;
         let tag = element.tag();
         let name = element.attribute("joint");
-        let joint = name
-            .map(|name| self.joint_named(element, name))
-            .transpose()?;
+        let joint = name.map(|name| self.joint_named(element, name));
+        let joint = joint.transpose()?;
         let drives = ["motor", "position", "velocity", "general", "intvelocity"].contains(&tag);
         let joint = joint.filter(|joint| drives && self.model.joints[*joint].is_driveable());
         let Some((name, joint)) = name.zip(joint) else {

@@ -4,7 +4,7 @@ use super::Reader;
 use crate::error::{DoorError, Result};
 use crate::model::{Along, Coupling, End, Joint, Kind};
 use crate::pose::{Pose, Vector};
-use crate::xml::Element;
+use crate::xml::{Element, TRUE};
 use std::f64::consts::TAU;
 
 /// The link that a joint names on one side: in the text of a child, or in an attribute of it.
@@ -66,17 +66,19 @@ impl<'d> Reader<'d> {
         let expressed_in = xyz.and_then(|xyz| xyz.attribute("expressed_in"));
         let turn = match expressed_in.filter(|frame| !frame.is_empty()) {
             Some(frame) => self.in_world(frame, &axis)?.turn,
-            None if axis.says("use_parent_model_frame") == Some(true) => self.model_pose.turn,
+            None if axis.says("use_parent_model_frame", TRUE) => self.model_pose.turn,
             None => joint.turn,
         };
         Ok(turn.apply(vector))
     }
 
     /// The coupling of a joint, once all joints are known.
-    pub(super) fn mimic(&mut self, name: &str, of: Element<'d>) -> Result<()> {
-        let Some(mimic) = of.child("mimic") else {
+    pub(super) fn mimic(&mut self, element: Element<'d>) -> Result<()> {
+        let in_axis = || element.child("axis")?.child("mimic");
+        let Some(mimic) = element.child("mimic").or_else(in_axis) else {
             return Ok(());
         };
+        let name = element.attribute("name").unwrap_or_default();
         let other = mimic.attribute("joint").unwrap_or_default();
         let joint = |name| mimic.known(self.model.joint_named(name), "joint", name);
         let (dependent, independent) = (joint(name)?, joint(other)?);
@@ -139,10 +141,8 @@ fn pitch(element: Element<'_>) -> Result<f64> {
 /// What acts along the coordinate, of a joint of URDF or an axis of SDF.
 fn along(of: Element<'_>) -> Result<Along> {
     let mut along = Along::default();
-    for dynamics in [of.child("dynamics"), of.child("joint_properties")]
-        .into_iter()
-        .flatten()
-    {
+    let dynamics = of.child("dynamics").or(of.child("joint_properties"));
+    if let Some(dynamics) = dynamics {
         along.damping = dynamics.value("damping", along.damping)?;
         along.friction = dynamics.value("friction", along.friction)?;
         along.spring_reference = dynamics.value("spring_reference", 0.0)?;

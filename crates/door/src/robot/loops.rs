@@ -40,7 +40,7 @@ impl<'d> Reader<'d> {
         let axis = self.axis(element, "axis", kind, &Pose::IDENTITY)?;
         let end = |tags: &[&str], beside: &str| {
             let link = side(element, tags);
-            let body = element.known(self.links.get(link).copied(), "link", link)?;
+            let body = self.body_of(link, &element)?;
             // The frame is in an `origin` inside, beside, or in the attributes.
             let inner = tags.iter().find_map(|tag| element.child(tag));
             let origin = inner.and_then(|inner| inner.child("origin"));
@@ -68,12 +68,9 @@ impl<'d> Reader<'d> {
     /// The YAML file of an extended URDF: `closed_loop`, `type`, `name_mot`.
     pub(super) fn extended(&mut self, text: &str) -> Result<()> {
         let list = |key: &str| {
-            let value = |line: &'_ str| {
-                line.trim()
-                    .strip_prefix(key)?
-                    .trim()
-                    .strip_prefix(':')
-                    .map(str::to_owned)
+            let value = |line: &str| {
+                let (name, value) = line.split_once(':')?;
+                (name.trim() == key).then(|| value.to_owned())
             };
             let line = text.lines().find_map(value).unwrap_or_default();
             let words = line.split(['[', ']', ',']);

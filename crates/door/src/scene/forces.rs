@@ -159,11 +159,8 @@ impl Writer<'_> {
 
     fn action(&mut self, load: &Load) {
         let name = &load.name;
-        let bodies = load
-            .at
-            .iter()
-            .map(|(body, _)| &self.model.bodies[*body].name);
-        let ends = bodies.zip(point_names(load));
+        let bodies = load.at.iter().map(|(body, _)| &self.model.bodies[*body]);
+        let ends = bodies.map(|body| &body.name).zip(point_names(load));
         let ends = ends.map(|(body, point)| format!("\"{body}.{point}\""));
         let ends: Vec<String> = ends.collect();
         let ends = ends.join(", ");
