@@ -56,10 +56,10 @@ pub(crate) fn as_xml(text: &str) -> String {
 
 /// Floats may end with `d`.
 fn without_d(word: &str) -> &str {
-    let float = word.strip_suffix('d');
-    float
-        .filter(|float| float.parse::<f64>().is_ok())
-        .unwrap_or(word)
+    match word.strip_suffix('d') {
+        Some(float) if float.parse::<f64>().is_ok() => float,
+        _ => word,
+    }
 }
 
 struct Reader {
@@ -213,33 +213,20 @@ impl Reader {
 /// A law in `time` as an expression of a scene in t.
 fn expression(law: &str) -> Option<String> {
     let mut text = String::new();
-    let mut rest = law.trim();
-    while let Some(first) = rest.chars().next() {
-        let is_word = first.is_ascii_alphabetic();
-        let ends_number = |(k, c): &(usize, char)| {
-            let signed = "+-".contains(*c) && rest[..*k].ends_with(['e', 'E']);
-            !(c.is_ascii_digit() || ".eE".contains(*c) || signed)
-        };
-        let end = match first {
-            _ if is_word => rest.find(|c: char| !c.is_ascii_alphanumeric()),
-            '0'..='9' | '.' => rest.char_indices().find(ends_number).map(|(k, _)| k),
-            _ => Some(first.len_utf8()),
-        };
-        let (token, after) = rest.split_at(end.unwrap_or(rest.len()));
-        rest = after;
-        match token {
-            "time" => text.push('t'),
-            "sin" | "cos" | "tan" | "sqrt" | "exp" | "abs" | "pi" => text += token,
-            // A float may end with `d`.
-            _ if !is_word && token.parse::<f64>().is_ok() => {
-                text += token;
-                rest = rest.strip_prefix('d').unwrap_or(rest);
-            }
-            "+" | "-" | "*" | "/" | "^" | "(" | ")" | " " => text += token,
-            _ => return None,
+    for (k, c) in law.char_indices() {
+        let after_digit = text.ends_with(|c: char| c.is_ascii_digit() || c == '.');
+        // Floats may end with `d`.
+        if !(c == 'd' && after_digit && !law[k + 1..].starts_with(char::is_alphanumeric)) {
+            text.push(c);
         }
     }
-    (!text.is_empty()).then_some(text)
+    let mut words = text.split(|c: char| c.is_ascii() && !c.is_ascii_alphabetic());
+    let known = "time sin cos tan sqrt exp abs pi e E"
+        .split(' ')
+        .chain([""]);
+    let known: Vec<&str> = known.collect();
+    let is_known = words.all(|word| known.contains(&word)) && !text.is_empty();
+    is_known.then(|| text.replace("time", "t"))
 }
 
 #[test]

@@ -48,10 +48,8 @@ pub(crate) fn is_link(text: &str) -> bool {
 pub(crate) fn read(file: &TextFile) -> Result<(Model, Coverage)> {
     let text = file.text.trim();
     if !is_link(text) {
-        return Err(DoorError::new(
-            format!("`{}` is no link of PMKS+", file.file),
-            "",
-        ));
+        let message = format!("`{}` is no link of PMKS+", file.file);
+        return Err(DoorError::new(message, ""));
     }
     let query = text.split_once('?').map_or(text, |(_, query)| query);
     let place = file.place(1);
@@ -95,10 +93,8 @@ pub(crate) fn read(file: &TextFile) -> Result<(Model, Coverage)> {
     pins.iter().for_each(|pin| reader.joints(pin, speeds));
     let text = "colours, scale, time step, grid and active object: left out, nothing lost";
     reader.place.note(Effect::Nothing, text);
-    let all = query
-        .split(['.', ','])
-        .filter(|token| !token.is_empty())
-        .count();
+    let tokens = query.split(['.', ',']);
+    let all = tokens.filter(|token| !token.is_empty()).count();
     let named = all.min(links.len() + 1 + integers.split(',').count());
     let read = all - named;
     Ok((reader.model, Coverage { all, read, named }))
@@ -106,8 +102,8 @@ pub(crate) fn read(file: &TextFile) -> Result<(Model, Coverage)> {
 
 impl Reader<'_> {
     fn error(&self, message: &str) -> DoorError {
-        self.file
-            .error(0..self.file.text.trim_end().len(), message, "")
+        let span = 0..self.file.text.trim_end().len();
+        self.file.error(span, message, "")
     }
 
     /// A whole number of 0 or more.
@@ -198,9 +194,8 @@ impl Reader<'_> {
             return Err(self.error(&format!("the mass of link {name} is negative")));
         }
         let center = Pose::new(self.point(x, y)?, Matrix::IDENTITY);
-        let number = self
-            .model
-            .push_body(name, self.place.clone(), Pose::IDENTITY);
+        let place = self.place.clone();
+        let number = self.model.push_body(name, place, Pose::IDENTITY);
         let body = &mut self.model.bodies[number];
         body.add_mass(mass, center, Matrix::diagonal([moment; 3]));
         for joint in joints.into_iter().take_while(|joint| !joint.is_empty()) {

@@ -1,6 +1,6 @@
 //! Every element and attribute of a file is read, or named with its line.
 
-use dwell_door::{Coverage, Effect, Import, ImportOptions, import_text};
+use dwell_door::{Coverage, Effect, Format, Import, ImportOptions, import_text};
 use proptest::prelude::*;
 
 const FOLDER: &str = "../../validation/imported";
@@ -134,6 +134,103 @@ fn an_external_entity_is_not_read() {
     assert!(error.to_string().contains("invalid"), "{error}");
     let include = "<mujoco><include file=\"../outside.xml\"/></mujoco>";
     assert!(import_text("e.xml", include, &ImportOptions::default()).is_err());
+}
+
+#[test]
+fn what_is_careless_is_refused_in_words_that_help() {
+    let four_bar = text("m1-fourbar.xml");
+    let default = ImportOptions::default;
+    let of = |from| ImportOptions {
+        from: Some(from),
+        ..default()
+    };
+    let drives = |name: &str| ImportOptions {
+        drives: vec![name.to_owned()],
+        ..default()
+    };
+    let closes = |text: &str| ImportOptions {
+        close: text.parse().into_iter().collect(),
+        ..default()
+    };
+    let some = |text: &str| Some(text.to_owned());
+    let key = ImportOptions {
+        key: some("home"),
+        ..default()
+    };
+    let fix = ImportOptions {
+        fix: some("base"),
+        ..default()
+    };
+    let loops = ImportOptions {
+        loops: some("closed_loop: []"),
+        ..default()
+    };
+    let cases: [(&str, ImportOptions, &str); 13] = [
+        (
+            "",
+            default(),
+            "neither the ending nor the beginning of `m.xml` shows its format",
+        ),
+        (
+            "<html/>",
+            default(),
+            "shows its format (give --from mjcf, urdf, sdf, asmt or pmks)",
+        ),
+        (
+            "<html/>",
+            of(Format::Mjcf),
+            "begins with `html` in place of `mujoco`",
+        ),
+        (
+            &four_bar,
+            of(Format::Urdf),
+            "begins with `mujoco` in place of `robot`",
+        ),
+        (&four_bar, of(Format::Pmks), "`m.xml` is no link of PMKS+"),
+        ("<mujoco>", default(), "m.xml:1: the XML is invalid"),
+        (
+            "<mujoco/>",
+            default(),
+            "the model has no joint that may drive",
+        ),
+        (
+            &four_bar,
+            drives("X"),
+            "no joint with one coordinate `X`: it has A, B, D",
+        ),
+        (
+            &four_bar,
+            closes("X=crank:fixed"),
+            "no frame `X`: it has ground, crank, coupler",
+        ),
+        (
+            &four_bar,
+            fix,
+            "no body `base`: it has crank, coupler, rocker",
+        ),
+        (&four_bar, key.clone(), "no keyframe `home`: it has none"),
+        (&text("s1-fourbar.sdf"), key, "a keyframe belongs to Mjcf"),
+        (&four_bar, loops, "a YAML file of loops belongs to Urdf"),
+    ];
+    for (text, options, expected) in cases {
+        let error = import_text("m.xml", text, &options).expect_err(expected);
+        let message = error.full_message();
+        assert!(message.contains(expected), "{message}");
+    }
+}
+
+#[test]
+fn joints_within_one_body_and_too_many_drives_are_named() {
+    let options = ImportOptions {
+        fix: Some("crank".to_owned()),
+        drives: vec!["B".to_owned(), "D".to_owned()],
+        ..ImportOptions::default()
+    };
+    let import = import_text("m1.xml", &text("m1-fourbar.xml"), &options).expect("m1");
+    let says = |text: &str| import.scene.contains(text);
+    assert!(says("joint A, between parts of one body: left out"));
+    assert!(says("the model has no degrees of freedom and 2 drives"));
+    assert!(!says("A = {"));
 }
 
 /// Changes of a text: bytes are removed, lines removed and doubled, values and elements inserted.

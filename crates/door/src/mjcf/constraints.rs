@@ -3,7 +3,7 @@
 use super::Reader;
 use crate::error::Result;
 use crate::finding::{AT_LIMITS, Effect, LOST};
-use crate::model::{Action, Coupling, End, GROUND, Joint, Kind, Load};
+use crate::model::{Action, Coupling, End, GROUND, Joint, Kind, Load, both};
 use crate::pose::{Matrix, Pose, length, sub};
 use crate::xml::Element;
 
@@ -46,12 +46,16 @@ impl<'d> Reader<'d> {
         ends.transpose()
     }
 
-    fn body_named(&self, element: Element<'d>, attribute: &str) -> Result<usize> {
-        let name = element.attribute(attribute).unwrap_or("world");
-        let mut bodies = self.model.bodies.iter().skip(1);
-        let body = bodies.position(|body| body.name == name).map(|k| k + 1);
-        let ground = (name == "world").then_some(GROUND);
-        element.known(ground.or(body), "body", name)
+    /// The two bodies; without a name it is the world.
+    fn bodies_named(&self, element: Element<'d>) -> Result<[usize; 2]> {
+        let body = |attribute| {
+            let name = element.attribute(attribute).unwrap_or("world");
+            let mut bodies = self.model.bodies.iter().skip(1);
+            let body = bodies.position(|body| body.name == name).map(|k| k + 1);
+            let ground = (name == "world").then_some(GROUND);
+            element.known(ground.or(body), "body", name)
+        };
+        Ok([body("body1")?, body("body2")?])
     }
 
     fn connect(&self, element: Element<'d>, name: &str) -> Result<[End; 2]> {
@@ -59,49 +63,38 @@ impl<'d> Reader<'d> {
             return Ok(ends);
         }
         let anchor = element.vector("anchor")?;
-        let anchor =
-            anchor.ok_or_else(|| element.error("a connect needs an anchor, or two sites"))?;
-        let bodies = [
-            self.body_named(element, "body1")?,
-            self.body_named(element, "body2")?,
-        ];
+        let without = || element.error("a connect needs an anchor, or two sites");
+        let anchor = anchor.ok_or_else(without)?;
+        let bodies = self.bodies_named(element)?;
         let [first, second] = bodies.map(|body| &self.model.bodies[body]);
         // The point on the second body is where the anchor is in the reference pose, whatever was meant.
         let frame = first.pose.then(Pose::new(anchor, Matrix::IDENTITY));
         let [x, y, z] = second.pose.inverse().point(frame.origin);
-        let mut text = format!(
-            "derived: `{name}` on {} at ({x:.6}, {y:.6}, {z:.6})",
-            second.name
-        );
+        let at = format!("({x:.6}, {y:.6}, {z:.6})");
+        let mut text = format!("derived: `{name}` on {} at {at}", second.name);
         let mut joints = self.model.joints.iter();
         if let Some(joint) = joints.find(|joint| joint.ends[1].body == bodies[1]) {
             let radius = length(sub(frame.origin, joint.origin()));
             text += &format!(", {radius:.6} m from `{}`", joint.name);
         }
         element.kept(text);
-        Ok(crate::model::both(bodies, frame))
+        Ok(both(bodies, frame))
     }
 
     fn weld(&self, element: Element<'d>) -> Result<[End; 2]> {
         if let Some(ends) = self.ends_at_sites(element)? {
             return Ok(ends);
         }
-        let bodies = [
-            self.body_named(element, "body1")?,
-            self.body_named(element, "body2")?,
-        ];
+        let bodies = self.bodies_named(element)?;
         let [first, second] = bodies.map(|body| self.model.bodies[body].pose);
-        let anchor = Pose::new(
-            element.vector("anchor")?.unwrap_or_default(),
-            Matrix::IDENTITY,
-        );
+        let anchor = element.vector("anchor")?.unwrap_or_default();
+        let anchor = Pose::new(anchor, Matrix::IDENTITY);
         // Without a quaternion the bodies are welded as they are in the reference pose.
-        let relative = element
-            .vector::<7>("relpose")?
-            .and_then(|[x, y, z, quat @ ..]| {
-                let turn = Matrix::quaternion(quat)?;
-                Some(first.then(Pose::new([x, y, z], turn)))
-            });
+        let relative = element.vector("relpose")?;
+        let relative = relative.and_then(|[x, y, z, a, b, c, d]: [f64; 7]| {
+            let turn = Matrix::quaternion([a, b, c, d])?;
+            Some(first.then(Pose::new([x, y, z], turn)))
+        });
         let frames = [relative.unwrap_or(second), second].map(|frame| frame.then(anchor));
         Ok([0, 1].map(|k| End::new(bodies[k], frames[k])))
     }
@@ -194,26 +187,18 @@ impl<'d> Reader<'d> {
         };
         let gear = element.numbers("gear")?;
         let gear = gear.and_then(|gear| gear.first().copied()).unwrap_or(1.0);
-        let (text, gains) = match tag {
+        let text = match tag {
             "motor" => {
-                let text =
-                    format!("motor of {name}: drives it, with {gear} N m or N for a control of 1");
-                (text, None)
+                format!("motor of {name}: drives it, with {gear} N m or N for a control of 1")
             }
-            "position" => {
-                let gains = [element.value("kp", 1.0)?, element.value("kv", 0.0)?];
-                let text = "position actuator: servo: kept as a drive (kp, kv)";
-                (text.to_owned(), Some(gains))
-            }
-            "velocity" => {
-                let gains = [0.0, element.value("kv", 1.0)?];
-                let text = "velocity actuator: servo: kept as a drive (kv)";
-                (text.to_owned(), Some(gains))
-            }
-            _ => {
-                let text = format!("{tag} actuator of {name}: drives it; its own law is left out");
-                (text, None)
-            }
+            "position" => "position actuator: servo: kept as a drive (kp, kv)".to_owned(),
+            "velocity" => "velocity actuator: servo: kept as a drive (kv)".to_owned(),
+            _ => format!("{tag} actuator of {name}: drives it; its own law is left out"),
+        };
+        let gains = match tag {
+            "position" => Some([element.value("kp", 1.0)?, element.value("kv", 0.0)?]),
+            "velocity" => Some([0.0, element.value("kv", 1.0)?]),
+            _ => None,
         };
         element.kept(text);
         self.model.drive(joint).servo = gains.map(|gains| gains.map(|gain| gain * gear * gear));
