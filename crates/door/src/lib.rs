@@ -86,7 +86,8 @@ pub fn import_text(name: &str, text: &str, options: &ImportOptions) -> Result<Im
 fn head(name: &str, text: &str, import: &Import, renamed: &[[String; 2]]) -> String {
     let hash = Sha256::digest(text.as_bytes());
     let hash: String = hash.iter().map(|byte| format!("{byte:02x}")).collect();
-    let drawn = "Drawn in the frame of the ground, in m, kg and rad. A coordinate is 0 as drawn.";
+    let drawn =
+        "Drawn in the frame of the ground, in m, kg, s and rad. A coordinate is 0 as drawn.";
     let mut lines = vec![format!("Imported from {name}"), format!("SHA-256 {hash}")];
     lines.push(drawn.to_owned());
     if let Some([x, y, normal]) = import.plane {

@@ -131,16 +131,7 @@ fn read<'d>(
     reader.hold_roots();
     of("joint").try_for_each(|joint| reader.mimic(*joint))?;
     of("transmission").for_each(|one| reader.transmission(*one));
-    for part in &parts {
-        match part.tag() {
-            "gazebo" => reader.gazebo(*part)?,
-            "loop_joint" | "loop" | "loop_constraint" => reader.loop_element(*part)?,
-            _ => {}
-        }
-    }
-    if let Some(text) = &options.loops {
-        reader.extended(text)?;
-    }
+    reader.loops(&parts, options.loops.as_deref())?;
     Ok(reader.model)
 }
 

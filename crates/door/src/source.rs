@@ -34,15 +34,22 @@ pub(crate) fn import(
 ) -> Result<Import> {
     let format = options.from.or_else(|| format(name, text));
     let format = format.ok_or_else(|| {
-        let message = format!("neither the ending nor the beginning of `{name}` shows its format");
+        let message = match text.trim().is_empty() {
+            true => format!("`{name}` is empty"),
+            false => format!("neither the ending nor the beginning of `{name}` shows its format"),
+        };
         DoorError::new(message, "give --from mjcf, urdf, sdf, asmt or pmks")
     })?;
-    for (given, option, of) in [
-        (options.key.is_some(), "keyframe", Format::Mjcf),
-        (options.loops.is_some(), "YAML file of loops", Format::Urdf),
+    let shown = format!("{format:?}").to_uppercase();
+    for (given, what) in [
+        (options.key.is_some() && format != Format::Mjcf, "keyframes"),
+        (
+            options.loops.is_some() && format != Format::Urdf,
+            "YAML files of loops",
+        ),
     ] {
-        if given && format != of {
-            let message = format!("a {option} belongs to {of:?}, and `{name}` is {format:?}");
+        if given {
+            let message = format!("`{name}` is {shown}, which has no {what}");
             return Err(DoorError::new(message, ""));
         }
     }
@@ -68,7 +75,11 @@ pub(crate) fn import(
         coverage,
     };
     // The scene begins with all findings, among them those of its writer.
-    import.scene = format!("{}\n{}", head(name, text, &import, &renamed), import.scene);
+    import.scene = format!(
+        "{}\n\n{}",
+        head(name, text, &import, &renamed),
+        import.scene
+    );
     Ok(import)
 }
 

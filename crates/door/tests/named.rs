@@ -166,11 +166,7 @@ fn what_is_careless_is_refused_in_words_that_help() {
         ..default()
     };
     let cases: [(&str, ImportOptions, &str); 13] = [
-        (
-            "",
-            default(),
-            "neither the ending nor the beginning of `m.xml` shows its format",
-        ),
+        ("", default(), "`m.xml` is empty"),
         (
             "<html/>",
             default(),
@@ -209,8 +205,16 @@ fn what_is_careless_is_refused_in_words_that_help() {
             "no body `base`: it has crank, coupler, rocker",
         ),
         (&four_bar, key.clone(), "no keyframe `home`: it has none"),
-        (&text("s1-fourbar.sdf"), key, "a keyframe belongs to Mjcf"),
-        (&four_bar, loops, "a YAML file of loops belongs to Urdf"),
+        (
+            &text("s1-fourbar.sdf"),
+            key,
+            "`m.xml` is SDF, which has no keyframes",
+        ),
+        (
+            &four_bar,
+            loops,
+            "`m.xml` is MJCF, which has no YAML files of loops",
+        ),
     ];
     for (text, options, expected) in cases {
         let error = import_text("m.xml", text, &options).expect_err(expected);

@@ -9,6 +9,18 @@ use crate::settle::{driveable, frame};
 use crate::xml::Element;
 
 impl<'d> Reader<'d> {
+    /// Loops that elements close, and the YAML file beside.
+    pub(super) fn loops(&mut self, parts: &[Element<'d>], beside: Option<&str>) -> Result<()> {
+        for part in parts {
+            match part.tag() {
+                "gazebo" => self.gazebo(*part)?,
+                "loop_joint" | "loop" | "loop_constraint" => self.loop_element(*part)?,
+                _ => {}
+            }
+        }
+        beside.map_or(Ok(()), |text| self.extended(text))
+    }
+
     /// Names a joint that closes a loop.
     fn name_loop(&self, joint: &Joint, how: &str) {
         let [first, second] = joint.ends.map(|end| end.frame.origin);
@@ -21,7 +33,7 @@ impl<'d> Reader<'d> {
     }
 
     /// A joint of SDF in a `gazebo` element; its pose is in the child.
-    pub(super) fn gazebo(&mut self, element: Element<'d>) -> Result<()> {
+    fn gazebo(&mut self, element: Element<'d>) -> Result<()> {
         let _ = element.attribute("reference");
         for joint in element.called("joint") {
             let child = self.in_world(side(joint, &["child"]), &joint)?;
@@ -35,7 +47,7 @@ impl<'d> Reader<'d> {
     }
 
     /// `loop_joint` of Isaac Sim, `loop` and `loop_constraint` of URDF+: each link has its own frame.
-    pub(super) fn loop_element(&mut self, element: Element<'d>) -> Result<()> {
+    fn loop_element(&mut self, element: Element<'d>) -> Result<()> {
         let kind = kind(element)?;
         let axis = self.axis(element, "axis", kind, &Pose::IDENTITY)?;
         let end = |tags: &[&str], beside: &str| {
@@ -66,7 +78,7 @@ impl<'d> Reader<'d> {
     }
 
     /// The YAML file of an extended URDF: `closed_loop`, `type`, `name_mot`.
-    pub(super) fn extended(&mut self, text: &str) -> Result<()> {
+    fn extended(&mut self, text: &str) -> Result<()> {
         let list = |key: &str| {
             let value = |line: &str| {
                 let (name, value) = line.split_once(':')?;
