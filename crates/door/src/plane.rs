@@ -71,12 +71,11 @@ pub(crate) fn find(model: &Model, options: &ImportOptions) -> Option<Plane> {
         }
         return None;
     }
-    let snapped = deviations
-        .iter()
-        .filter(|(_, amount, _)| *amount > ROUNDING);
-    for (joint, _, shown) in snapped {
-        let text = format!("snapped: `{}` by {shown}", joint.name);
-        joint.place.kept(text);
+    for (joint, amount, shown) in deviations {
+        if amount > ROUNDING {
+            let text = format!("snapped: `{}` by {shown}", joint.name);
+            joint.place.kept(text);
+        }
     }
     Some(plane)
 }

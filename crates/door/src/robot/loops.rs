@@ -25,7 +25,7 @@ impl<'d> Reader<'d> {
     fn name_loop(&self, joint: &Joint, how: &str) {
         let [first, second] = joint.ends.map(|end| end.frame.origin);
         let apart = match length(sub(first, second)) {
-            gap if gap > 1e-9 => format!(", {gap:.3} m apart at zero"),
+            gap if gap > 1e-9 => format!(", {gap:.6} m apart at zero"),
             _ => String::new(),
         };
         let text = format!("{}: {how} closes a loop{apart}", joint.name);
