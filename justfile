@@ -167,9 +167,9 @@ audit *scenes:
     cargo build --release --workspace --bins
     python3 validation/audit/selftest.py target/release/dwell {{ scenes }}
 
-# What takes too long for each change, as a whole in a night: its parts are the five recipes below
+# What takes too long for each change, as a whole in a night: its parts are the six recipes below
 [group('care')]
-nightly: nightly-validation nightly-tests && nightly-laws nightly-others
+nightly: nightly-validation nightly-tests nightly-imports && nightly-laws nightly-others
     seed=$(date +%j); for part in 0 1 2 3 4; do just nightly-fuzz $part $seed || exit 1; done
 
 # Of `nightly`: 1e5 revolutions, 1000 pulses, 200 random machines, all deliberate faults, also those in files, and the computing half by itself
@@ -180,6 +180,11 @@ nightly-validation: validate-slow mutations audit computing
 [group('care')]
 nightly-tests seed=`date +%s`:
     PROPTEST_RNG_SEED={{ seed }} PROPTEST_CASES=2000 cargo test --release --workspace
+
+# Of `nightly`: 20 000 mutated models of other programs, of the second's seed or another
+[group('care')]
+nightly-imports seed=`date +%s`:
+    PROPTEST_RNG_SEED={{ seed }} PROPTEST_CASES=20000 cargo test --release -p dwell-door --test named
 
 # Of `nightly`: one of five parts (0 to 4) of 100 000 mutated scenes, of the day's seed or another
 [group('care')]

@@ -106,9 +106,9 @@ fn degrees(path: &str) -> [f64; 2] {
 fn assert_homogeneous<S: GradientScene>(scene: &S, result: &str, degrees_of_result: [f64; 2]) {
     let found = gradient(scene, result, false);
     let result = &found.results[0];
-    for k in 0..2 {
+    for (k, degree) in degrees_of_result.into_iter().enumerate() {
         let sum = euler_sum(result, |path| degrees(path)[k]);
-        let error = (sum - degrees_of_result[k] * result.value).abs() / result.value;
+        let error = (sum - degree * result.value).abs() / result.value;
         // Seen: 1.1e-12 (jansen).
         assert!(
             error < 1e-10,

@@ -226,19 +226,14 @@ impl Motion {
     }
 
     /// The inputs of a recording of a scene.
-    fn inputs<S: Recorded>(&self, scene: &S, model: &S::Model, numbers: Vec<f64>) -> Vec<f64> {
+    fn inputs<S: Recorded>(&self, scene: &S, model: &S::Model, numbers: &[f64]) -> Vec<f64> {
         let solution = model.solution(&self.q, &mut model.pass_workspace());
         let solution = solution.unwrap_or_else(|e| panic!("{}: {e}", scene.file().name));
-        [
-            &self.q,
-            &self.q_dot,
-            &self.q_ddot,
-            &self.magnitudes,
-            &numbers,
-            &solution,
-        ]
-        .map(Vec::as_slice)
-        .concat()
+        let motion = [&self.q, &self.q_dot, &self.q_ddot, &self.magnitudes];
+        let mut inputs = motion.map(Vec::as_slice).concat();
+        inputs.extend(numbers);
+        inputs.extend(solution);
+        inputs
     }
 
     /// The outputs of a compiled model: forces of the actuators, reactions, wanted coordinates.
@@ -312,8 +307,8 @@ fn recorded<S: Recorded>(
     let wanted = scene.wanted();
     let described = scene.described(&wanted);
     let numbers = model.numbers(described).expect("numbers");
-    let inputs = motion.inputs(scene, model, numbers);
-    let recorded = RecordedState::record(model, described, &[inputs.clone()]);
+    let inputs = motion.inputs(scene, model, &numbers);
+    let recorded = RecordedState::record(model, described, std::slice::from_ref(&inputs));
     let recorded = recorded.unwrap_or_else(|e| panic!("{}: {e:?}", scene.file().name));
     (recorded, inputs)
 }

@@ -8,6 +8,7 @@ mod export;
 mod exported_runs;
 mod former;
 mod gradient;
+mod import;
 mod init;
 mod instants;
 mod interface;
@@ -66,6 +67,10 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
     let mut times = Times::new();
     match command {
         Command::Schema => return print(&dwell_scene::schema()).map(|()| true),
+        Command::Import(arguments) => {
+            let written = import::write(arguments, &options.out, options.name.as_deref());
+            return written.map(|()| true);
+        }
         Command::Init { scene } => return init::write(scene).map(|()| true),
         _ => {}
     }

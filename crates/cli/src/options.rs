@@ -2,6 +2,7 @@
 
 use crate::export::ExportArgs;
 use crate::gradient::GradientArgs;
+use crate::import::ImportArgs;
 use crate::reduction::ReduceArgs;
 use crate::simulation::{METHODS, SimulateArgs};
 use crate::sweep::SweepArgs;
@@ -146,6 +147,8 @@ pub(crate) enum Command {
         #[arg(long, value_name = "FILE")]
         page: Option<PathBuf>,
     },
+    /// Write a scene from a model of another program: MJCF, URDF, SDF, ASMT, or a link of PMKS+. `--out` names the scene, or `-`
+    Import(ImportArgs),
     /// Print the JSON schema of scene files, for editors
     Schema,
     /// Write a commented scene to start from; an existing file is not replaced
@@ -187,7 +190,7 @@ impl Command {
             Self::Kinematics(arguments)
             | Self::Statics(arguments)
             | Self::Kinetostatics(arguments) => Some(&arguments.scene),
-            Self::Validate { .. } | Self::Schema | Self::Init { .. } => None,
+            Self::Validate { .. } | Self::Schema | Self::Init { .. } | Self::Import(_) => None,
         }
     }
 }

@@ -84,6 +84,6 @@ fn request<'a>(command: &'a Command, out: &'a Path) -> Result<Option<Request<'a>
         // The others were handled before, or are no studies of a scene.
         Command::Kinematics(_) | Command::Statics(_) | Command::Kinetostatics(_) => Request::Check,
         Command::Check { .. } | Command::Validate { .. } | Command::View { .. } => Request::Check,
-        Command::Schema | Command::Init { .. } => Request::Check,
+        Command::Schema | Command::Init { .. } | Command::Import(_) => Request::Check,
     }))
 }

@@ -89,6 +89,11 @@ pub(crate) fn parse_table_accuracy(text: &str) -> Result<f64, String> {
     parse_checked(text, |v| (1e-14..=1e-2).contains(&v), message)
 }
 
+pub(crate) fn parse_length(text: &str) -> Result<f64, String> {
+    let message = "expected a positive length in metres";
+    parse_checked(text, |v| v.is_finite() && v > 0.0, message)
+}
+
 pub(crate) fn parse_time(text: &str) -> Result<f64, String> {
     let message = "expected a positive time in seconds";
     parse_checked(text, |v| v.is_finite() && v > 0.0, message)

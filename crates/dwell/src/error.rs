@@ -84,6 +84,9 @@ pub enum Error {
         /// The difference.
         difference: f64,
     },
+    /// A model of another program cannot be imported.
+    #[error("{}", .0.full_message())]
+    Import(dwell_door::DoorError),
     /// A coordinate outside the domain of a table.
     #[error("{q} is not in the table, which reaches from {from} to {to}")]
     OutOfTable {
@@ -116,6 +119,7 @@ impl Error {
             | Self::GivenTwice { .. }
             | Self::Table(_)
             | Self::ClosedForm { .. }
+            | Self::Import(_)
             | Self::OutOfTable { .. } => None,
         }
     }
@@ -183,6 +187,12 @@ fn all_messages(error: &StudyError) -> String {
 impl From<SceneError> for Error {
     fn from(error: SceneError) -> Self {
         Self::Study(error.into())
+    }
+}
+
+impl From<dwell_door::DoorError> for Error {
+    fn from(error: dwell_door::DoorError) -> Self {
+        Self::Import(error)
     }
 }
 

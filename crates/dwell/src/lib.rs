@@ -45,6 +45,7 @@
 //! | how steadily does it run, which flywheel does it need? | [`Mechanism::cycle`] |
 //! | what if its dimensions vary? | [`Sweep`] |
 //! | on which numbers does a result depend, and how much? | [`Mechanism::gradient`] |
+//! | models of MuJoCo, ROS, Gazebo, FreeCAD, PMKS+ | [`import`] |
 //! | code for a controller, or formulas | [`Scene::export`], [`Scene::closed_form`] |
 //!
 //! # Your own loads
@@ -79,6 +80,7 @@ mod column_table;
 mod equation;
 mod error;
 mod export;
+mod import;
 mod machine;
 mod mechanism;
 mod motion;
@@ -88,6 +90,17 @@ mod table;
 mod value;
 
 pub use batch::CoefficientBatch;
+/// What became of the parts of an imported model, and what it means; see [`import`].
+///
+/// ```
+/// use dwell::{Effect, Finding};
+/// fn lost(findings: &[Finding]) -> Vec<String> {
+///     let changes = findings.iter().filter(|one| one.effect == Effect::Changes);
+///     changes.map(|one| one.to_string()).collect()
+/// }
+/// # assert!(lost(&[]).is_empty());
+/// ```
+pub use dwell_door::{Closing, Effect, Finding, Format, Import, ImportOptions};
 /// An integration method; see [`Solver::method`].
 ///
 /// ```
@@ -145,6 +158,7 @@ pub use dwell_study::gradient::{Gradient, NumberSlope, ResultGradient, SlopeMeth
 pub use equation::EquationOfMotion;
 pub use error::Error;
 pub use export::ExportTarget;
+pub use import::import;
 pub use machine::{Cycle, Equilibrium, StateSpace};
 pub use mechanism::Mechanism;
 pub use mechanism::builder::{BodyBuilder, MechanismBuilder};

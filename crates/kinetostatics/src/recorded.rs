@@ -22,7 +22,7 @@ use crate::error::PositionResult;
 use crate::load::{Magnitude, Signal};
 use crate::model::{MachineModel, ModelLoad};
 use dwell_geometry::{BodyId, PositionError};
-use dwell_numerics::{RecordedNumber, RecordingError, Scalar, StraightLine, record_at};
+use dwell_numerics::{Operand, RecordedNumber, RecordingError, Scalar, StraightLine, record_at};
 use thiserror::Error;
 
 /// Why a state cannot be recorded.
@@ -207,6 +207,24 @@ pub struct RecordedState {
 }
 
 impl RecordedState {
+    /// The same without the operations that only other outputs need; these are zero.
+    #[must_use]
+    pub fn limited_to(&self, is_wanted: impl Fn(usize) -> bool) -> Self {
+        let outputs = self.code.outputs.iter().enumerate();
+        let outputs = outputs.map(|(k, output)| match is_wanted(k) {
+            true => *output,
+            false => Operand::Constant(0.0),
+        });
+        let code = StraightLine {
+            operations: self.code.operations.clone(),
+            outputs: outputs.collect(),
+        };
+        Self {
+            code: code.without_unused(),
+            layout: self.layout,
+        }
+    }
+
     /// Records the states of a machine of the structure of a model at some inputs, where the operations must be the same. Each list of
     /// inputs has q, q̇, q̈, the magnitudes, [numbers](RecordableModel::numbers), [solution](RecordableModel::solution).
     ///

@@ -6,6 +6,7 @@
 //! A decision must be the same in all lanes: code that branches on a value tests every lane ([`uniform`](crate::uniform), [`Scalar::exceeds`]).
 //! If lanes disagree, each value must be evaluated alone.
 
+use crate::real::Real;
 use crate::scalar::Scalar;
 use crate::sin_cos::sin_cos;
 use std::array;
@@ -83,6 +84,33 @@ impl<const N: usize> Scalar for Lanes<N> {
                 f64::NAN
             }
         })
+    }
+}
+
+impl<const N: usize> Real for Lanes<N> {
+    fn of(value: f64) -> Self {
+        Self([value; N])
+    }
+
+    /// The value of the first lane.
+    fn to_f64(self) -> f64 {
+        self.0[0]
+    }
+
+    fn sqrt(self) -> Self {
+        self.map(f64::sqrt)
+    }
+
+    fn sin(self) -> Self {
+        Scalar::sin_cos(self).0
+    }
+
+    fn cos(self) -> Self {
+        Scalar::sin_cos(self).1
+    }
+
+    fn atan2(self, other: Self) -> Self {
+        self.zip_with(other, f64::atan2)
     }
 }
 

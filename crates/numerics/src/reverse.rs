@@ -44,14 +44,47 @@ impl<R: Real> ReverseSweep<R> {
             self.add(output, weight);
         }
         for (k, operation) in code.operations.iter().enumerate().rev() {
-            let operands = operation.operands.map(|o| o.value(inputs, &self.results));
-            let slopes = slopes(operation, operands, self.results[k]);
-            let adjoint = self.adjoints[k];
-            for (&operand, slope) in operation.operands.iter().zip(slopes).take(arity(operation)) {
-                self.add(operand, adjoint * slope);
-            }
+            self.pull_back(k, operation, inputs);
         }
         &self.gradient
+    }
+
+    /// Adds to the derivatives by the operands of an operation, from that by its result r.
+    #[inline]
+    fn pull_back(&mut self, k: usize, operation: &Operation, inputs: &[R]) {
+        let [a, b] = operation.operands;
+        let value = |operand: Operand| operand.value(inputs, &self.results);
+        let (zero, r, of_r) = (R::of(0.0), self.results[k], self.adjoints[k]);
+        match operation.kind {
+            OperationKind::Add => {
+                self.add(a, of_r);
+                self.add(b, of_r);
+            }
+            OperationKind::Subtract => {
+                self.add(a, of_r);
+                self.add(b, zero - of_r);
+            }
+            OperationKind::Multiply => {
+                let (of_a, of_b) = (of_r * value(b), of_r * value(a));
+                self.add(a, of_a);
+                self.add(b, of_b);
+            }
+            OperationKind::Divide => {
+                let of_a = of_r / value(b);
+                self.add(a, of_a);
+                self.add(b, zero - of_a * r);
+            }
+            OperationKind::Negate => self.add(a, zero - of_r),
+            OperationKind::SquareRoot => self.add(a, of_r * R::of(0.5) / r),
+            OperationKind::Sine => self.add(a, of_r * value(a).cos()),
+            OperationKind::Cosine => self.add(a, zero - of_r * value(a).sin()),
+            OperationKind::Angle => {
+                let (y, x) = (value(a), value(b));
+                let of_angle = of_r / (x * x + y * y);
+                self.add(a, of_angle * x);
+                self.add(b, zero - of_angle * y);
+            }
+        }
     }
 
     /// Adds to the derivative by an operand.
@@ -60,40 +93,6 @@ impl<R: Real> ReverseSweep<R> {
             Operand::Coordinate(k) => self.gradient[k] = self.gradient[k] + more,
             Operand::Result(k) => self.adjoints[k] = self.adjoints[k] + more,
             Operand::Constant(_) => {}
-        }
-    }
-}
-
-/// On how many operands an operation works.
-fn arity(operation: &Operation) -> usize {
-    match operation.kind {
-        OperationKind::Add
-        | OperationKind::Subtract
-        | OperationKind::Multiply
-        | OperationKind::Divide
-        | OperationKind::Angle => 2,
-        OperationKind::Negate
-        | OperationKind::SquareRoot
-        | OperationKind::Sine
-        | OperationKind::Cosine => 1,
-    }
-}
-
-/// The derivatives of an operation's result by its operands a and b.
-fn slopes<R: Real>(operation: &Operation, [a, b]: [R; 2], result: R) -> [R; 2] {
-    let [zero, half, one] = [0.0, 0.5, 1.0].map(R::of);
-    match operation.kind {
-        OperationKind::Add => [one, one],
-        OperationKind::Subtract => [one, zero - one],
-        OperationKind::Multiply => [b, a],
-        OperationKind::Divide => [one / b, zero - result / b],
-        OperationKind::Negate => [zero - one, zero],
-        OperationKind::SquareRoot => [half / result, zero],
-        OperationKind::Sine => [a.cos(), zero],
-        OperationKind::Cosine => [zero - a.sin(), zero],
-        OperationKind::Angle => {
-            let square = a * a + b * b;
-            [b / square, zero - a / square]
         }
     }
 }

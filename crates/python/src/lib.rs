@@ -9,6 +9,7 @@
 )]
 
 mod errors;
+mod import;
 mod interrupt;
 mod machine;
 mod mechanism;
@@ -33,6 +34,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<reduced::Table>()?;
     module.add_class::<motion::Rows>()?;
     module.add_class::<machine::Equation>()?;
+    module.add_function(wrap_pyfunction!(import::import_model, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::sweep, module)?)?;
     Ok(())
 }

@@ -58,7 +58,7 @@ pub fn find_value(
     period: f64,
 ) -> Result<CalibrationResult, StudyError> {
     let current = scene.value(path)?;
-    let unit = scene.unit_of(path).to_owned();
+    let unit = scene.unit_of(path);
     let refuse = |message: String, help: &str| {
         let place = (scene.location_of(path), "the value to calibrate");
         scene_error(scene, message, help, [place])

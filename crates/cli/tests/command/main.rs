@@ -6,6 +6,7 @@ mod endings;
 mod exported_runs;
 mod friction;
 mod html;
+mod imported;
 mod lengths;
 mod long_motions;
 mod many_rows;

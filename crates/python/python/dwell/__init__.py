@@ -39,6 +39,7 @@ from typing import TYPE_CHECKING
 from ._builder import Builder
 from ._closed_form import ClosedForm
 from ._cluster import StoredSweep
+from ._import import import_model
 from ._mechanism import Mechanism, State
 from ._moving import Cycle, Equilibrium, Gradient, Period, StateSpace
 from ._native import DwellError, SceneError, __version__
@@ -68,6 +69,7 @@ __all__ = [
     "StoredSweep",
     "Table",
     "__version__",
+    "import_model",
     "read",
     "sweep",
     "validate",

@@ -161,6 +161,19 @@ class Equation:
     def rates(self, t: float, y: _Array) -> _Array: ...
     def jacobian(self, t: float, y: _Array) -> _Array: ...
 
+def import_model(
+    path: str,
+    drives: list[str],
+    start: list[tuple[str, float]],
+    close: list[str],
+    *,
+    format: str | None = None,
+    key: str | None = None,
+    loops: str | None = None,
+    fix: str | None = None,
+    plane: bool = True,
+    tolerance: float | None = None,
+) -> tuple[str, list[tuple[str, bool]]]: ...
 def sweep(
     scene: Scene,
     vary: list[tuple[str, str]],

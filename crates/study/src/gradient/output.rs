@@ -13,11 +13,13 @@ use dwell_scene::SceneFile;
 
 /// Numbers that the summary lists of each result, and bars of the figure.
 const LISTED: usize = 12;
-/// Results whose bars are drawn.
+/// Results whose bars are drawn, and how many of them one below another.
 const DRAWN: usize = 6;
-/// The distance of bars and their half thickness, in lengths of the longest.
-const DISTANCE: f64 = 0.11;
-const HALF: f64 = 0.035;
+const IN_ONE_COLUMN: usize = 3;
+/// The distance of bars where panels have the whole width or half of it, in lengths of the longest bar, and their half thickness in
+/// distances.
+pub(super) const DISTANCES: [f64; 2] = [0.09, 0.17];
+const HALF: f64 = 0.32;
 
 /// The gradients of results by all numbers of a scene.
 ///
@@ -214,40 +216,49 @@ fn csv(found: &Gradient) -> String {
 fn figure(scene: &SceneFile, found: &Gradient) -> Option<Figure> {
     let is_drawn = |result: &&ResultGradient| result.value != 0.0 && !result.numbers.is_empty();
     let drawn = found.results.iter().filter(is_drawn).take(DRAWN);
-    let panels: Vec<Drawing> = drawn.map(bars).collect();
+    let drawn: Vec<&ResultGradient> = drawn.collect();
+    let columns = if drawn.len() > IN_ONE_COLUMN { 2 } else { 1 };
+    let panels = drawn.iter().take(drawn.len() / columns * columns);
+    let panels = panels.map(|result| bars(result, DISTANCES[columns - 1]));
+    let panels: Vec<Drawing> = panels.collect();
     let caption = "Change of the result in % for a change of each number by 1 %, the strongest first; of a number that is zero, by 1 % of the size of the mechanism.";
     (!panels.is_empty()).then(|| Figure {
         name: "gradient".to_owned(),
         title: format!("{}: which numbers the results depend on", scene.title),
         caption: scene_caption(scene, caption),
         provenance: "derivatives by reverse sweeps and, where so marked, differences".to_owned(),
-        columns: if panels.len() == 1 { 1 } else { 2 },
+        columns,
         panels: panels.into_iter().map(Into::into).collect(),
     })
 }
 
 /// The bars of a result.
-fn bars(result: &ResultGradient) -> Drawing {
+fn bars(result: &ResultGradient, distance: f64) -> Drawing {
     let percent = |of: &NumberSlope| (of.path.clone(), result.percent(of).unwrap_or(0.0));
     let listed: Vec<(String, f64)> = result.numbers.iter().map(percent).collect();
     let (value, unit) = (number(result.value), &result.unit);
-    bars_of(format!("{} = {value} {unit}", result.name), &listed)
+    bars_of(
+        format!("{} = {value} {unit}", result.name),
+        &listed,
+        distance,
+    )
 }
 
-/// Bars of the first of named values.
-pub(super) fn bars_of(title: String, named: &[(String, f64)]) -> Drawing {
+/// Bars of the first of named values, at a distance.
+pub(super) fn bars_of(title: String, named: &[(String, f64)], distance: f64) -> Drawing {
     let listed = || named.iter().take(LISTED);
     let longest = listed().map(|(_, value)| value.abs()).fold(0.0, f64::max);
     let mut shapes = Vec::new();
     for (k, (name, value)) in listed().enumerate() {
-        let (y, value) = (-DISTANCE * k as f64, *value);
+        let (y, value) = (-distance * k as f64, *value);
+        let half = HALF * distance;
         let end = value / longest;
         let color = Paint::Palette(if value < 0.0 { 1 } else { 0 });
         let corners = vec![
-            [0.0, y - HALF],
-            [end, y - HALF],
-            [end, y + HALF],
-            [0.0, y + HALF],
+            [0.0, y - half],
+            [end, y - half],
+            [end, y + half],
+            [0.0, y + half],
         ];
         shapes.push(Shape::area(corners, Pen::new(color, 1.0), 0.6));
         // The name is on the other side of the axis.
@@ -258,8 +269,8 @@ pub(super) fn bars_of(title: String, named: &[(String, f64)]) -> Drawing {
         shapes.push(Shape::text([end, y], digits(value, 3), outside));
         shapes.push(Shape::text([0.0, y], name.clone(), inside));
     }
-    let bottom = -DISTANCE * (listed().count() as f64 - 0.5);
-    let zero = vec![[0.0, 0.5 * DISTANCE], [0.0, bottom]];
+    let bottom = -distance * (listed().count() as f64 - 0.5);
+    let zero = vec![[0.0, 0.5 * distance], [0.0, bottom]];
     shapes.push(Shape::line(zero, Pen::new(Paint::Ink, 1.5)));
     Drawing {
         title,

@@ -1,7 +1,7 @@
 //! Writes tolerances: table, figure and summary.
 
 use super::compute::{GradientScene, LimitYield, ResultTolerance, Tolerance, compute_tolerance};
-use super::output::{aligned, bars_of, kink};
+use super::output::{DISTANCES, aligned, bars_of, kink};
 use crate::explain::StudyError;
 use crate::number_format::{count, digits, digits_within, number};
 use crate::output::{Outcome, add_results_page, scene_caption};
@@ -210,7 +210,7 @@ fn figure(scene: &SceneFile, found: &Tolerance) -> Option<Figure> {
         let title = format!("Contributions to the variance by {order} order, %");
         Some([
             chart(result, &found.yields)?.into(),
-            bars_of(title, &bars).into(),
+            bars_of(title, &bars, DISTANCES[1]).into(),
         ])
     });
     let panels: Vec<Panel> = drawn.take(DRAWN).flatten().collect();

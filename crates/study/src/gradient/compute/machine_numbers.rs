@@ -3,7 +3,9 @@
 use crate::machines::{CoordinateOf, MachineScene};
 use crate::models::compile_model;
 use crate::sweep::compute::SweptScene;
-use dwell_geometry::{Vec2, space};
+use crate::trajectory::compute::Quantity;
+use dwell_geometry::{Component, JointId, Vec2, space};
+use dwell_kinetostatics::space::{Axes, Component as InSpace};
 use dwell_kinetostatics::{
     Described, Load, Magnitude, Model, ModelLoad, RecordableModel, WantedMotion,
 };
@@ -33,6 +35,9 @@ pub trait GradientScene: SweptScene<Model: RecordableModel> {
 
     /// Whether a model has redundant constraints or rods that turn idly, which may not allow other numbers.
     fn may_refuse_numbers(model: &Self::Model) -> bool;
+
+    /// The reactions that are the components of the force of a joint, or of its moment; `None` if some are not among those of the model.
+    fn components(model: &Self::Model, joint: JointId, is_moment: bool) -> Option<Vec<Quantity>>;
 
     /// The loads.
     fn loads(&self) -> &[ModelLoad<Self::Model>];
@@ -114,6 +119,25 @@ impl GradientScene for PlaneScene {
         !reactions.all(|k| model.plan().is_determinate(k))
     }
 
+    fn components(model: &Model, joint: JointId, is_moment: bool) -> Option<Vec<Quantity>> {
+        use Component::{Axial, Moment, Normal, X, Y};
+        let all = model.mechanism().components(joint);
+        let is_wanted = |c: &Component| match is_moment {
+            true => *c == Moment,
+            false => matches!(c, X | Y | Normal | Axial),
+        };
+        // A tooth or a rolling wheel has forces in other directions.
+        if !is_moment && !all.iter().all(|c| is_wanted(c) || *c == Moment) {
+            return None;
+        }
+        let place = |component: &Component| {
+            let mut all = model.reactions().iter();
+            all.position(|r| r.joint == joint && r.component == *component)
+        };
+        let places = all.iter().filter(|c| is_wanted(c)).map(place);
+        places.map(|k| k.map(Quantity::Reaction)).collect()
+    }
+
     fn loads(&self) -> &[ModelLoad<Model>] {
         &self.loads
     }
@@ -182,6 +206,22 @@ impl GradientScene for SpaceScene {
     fn may_refuse_numbers(model: &dwell_kinetostatics::space::Model) -> bool {
         let mobility = model.plan().mobility();
         mobility.redundant_count > 0 || !mobility.idle.is_empty()
+    }
+
+    fn components(
+        model: &dwell_kinetostatics::space::Model,
+        joint: JointId,
+        is_moment: bool,
+    ) -> Option<Vec<Quantity>> {
+        let wanted = |k: usize| match is_moment {
+            true => InSpace::Moment(Axes::Ground, k),
+            false => InSpace::Force(Axes::Ground, k),
+        };
+        let place = |k: usize| {
+            let mut all = model.reactions();
+            all.position(|r| r.joint == joint && r.component == wanted(k))
+        };
+        (0..3).map(|k| place(k).map(Quantity::Reaction)).collect()
     }
 
     fn loads(&self) -> &[ModelLoad<dwell_kinetostatics::space::Model>] {

@@ -6,14 +6,17 @@ use crate::trajectory::compute::{Quantity, RowScene, Signal};
 use dwell_geometry::JointId;
 use dwell_kinetostatics::{
     InverseDynamics, MachineModel, Magnitude, RecordableModel as _, RecordedState,
-    ReducibleModel as _, Signal as LoadSignal, WantedMotion,
+    ReducibleModel as _, Signal as LoadSignal, StateLayout, WantedMotion,
 };
 use dwell_laws::HeldPieces;
-use dwell_numerics::ReverseSweep;
+use dwell_numerics::{Lanes, ReverseSweep};
+use std::array;
 
 /// Actuator forces of a recording and of the model agree to this part of the largest; otherwise the operations differ at a pose, and are
 /// recorded anew.
 const SAME: f64 = 1e-9;
+/// States that are evaluated side by side.
+const LANES: usize = 8;
 
 /// The memory of the model of a scene for one pose.
 type WorkspaceOf<S> =
@@ -28,6 +31,16 @@ pub(super) struct StateOfMotion<'a> {
     pub(super) q: &'a [f64],
     pub(super) q_dot: &'a [f64],
     pub(super) q_ddot: &'a [f64],
+}
+
+/// A state that can be evaluated.
+struct Prepared {
+    /// The inputs of a recording, the solution of the closures last.
+    inputs: Vec<f64>,
+    /// How many of them precede the solution.
+    known: usize,
+    /// The forces of the actuators.
+    tau: Vec<f64>,
 }
 
 /// A machine whose states are recorded.
@@ -49,22 +62,25 @@ pub(super) struct RecordedMachine<'a, S: GradientScene> {
     numbers: Vec<f64>,
     /// Recordings: where one's operations are not those of a pose, there is another.
     recordings: Vec<RecordedState>,
+    /// The first of them without the outputs that the signal of the last block does not need.
+    limited: Option<RecordedState>,
     sweep: ReverseSweep<f64>,
+    block_sweep: ReverseSweep<Lanes<LANES>>,
     /// The largest force so far, N or N·m.
     largest: f64,
 }
 
 impl<'a, S: GradientScene> RecordedMachine<'a, S> {
-    /// The machine of a scene whose rows have this model, for these signals. `None` if they cannot be recorded.
+    /// The machine of a scene whose rows have this model, for these signals of recorded quantities. `None` if it cannot be recorded.
     pub(super) fn new(scene: &'a S, model: &'a S::Model, signals: &[Signal]) -> Option<Self> {
         let is_fixed = |m: &Magnitude<_>| !matches!(m, Magnitude::External(_));
         let is_recordable = model.frictions().len() == 0
             && model.loads().len() == scene.loads().len()
             && model.loads().iter().all(|load| is_fixed(&load.magnitude));
-        let quantities: Vec<Quantity> = signals.iter().flat_map(Signal::quantities).collect();
-        if !is_recordable || !quantities.iter().all(|q| is_recorded(*q)) {
+        if !is_recordable {
             return None;
         }
+        let quantities = signals.iter().flat_map(Signal::quantities);
         let (mut measured, mut points) = (Vec::new(), Vec::new());
         for quantity in quantities {
             match quantity {
@@ -99,7 +115,9 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
             measured,
             points,
             recordings: Vec::new(),
+            limited: None,
             sweep: ReverseSweep::default(),
+            block_sweep: ReverseSweep::default(),
             largest: 0.0,
         })
     }
@@ -124,27 +142,102 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
         &self.numbers
     }
 
-    /// Adds the derivative of a signal at a state by all numbers, times a weight, to `gradient`; `None` if the state cannot be recorded.
-    pub(super) fn add_gradient(
+    /// Adds the derivatives of a signal at some states by all numbers, each times a weight, to `gradient`; `None` if a state cannot be
+    /// recorded. Blocks of states of the same operations are evaluated side by side.
+    pub(super) fn add_gradients(
         &mut self,
-        at: StateOfMotion<'_>,
+        states: &[(StateOfMotion<'_>, f64)],
         signal: &Signal,
-        weight: f64,
         gradient: &mut [f64],
     ) -> Option<()> {
+        self.limited = None;
+        for block in states.chunks(LANES) {
+            let prepared = block.iter().map(|(at, _)| self.prepare(*at));
+            let prepared: Vec<Prepared> = prepared.collect::<Option<_>>()?;
+            if self.add_block(block, &prepared, signal, gradient).is_some() {
+                continue;
+            }
+            for ((at, weight), prepared) in block.iter().zip(prepared) {
+                self.add_single(*at, prepared, signal, *weight, gradient)?;
+            }
+        }
+        Some(())
+    }
+
+    /// The inputs of a state and the forces of the model there.
+    fn prepare(&mut self, at: StateOfMotion<'_>) -> Option<Prepared> {
         let mut inputs = self.inputs(at)?;
         self.evaluate(at)?;
         let forces = self.forces.tau.iter().chain(&self.forces.reactions);
         self.largest = forces.fold(self.largest, |max, v| max.max(v.abs()));
         let known = inputs.len();
         // The model follows its own branch; its structure may have other unknowns.
-        let own = self.model.solution(at.q, &mut self.workspace).ok()?;
-        inputs.extend(own);
-        let k = self.recording(&inputs).or_else(|| {
+        inputs.extend(self.model.solution(at.q, &mut self.workspace).ok()?);
+        Some(Prepared {
+            inputs,
+            known,
+            tau: self.forces.tau.clone(),
+        })
+    }
+
+    /// Adds the derivatives at a whole block of states; `None` if the operations of the first recording are not those of all.
+    fn add_block(
+        &mut self,
+        block: &[(StateOfMotion<'_>, f64)],
+        prepared: &[Prepared],
+        signal: &Signal,
+        gradient: &mut [f64],
+    ) -> Option<()> {
+        let whole = self.recordings.first()?;
+        let fits = |p: &Prepared| p.inputs.len() == whole.layout.inputs;
+        if prepared.len() < LANES || !prepared.iter().all(fits) {
+            return None;
+        }
+        let recorded = match self.limited.take() {
+            Some(known) => known,
+            None => {
+                let quantities = signal.quantities();
+                let places: Vec<usize> = quantities.iter().filter_map(|q| self.place(*q)).collect();
+                whole.limited_to(|k| k < self.model.actuators() || places.contains(&k))
+            }
+        };
+        let lanes = |k: usize| Lanes::<LANES>(array::from_fn(|lane| prepared[lane].inputs[k]));
+        let inputs: Vec<Lanes<LANES>> = (0..recorded.layout.inputs).map(lanes).collect();
+        let mut sweep = std::mem::take(&mut self.block_sweep);
+        let outputs = sweep.evaluate(&recorded.code, &inputs);
+        let mut weights = vec![Lanes([0.0; LANES]); outputs.len()];
+        for (lane, (prepared, (at, weight))) in prepared.iter().zip(block).enumerate() {
+            let outputs: Vec<f64> = outputs.iter().map(|output| output.0[lane]).collect();
+            if !agree(&outputs, &prepared.tau, self.largest) {
+                return None;
+            }
+            for (output, slope) in self.slopes(signal, &outputs, at.q_dot) {
+                weights[output].0[lane] += weight * slope;
+            }
+        }
+        let slopes = sweep.gradient(&recorded.code, &inputs, &weights);
+        let is_loaded = |lane: usize| block[lane].0.load_time.is_some();
+        let sums = slopes.iter().map(|slope| slope.0.iter().sum());
+        let sums: Vec<f64> = sums.collect();
+        self.add_slopes(recorded.layout, &sums, is_loaded(0), gradient);
+        (self.block_sweep, self.limited) = (sweep, Some(recorded));
+        Some(())
+    }
+
+    /// Adds the derivatives at a single state.
+    fn add_single(
+        &mut self,
+        at: StateOfMotion<'_>,
+        mut prepared: Prepared,
+        signal: &Signal,
+        weight: f64,
+        gradient: &mut [f64],
+    ) -> Option<()> {
+        let k = self.recording(&prepared).or_else(|| {
             let other = self.structure.solution(at.q, &mut self.structure_workspace);
-            inputs.truncate(known);
-            inputs.extend(other.ok()?);
-            self.recording(&inputs)
+            prepared.inputs.truncate(prepared.known);
+            prepared.inputs.extend(other.ok()?);
+            self.recording(&prepared)
         })?;
         let recorded = &self.recordings[k];
         let outputs = self.sweep.outputs();
@@ -152,22 +245,33 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
         for (output, slope) in self.slopes(signal, outputs, at.q_dot) {
             weights[output] += weight * slope;
         }
-        let slopes = self.sweep.gradient(&recorded.code, &inputs, &weights);
         let layout = recorded.layout;
+        let mut sweep = std::mem::take(&mut self.sweep);
+        let slopes = sweep.gradient(&self.recordings[k].code, &prepared.inputs, &weights);
+        self.add_slopes(layout, slopes, at.load_time.is_some(), gradient);
+        self.sweep = sweep;
+        Some(())
+    }
+
+    /// Adds derivatives by all inputs to those by the numbers of the machine.
+    fn add_slopes(
+        &self,
+        layout: StateLayout,
+        slopes: &[f64],
+        is_loaded: bool,
+        gradient: &mut [f64],
+    ) {
         let (of_machine, of_loads) = gradient.split_at_mut(layout.numbers);
         let own = &slopes[layout.first_number()..layout.solution()];
-        of_machine
-            .iter_mut()
-            .zip(own)
-            .for_each(|(sum, slope)| *sum += slope);
-        if at.load_time.is_some() {
+        let pairs = of_machine.iter_mut().zip(own);
+        pairs.for_each(|(sum, slope)| *sum += slope);
+        if is_loaded {
             let first = layout.first_magnitude();
             let places = magnitude_places(self.scene.loads());
             for (sum, place) in of_loads.iter_mut().zip(places) {
                 *sum += slopes[first + place];
             }
         }
-        Some(())
     }
 
     /// The inputs of a recording at a state, without the solution of the closures.
@@ -207,27 +311,22 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
         Some(inputs)
     }
 
-    /// Evaluates the recording whose operations are those at some inputs, and gives its number: that is, whose actuator forces are those of
+    /// Evaluates the recording whose operations are those of a state, and gives its number: that is, whose actuator forces are those of
     /// the model. If there is none, the state is recorded. `None` if it cannot be.
-    fn recording(&mut self, inputs: &[f64]) -> Option<usize> {
-        let Self {
-            sweep,
-            forces,
-            largest,
-            ..
-        } = self;
+    fn recording(&mut self, of: &Prepared) -> Option<usize> {
+        let (sweep, largest) = (&mut self.sweep, self.largest);
         let mut agrees = |recorded: &RecordedState| {
-            let outputs = sweep.evaluate(&recorded.code, inputs);
-            let mut pairs = outputs.iter().zip(&forces.tau);
-            pairs.all(|(a, b)| (a - b).abs() <= SAME * *largest)
+            let outputs = sweep.evaluate(&recorded.code, &of.inputs);
+            agree(outputs, &of.tau, largest)
         };
         let mut recordings = self.recordings.iter();
-        let fits = |r: &RecordedState| r.layout.inputs == inputs.len();
+        let fits = |r: &RecordedState| r.layout.inputs == of.inputs.len();
         if let Some(known) = recordings.position(|r| fits(r) && agrees(r)) {
             return Some(known);
         }
         let described = self.scene.described(&self.wanted);
-        let recorded = RecordedState::record(&self.structure, described, &[inputs.to_vec()]);
+        let one = std::slice::from_ref(&of.inputs);
+        let recorded = RecordedState::record(&self.structure, described, one);
         let recorded = recorded.ok().filter(|recorded| agrees(recorded))?;
         self.recordings.push(recorded);
         Some(self.recordings.len() - 1)
@@ -290,8 +389,14 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
     }
 }
 
+/// Whether the first outputs of a recording are these actuator forces, in parts of the largest force.
+fn agree(outputs: &[f64], tau: &[f64], largest: f64) -> bool {
+    let mut pairs = outputs.iter().zip(tau);
+    pairs.all(|(a, b)| (a - b).abs() <= SAME * largest)
+}
+
 /// Whether a quantity is an output of a recording, or depends on no number.
-fn is_recorded(quantity: Quantity) -> bool {
+pub(super) fn is_recorded(quantity: Quantity) -> bool {
     matches!(
         quantity,
         Quantity::Time

@@ -1,7 +1,7 @@
 //! The exact routes to gradients: a weighted sum of a signal at states of motion.
 
 use super::machine_numbers::GradientScene;
-use super::recorded_machine::{RecordedMachine, StateOfMotion};
+use super::recorded_machine::{RecordedMachine, StateOfMotion, is_recorded};
 use crate::explain::StudyError;
 use crate::sweep::compute::{RequestedQuantities, ResultKind, signal_of};
 use crate::trajectory::compute::{
@@ -38,15 +38,17 @@ impl Route {
         machine: &mut RecordedMachine<'_, S>,
     ) -> Option<Vec<f64>> {
         let mut gradient = vec![0.0; machine.numbers().len()];
-        for (state, weight) in &self.states {
+        let states = self.states.iter().map(|(state, weight)| {
             let at = StateOfMotion {
                 load_time: state.load_time,
                 q: &state.q,
                 q_dot: &state.q_dot,
                 q_ddot: &state.q_ddot,
             };
-            machine.add_gradient(at, &self.signal, *weight, &mut gradient)?;
-        }
+            (at, *weight)
+        });
+        let states: Vec<(StateOfMotion<'_>, f64)> = states.collect();
+        machine.add_gradients(&states, &self.signal, &mut gradient)?;
         Some(gradient)
     }
 }
@@ -89,7 +91,7 @@ const INTERVALS: usize = 720;
 
 /// An extremum of m or ½m′ over the range, with those that tie; `None` at an end of the range, which moves with the numbers.
 fn extreme_inertia<S: GradientScene>(scene: &S, rows: &S::Rows, index: usize) -> Option<Route> {
-    let (is_half_dm, sign) = (index >= 2, if index % 2 == 0 { -1.0 } else { 1.0 });
+    let (is_half_dm, sign) = (index >= 2, if index.is_multiple_of(2) { -1.0 } else { 1.0 });
     let exact = scene.unit_models(&[]).ok()?.exact;
     let mut workspace = exact.workspace();
     let mut value = |q: f64| {
@@ -163,6 +165,18 @@ fn orbit_route<S: GradientScene>(
     None
 }
 
+/// A signal of what is recorded: a magnitude by its components. `None` if it is of something else.
+fn recorded_signal<S: GradientScene>(model: &S::Model, signal: &Signal) -> Option<Signal> {
+    let own = match signal.quantity() {
+        Some(Quantity::ForceMagnitude(joint)) => Signal::Norm(S::components(model, joint, false)?),
+        Some(Quantity::MomentMagnitude(joint)) => Signal::Norm(S::components(model, joint, true)?),
+        _ => signal.clone(),
+    };
+    let is_distance = matches!(own, Signal::Distance(_));
+    let is_recorded = own.quantities().iter().all(|q| is_recorded(*q));
+    (is_recorded && !is_distance).then_some(own)
+}
+
 /// A part of a trajectory that belongs to its end.
 const END: f64 = 3e-3;
 
@@ -190,6 +204,10 @@ fn statistic_route<S: GradientScene>(
     if moves && !weighted.weights.iter().all(|[u, _]| is_inside(*u)) {
         return Ok(None);
     }
+    let Some(signal) = recorded_signal::<S>(model, &weighted.signal) else {
+        return Ok(None);
+    };
+    let weighted = Weighted { signal, ..weighted };
     let followed = scene.followed(model);
     let trajectory = Trajectory::new(&followed, analysis, None)?;
     Ok(Some(route_of(&trajectory, analysis, weighted)))
