@@ -3,6 +3,7 @@
 
 mod cases;
 mod change_points;
+mod couplings;
 mod extremes;
 mod flyball;
 mod friction;
@@ -443,6 +444,7 @@ fn a_pendulum_without_an_actuator_is_refused() {
         ground: 0,
         joints: vec![joint("A", [0, 1]), joint("B", [1, 2])],
         actuators: vec![Actuator::angle("q", 0)],
+        couplings: Vec::new(),
     };
     let error = Plan::compile(&mechanism, &Assembly::at(&[0.0]))
         .map(|_| ())

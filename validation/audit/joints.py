@@ -238,6 +238,8 @@ def reaction_point(joint, motion):
 
 
 def space_reactions(joint, motion):
+    if joint.kind == "coupling":
+        return coupling_reaction(joint, motion)
     bodies, point = [place.body for place in joint.places], reaction_point(joint, motion)
     zero = np.zeros(3)
     units = {name: (axis, zero) for name, axis in zip(SPACE_COMPONENTS[:3], np.eye(3))}

@@ -103,13 +103,13 @@ impl Coordinate {
     }
 }
 
-/// Two coupled coordinates: `dependent` = law(`independent`). The joint's two bodies are those of `dependent`.
+/// Two coupled coordinates, in the plane or in space: `dependent` = law(`independent`). The joint's two bodies are those of `dependent`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Coupling {
+pub struct Coupling<K = Coordinate> {
     /// The coordinate that is a function of the other.
-    pub dependent: Coordinate,
+    pub dependent: K,
     /// The argument of the law.
-    pub independent: Coordinate,
+    pub independent: K,
     /// The function, SI.
     pub law: Law,
 }

@@ -25,6 +25,7 @@
 //!         joint("B", [0, 2], JointKind::Cylindrical, [side(inclined, y), side(z, y)]),
 //!     ],
 //!     actuators: vec![Actuator::angle("q", 0)],
+//!     couplings: Vec::new(),
 //! };
 //! let plan = Plan::compile(&mechanism, &Assembly::at(&[0.0]))?;
 //! let mut pose = plan.pose::<f64>();
@@ -41,6 +42,7 @@ mod branch_fit;
 mod change_points;
 mod closure;
 mod coordinate;
+mod coupling;
 mod factors;
 mod follow;
 mod frames;
@@ -67,8 +69,9 @@ mod wrench;
 pub use branch_fit::{BranchFit, BranchFitWorkspace};
 pub use change_points::ChangePoint;
 pub use coordinate::{Coordinate, CoordinateFunction, CountedRevolutions, Counting};
+pub use coupling::CouplingEnd;
 pub use frames::{BodyMotion, Frame};
-pub use joint_kinds::{Condition, JointKind};
+pub use joint_kinds::{Condition, CouplingAction, JointKind};
 pub use mechanism::{
     Actuator, ActuatorKind, Assembly, Joint, JointNumbers, Mechanism, Placement, Side,
 };

@@ -19,6 +19,7 @@
 //!     ground: 0,
 //!     joints: vec![Joint::new("A", [0, 1], JointKind::Revolute, [Side::default(); 2])],
 //!     actuators: vec![Actuator::angle("q", 0)],
+//!     couplings: Vec::new(),
 //! };
 //! let disc = Mass { mass: 1.0, center: vec3(0.0, 0.0, 0.0), inertia: [0.02, 0.02, 0.04, 0.0, 0.003, 0.0] };
 //! let moment = |index| Reaction { joint: JointId(0), component: Component::Moment(Axes::Ground, index) };

@@ -189,6 +189,7 @@ fn a_cylinder_turns_an_arm() {
             ),
         ],
         actuators: vec![Actuator::length("l", 1)],
+        couplings: Vec::new(),
     };
     let masses = [
         Mass::default(),

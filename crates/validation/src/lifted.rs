@@ -1,9 +1,10 @@
 //! Planar scenes placed obliquely in space: the same mechanism, with each joint at its own height above the plane.
 
 use dwell_geometry::space::{
-    Actuator, Assembly, Joint, JointKind, Mechanism, Placement, Rotation, Side, Vec3, vec3,
+    Actuator, Assembly, Coordinate, CouplingAction, Joint, JointKind, Mechanism, Placement,
+    Rotation, Side, Vec3, vec3,
 };
-use dwell_geometry::{self as plane, ActuatorKind, BodyId, Vec2};
+use dwell_geometry::{self as plane, ActuatorKind, BodyId, Coupling, JointId, Vec2};
 use dwell_kinetostatics::Model;
 use dwell_kinetostatics::space::Mass;
 use dwell_scene::PlaneScene;
@@ -93,12 +94,81 @@ impl Plane<'_> {
         Some(Joint::new(joint.name.clone(), joint.bodies, kind, sides))
     }
 
+    /// A coordinate in space; `None` of an angle between bodies that no hinge connects in this order.
+    fn coordinate(&self, of: plane::Coordinate, planar: &plane::Mechanism) -> Option<Coordinate> {
+        let is_hinge = |joint: &plane::Joint| matches!(joint.kind, plane::JointKind::Revolute);
+        let mut joints = planar.joints.iter();
+        match of {
+            plane::Coordinate::Angle(bodies) => {
+                let hinge = joints.position(|j| is_hinge(j) && j.bodies == bodies)?;
+                Some(Coordinate::Angle(JointId(hinge)))
+            }
+            plane::Coordinate::Travel(joint) => {
+                let kind = planar.joints[joint.0].kind;
+                let slides = matches!(kind, plane::JointKind::Prismatic { .. });
+                slides.then_some(Coordinate::Travel(joint))
+            }
+            plane::Coordinate::Length { bodies, points } => {
+                let point = |k: usize| {
+                    let point = self.lifted(points[k], 0.0);
+                    if bodies[k].0 == planar.ground {
+                        self.frame.point(point)
+                    } else {
+                        point
+                    }
+                };
+                let points = [point(0), point(1)];
+                Some(Coordinate::Distance { bodies, points })
+            }
+        }
+    }
+
+    /// The joint of a coupling, with the sides of its dependent coordinate.
+    fn coupling_joint(
+        &self,
+        index: usize,
+        joint: &plane::Joint,
+        planar: &plane::Mechanism,
+    ) -> Option<Joint> {
+        let of = self.coordinate(planar.couplings[index].dependent, planar)?;
+        let of_joint = |id: JointId| self.joint(id.0, &planar.joints[id.0], planar.ground);
+        let (action, bodies, sides) = match of {
+            Coordinate::Angle(id) => {
+                let joint = of_joint(id)?;
+                (CouplingAction::Couple, joint.bodies, joint.sides)
+            }
+            Coordinate::Travel(id) => {
+                let joint = of_joint(id)?;
+                (CouplingAction::Force, joint.bodies, joint.sides)
+            }
+            Coordinate::Distance { bodies, points } => {
+                let side = |point| Side {
+                    point,
+                    ..Side::default()
+                };
+                (CouplingAction::Line, bodies, points.map(side))
+            }
+        };
+        let kind = JointKind::Coupling { index, action };
+        Some(Joint::new(joint.name.clone(), bodies, kind, sides))
+    }
+
     /// The mechanism in space; `None` if a joint or the actuator has no counterpart.
     fn mechanism(&self, planar: &plane::Mechanism) -> Option<Mechanism> {
         let joints = planar.joints.iter().enumerate();
         let joints: Option<Vec<Joint>> = joints
-            .map(|(j, joint)| self.joint(j, joint, planar.ground))
+            .map(|(j, joint)| match joint.kind {
+                plane::JointKind::Coupling(index) => self.coupling_joint(index, joint, planar),
+                _ => self.joint(j, joint, planar.ground),
+            })
             .collect();
+        let couplings = planar.couplings.iter().map(|of| {
+            Some(Coupling {
+                dependent: self.coordinate(of.dependent, planar)?,
+                independent: self.coordinate(of.independent, planar)?,
+                law: of.law.clone(),
+            })
+        });
         let [actuator] = &planar.actuators[..] else {
             return None;
         };
@@ -119,6 +189,7 @@ impl Plane<'_> {
             ground: planar.ground,
             joints: joints?,
             actuators: vec![actuator],
+            couplings: couplings.collect::<Option<Vec<_>>>()?,
         })
     }
 

@@ -134,7 +134,7 @@ impl DenseMechanism {
         for row in joint.rows.clone() {
             self.rows
                 .row(row)
-                .each_gradient(poses, |body, factor, gradient| {
+                .each_own_gradient(poses, |body, factor, gradient| {
                     if body != second {
                         return;
                     }

@@ -9,6 +9,7 @@
 //!
 //! Since the second point enters with a plus, the multiplier λₖ of row k in Jᵀλ is the action of the first body on the second.
 
+pub(crate) mod coupling;
 pub(crate) mod gear;
 pub(crate) mod mesh;
 pub(crate) mod row;
@@ -66,7 +67,7 @@ impl Rows {
             .enumerate()
             .filter_map(|(k, row)| match row {
                 Row::Mesh(mesh) => Some((k, mesh.travel(from, to))),
-                Row::Sum { .. } | Row::Gear(_) | Row::Coupling(..) | Row::Idle(..) => None,
+                Row::Sum { .. } | Row::Gear(_) | Row::Coupling(_) | Row::Idle(..) => None,
             });
         teeth.collect()
     }

@@ -41,6 +41,7 @@ fn the_hooke_joint_is_that_of_the_theory() {
             ),
         ],
         actuators: vec![Actuator::angle("q", 0)],
+        couplings: Vec::new(),
     };
     // About the axis of the second shaft 0.03 kg m², across it nothing.
     let e = [cos_b, sin_b];

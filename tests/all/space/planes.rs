@@ -324,6 +324,7 @@ fn crank_rod_and_rocker(rise: f64) -> Lifted {
                 Joint::new("rod", [1, 2], rod, ends),
             ],
             actuators: vec![Actuator::angle("q", 0)],
+            couplings: Vec::new(),
         },
         masses: vec![
             Mass::default(),

@@ -159,6 +159,7 @@ impl Reference {
                 .iter()
                 .map(|(j, _)| Actuator::angle("q", *j))
                 .collect(),
+            couplings: Vec::new(),
         }
     }
 

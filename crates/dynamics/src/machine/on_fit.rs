@@ -37,6 +37,7 @@ const REACTION_DEGREE: usize = 8;
 ///     ground: 0,
 ///     joints: vec![Joint::new("A", [0, 1], JointKind::Revolute, [side; 2])],
 ///     actuators: vec![Actuator::angle("q", 0)],
+///     couplings: Vec::new(),
 /// };
 /// let masses = [Mass::default(), Mass { mass: 1.0, center: lowest, inertia: [0.0; 6] }];
 /// let model = Model::new(&mechanism, &masses, &Assembly::at(&[0.0]), &[])?;

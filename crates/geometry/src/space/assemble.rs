@@ -3,6 +3,7 @@
 use super::closure::{Closure, closures};
 use super::follow::Node;
 use super::groups::Group;
+use super::lower::Lowered;
 use super::mechanism::{Assembly, Mechanism};
 use super::plan::{JointPlace, Plan, Pose};
 use super::positions::OPEN;
@@ -29,15 +30,19 @@ const NEARLY_CLOSED: f64 = 0.05;
 
 impl Plan {
     /// The mechanism with everything in one group, not yet assembled.
-    pub(super) fn whole(mechanism: &Mechanism, in_tree: &[bool]) -> Result<Self, StructureError> {
-        let tree = Tree::find(mechanism, in_tree)?;
-        let closures = closures(mechanism, &tree)?;
+    pub(super) fn whole(lowered: &Lowered) -> Result<Self, StructureError> {
+        let (mechanism, measured) = (&lowered.mechanism, &lowered.measured);
+        let tree = Tree::find(mechanism, &lowered.in_tree, measured)?;
+        let mut closures = closures(mechanism, &tree, measured)?;
         let drivers = mechanism.actuators.iter().map(|a| tree.driven(a.kind));
         let Some(drivers) = drivers.collect::<Option<Vec<_>>>() else {
             let reason = "a driven joint is not in the tree";
             return Err(StructureError::Malformed { reason });
         };
         let joint_places = joint_places(mechanism.joints.len(), &tree, &closures);
+        for closure in &mut closures {
+            closure.joint = closure.joint.map(|joint| lowered.described_joint(joint));
+        }
         let mut plan = Self {
             ground: mechanism.ground,
             size: mechanism.size(),
@@ -49,7 +54,9 @@ impl Plan {
             first_links: Vec::new(),
             last_links: Vec::new(),
             drivers,
-            split: Vec::new(),
+            split: lowered.split.clone(),
+            measured: measured.to_vec(),
+            has_tables: mechanism.has_tables(),
             start: Node::default(),
             predictions: Predictions::default(),
             revolutions: Revolutions::default(),

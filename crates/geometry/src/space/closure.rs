@@ -8,9 +8,11 @@
 //! The gradient of a row is a wrench on the second body, a force f at its point and a couple m; the opposite acts on the
 //! first body.
 
+use super::coupling::Coupled;
 use super::frames::{BodyMotion, Frame};
-use super::joint_kinds::{Condition, JointKind};
+use super::joint_kinds::{Condition, CouplingAction, JointKind};
 use super::mechanism::{Mechanism, Side};
+use super::plan::Pose;
 use super::tree::Tree;
 use super::vector::Vec3;
 use super::wrench::Wrench;
@@ -39,6 +41,9 @@ pub(super) enum RowKind<C = f64> {
     Mesh(Vec3<C>),
     /// The second body, between two balls, does not turn about their line.
     NoSpin(Vec3<C>),
+    /// Two coordinates are [coupled](super::coupling), with the axis of the first body along which it acts. Its residual and its
+    /// derivatives are those of the closure's law.
+    Coupled(CouplingAction, Vec3<C>),
 }
 
 impl<C: Copy> RowKind<C> {
@@ -47,6 +52,7 @@ impl<C: Copy> RowKind<C> {
         match self {
             Self::Point(_) | Self::Along(_) | Self::InPlane(_) | Self::Length(_) => true,
             Self::Driven(_) | Self::Mesh(_) => true,
+            Self::Coupled(action, _) => action != CouplingAction::Couple,
             Self::Parallel(..) | Self::NoSpin(_) => false,
         }
     }
@@ -64,6 +70,8 @@ pub(super) struct Closure<C = f64> {
     /// For a gear pair: the travel of the teeth for a unit of each freedom of its path, m.
     pub(super) ratios: Vec<C>,
     pub(super) kinds: Vec<RowKind<C>>,
+    /// The law of a coupling. The path is then that of its two freedoms, and there are no links.
+    pub(super) coupled: Option<Box<Coupled<C>>>,
     /// By body: the normal of the [plane](super::planes) to which it keeps and along which its rows are, if it does.
     pub(super) plane: Option<[Vec3; 2]>,
     /// The range of its rows among all rows.
@@ -90,9 +98,18 @@ pub(super) struct RowValue<T> {
 ///
 /// # Errors
 /// [`StructureError::Malformed`] where a screw closes a loop, which [lowering](super::lower) prevents.
-pub(super) fn closures(mechanism: &Mechanism, tree: &Tree) -> Result<Vec<Closure>, StructureError> {
+pub(super) fn closures(
+    mechanism: &Mechanism,
+    tree: &Tree,
+    measured: &[Option<JointId>],
+) -> Result<Vec<Closure>, StructureError> {
     let (mut rows, mut entries) = (0, 0);
     let mut found = Vec::new();
+    let mut kinds_of_coupled = mechanism.coupled().zip(measured);
+    let mut next_kind = || {
+        let ((_, of), measured) = kinds_of_coupled.next()?;
+        of.driven_kind(*measured)
+    };
     for &id in &tree.closures {
         let joint = &mechanism.joints[id.0];
         let bodies = joint.bodies.map(|b| b.0);
@@ -114,6 +131,19 @@ pub(super) fn closures(mechanism: &Mechanism, tree: &Tree) -> Result<Vec<Closure
         if let Some((_, freedom)) = driven {
             closure.path.push((*freedom, 1.0));
         }
+        if let JointKind::Coupling { index, .. } = joint.kind {
+            let law = &mechanism.couplings[index].law;
+            let kinds = [next_kind(), next_kind()];
+            let coupled = match kinds {
+                [Some(y), Some(x)] => Coupled::new(tree, law, [y, x]),
+                _ => None,
+            };
+            let Some(coupled) = coupled else {
+                let reason = "a coupled coordinate is not in the tree";
+                return Err(StructureError::Malformed { reason });
+            };
+            closure.couple(coupled);
+        }
         rows += closure.kinds.len();
         entries += closure.kinds.len() * closure.path.len();
         found.push(closure);
@@ -127,7 +157,7 @@ pub(super) fn rows_of<C: Scalar>(
     number: C,
     [a, b]: &[Side<C>; 2],
 ) -> Option<Vec<RowKind<C>>> {
-    use RowKind::{InPlane, Length, Mesh, Parallel, Point};
+    use RowKind::{Coupled, InPlane, Length, Mesh, Parallel, Point};
     let across = a.axis.cross(a.normal);
     let of_condition = |condition: &Condition| {
         Some(match condition {
@@ -139,6 +169,7 @@ pub(super) fn rows_of<C: Scalar>(
             Condition::Normals => vec![Parallel(a.normal, b.axis.cross(b.normal))],
             Condition::Teeth => vec![Mesh(a.axis)],
             Condition::Length => vec![Length(number)],
+            Condition::Coupled(action) => vec![Coupled(*action, a.axis)],
             Condition::Thread => return None,
         })
     };
@@ -191,12 +222,20 @@ impl Closure {
             ratios: Vec::new(),
             rows: rows..rows + kinds.len(),
             kinds,
+            coupled: None,
             plane: None,
             path: links.iter().flat_map(freedoms).collect(),
             links,
             unmoved: Vec::new(),
             entries,
         }
+    }
+
+    /// Makes it the closure of a coupling, whose freedoms alone are on its path.
+    fn couple(&mut self, coupled: Coupled) {
+        self.links.clear();
+        self.path = coupled.coordinates.map(|of| (of.freedom, 1.0)).to_vec();
+        self.coupled = Some(Box::new(coupled));
     }
 
     /// How far the axes are from the same sense: of revolute and sliding joints they must not be opposite.
@@ -277,6 +316,18 @@ impl<C: Constant> Closure<C> {
                 of(travel, n, zero)
             }
             RowKind::NoSpin(e) => of(T::from_f64(0.0), zero, b.apply(e.cast())),
+            RowKind::Coupled(action, u) => {
+                let coupled = self.coupled.as_ref();
+                let residual = coupled.map_or(T::from_f64(0.0), |c| c.residual(coordinates));
+                match action {
+                    CouplingAction::Couple => of(residual, zero, a.apply(u.cast())),
+                    CouplingAction::Force => of(residual, a.apply(u.cast()), zero),
+                    CouplingAction::Line => {
+                        let along = d.scaled(T::from_f64(1.0) / d.dot(d).sqrt());
+                        of(residual, along, zero)
+                    }
+                }
+            }
         }
     }
 
@@ -305,11 +356,11 @@ impl<C: Constant> Closure<C> {
     pub(super) fn row_acceleration<T: Lift<C>>(
         &self,
         kind: RowKind<C>,
-        frames: &[Frame<T>],
-        states: &[BodyMotion<T>],
+        pose: &Pose<T>,
         [d, d1, d2]: [Vec3<T>; 3],
     ) -> T {
         let [a, b] = self.bodies;
+        let (frames, states) = (&pose.frames, &pose.motion.states);
         let direction = |body: usize, u: Vec3<C>| {
             let u = frames[body].rotation.apply(u.cast());
             let (first, second) = states[body].direction_derivatives(u);
@@ -339,6 +390,10 @@ impl<C: Constant> Closure<C> {
                 let e = frames[b].rotation.apply(e.cast());
                 e.dot(states[b].angular_acceleration)
             }
+            RowKind::Coupled(..) => match &self.coupled {
+                Some(coupled) => coupled.acceleration(&pose.coordinates, &pose.motion.rates),
+                None => T::from_f64(0.0),
+            },
         }
     }
 }

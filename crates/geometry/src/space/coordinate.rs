@@ -199,10 +199,10 @@ impl Plan {
         self.closure_angles = stored;
     }
 
-    /// The freedoms on the paths of gear pairs that no actuator moves; where the pose does not repeat all that gain.
+    /// The freedoms on the paths of gear pairs and couplings that no actuator moves; where the pose does not repeat all that gain.
     fn find_geared(&self) -> Vec<usize> {
-        let is_gear = |kinds: &[RowKind]| matches!(kinds, [RowKind::Mesh(_)]);
-        let gears = self.closures.iter().filter(|c| is_gear(&c.kinds));
+        let counts = |kinds: &[RowKind]| matches!(kinds, [RowKind::Mesh(_) | RowKind::Coupled(..)]);
+        let gears = self.closures.iter().filter(|c| counts(&c.kinds));
         let on_paths = gears.flat_map(|gear| gear.path.iter().map(|(freedom, _)| *freedom));
         let is_driven = |f: &usize| self.drivers.iter().any(|driver| driver.freedom == *f);
         let gains = |f: &usize| {

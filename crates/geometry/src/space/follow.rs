@@ -290,11 +290,36 @@ impl Plan {
             } else {
                 step *= 0.5;
                 if step < SMALLEST * unit {
+                    self.reach_table_end(nodes, q, pose);
                     return false;
                 }
             }
         }
         false
+    }
+
+    /// Adds the pose where the table of a coupling ends, if that is what ends the branch at a coordinate and its variable is the
+    /// coordinate itself.
+    fn reach_table_end(&self, nodes: &mut Vec<Node>, q: f64, pose: &mut Pose) {
+        let Err(PositionError::OffTable { coupling, end, .. }) = self.close(&[q], None, pose)
+        else {
+            return;
+        };
+        let closure = self.closures.iter().find(|c| c.joint == Some(coupling));
+        let coupled = closure.and_then(|closure| closure.coupled.as_ref());
+        let variable = coupled.map(|coupled| coupled.coordinates[1]);
+        let (driver, Some(last)) = (self.drivers[0], nodes.last()) else {
+            return;
+        };
+        let Some(variable) = variable.filter(|x| x.freedom == driver.freedom) else {
+            return;
+        };
+        let q = end * variable.factor / driver.factor;
+        self.start_from(last, q - last.q, pose);
+        if self.close(&[q], None, pose).is_ok() {
+            let node = self.node(q, pose);
+            nodes.push(node);
+        }
     }
 
     /// How far a pose is from its prediction, by its coordinates and balls.

@@ -48,6 +48,24 @@ pub enum JointKind {
         /// The body in which the pitch point and the normal are fixed.
         carrier: BodyId,
     },
+    /// Two coordinates are coupled by a law (a cam, a table). Bodies and sides are those of the dependent coordinate.
+    Coupling {
+        /// Which of the mechanism's couplings.
+        index: usize,
+        /// How it acts along the dependent coordinate.
+        action: CouplingAction,
+    },
+}
+
+/// How a coupling acts along its dependent coordinate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CouplingAction {
+    /// A couple about the first body's axis: the coordinate is an angle.
+    Couple,
+    /// A force along the first body's axis: the coordinate is a travel.
+    Force,
+    /// A force along the line of the points: the coordinate is a distance.
+    Line,
 }
 
 /// A condition that a joint holds, with d = p_b − p_a from the first side's point to the second's, axes u and normals n.
@@ -71,12 +89,16 @@ pub enum Condition {
     Length,
     /// Two wheels have the same velocity along the normal of their teeth.
     Teeth,
+    /// Two coordinates are coupled.
+    Coupled(CouplingAction),
 }
 
-use Condition::{Axes, AxesAcross, InPlane, Length, Normals, OnLine, Points, Teeth, Thread};
+use Condition::{
+    Axes, AxesAcross, Coupled, InPlane, Length, Normals, OnLine, Points, Teeth, Thread,
+};
 
 /// The kinds, with numbers of no meaning.
-const KINDS: [JointKind; 12] = [
+const KINDS: [JointKind; 13] = [
     JointKind::Revolute,
     JointKind::Prismatic,
     JointKind::Cylindrical,
@@ -89,6 +111,10 @@ const KINDS: [JointKind; 12] = [
     JointKind::Weld,
     JointKind::Distance { length: 0.0 },
     JointKind::Gear { carrier: BodyId(0) },
+    JointKind::Coupling {
+        index: 0,
+        action: CouplingAction::Couple,
+    },
 ];
 
 impl JointKind {
@@ -107,6 +133,11 @@ impl JointKind {
             Self::Weld => ("weld", &[Points, Axes, Normals]),
             Self::Distance { .. } => ("distance", &[Length]),
             Self::Gear { .. } => ("gear", &[Teeth]),
+            Self::Coupling { action, .. } => match action {
+                CouplingAction::Couple => ("coupling", &[Coupled(CouplingAction::Couple)]),
+                CouplingAction::Force => ("coupling", &[Coupled(CouplingAction::Force)]),
+                CouplingAction::Line => ("coupling", &[Coupled(CouplingAction::Line)]),
+            },
         }
     }
 
@@ -135,7 +166,7 @@ impl JointKind {
         let rows = |condition: &Condition| match condition {
             Points => 3,
             OnLine | Axes => 2,
-            InPlane | AxesAcross | Normals | Thread | Length | Teeth => 1,
+            InPlane | AxesAcross | Normals | Thread | Length | Teeth | Coupled(_) => 1,
         };
         6 - self.conditions().iter().map(rows).sum::<usize>()
     }
@@ -157,12 +188,25 @@ impl JointKind {
 
     /// Whether its axis has a meaning.
     pub fn has_axis(self) -> bool {
-        !matches!(self.conditions(), [Points] | [Length])
+        !matches!(
+            self.conditions(),
+            [Points] | [Length] | [Coupled(CouplingAction::Line)]
+        )
+    }
+
+    /// Whether it acts along the line of its points: a distance, or a coupling of one.
+    pub fn acts_along_line(self) -> bool {
+        matches!(self.conditions(), [Length | Coupled(CouplingAction::Line)])
+    }
+
+    /// Whether it couples two coordinates.
+    pub fn is_coupling(self) -> bool {
+        matches!(self, Self::Coupling { .. })
     }
 
     /// Whether a body can be placed by it alone: of a distance and of teeth there are no coordinates.
     pub(super) fn can_carry(self) -> bool {
-        !self.holds(Length) && !self.holds(Teeth)
+        !self.holds(Length) && !self.holds(Teeth) && !self.is_coupling()
     }
 
     /// Whether it holds a body of this side (0 or 1) at a point alone, without any of its directions.
@@ -179,9 +223,12 @@ impl JointKind {
         let mut components = [[false; 3]; 2];
         for condition in self.conditions() {
             let (force, moment) = match condition {
-                Points | Length => ([true; 3], [false; 3]),
+                Points | Length | Coupled(CouplingAction::Line) => ([true; 3], [false; 3]),
                 OnLine => ([true, true, false], [false; 3]),
-                InPlane | Teeth => ([false, false, true], [false; 3]),
+                InPlane | Teeth | Coupled(CouplingAction::Force) => {
+                    ([false, false, true], [false; 3])
+                }
+                Coupled(CouplingAction::Couple) => ([false; 3], [false, false, true]),
                 Axes | AxesAcross => ([false; 3], [true, true, false]),
                 Normals => ([false; 3], [false, false, true]),
                 Thread => ([false, false, true], [false, false, true]),

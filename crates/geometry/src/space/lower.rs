@@ -5,8 +5,9 @@
 //! revolutions). If a driven joint or a screw still closes a loop of such joints, it moves a massless body that is welded to its
 //! second body.
 
+use super::coordinate::Coordinate;
 use super::joint_kinds::{Condition, JointKind};
-use super::mechanism::{Assembly, Joint, Mechanism, Placement};
+use super::mechanism::{Assembly, Joint, Mechanism, Placement, Side};
 use crate::error::{AssemblyError, StructureError};
 use crate::mechanism::{Body, BodyId, JointId};
 
@@ -17,6 +18,10 @@ pub(super) struct Lowered {
     pub(super) in_tree: Vec<bool>,
     /// By massless body: the joint that moves it. Its weld has the same place among the welds.
     pub(super) split: Vec<JointId>,
+    /// By coupled coordinate: the joint that measures it, if it is a distance. These joints follow the welds.
+    pub(super) measured: Vec<Option<JointId>>,
+    /// By added joint: the one for which it was added.
+    added_for: Vec<JointId>,
 }
 
 /// By joint: whether it is on the chain between a wheel of a gear pair and its carrier.
@@ -73,7 +78,7 @@ fn chain_between(mechanism: &Mechanism, from: BodyId, to: BodyId) -> Option<Vec<
 fn tree_joints(mechanism: &Mechanism, bearings: &[bool]) -> Vec<bool> {
     let weight = |j: &usize| match mechanism.joints[*j].kind {
         _ if bearings.get(*j) == Some(&true) => 0,
-        _ if mechanism.is_driven(JointId(*j)) => 1,
+        _ if mechanism.needs_coordinate(JointId(*j)) => 1,
         JointKind::Helical { .. } => 2,
         kind => 3 + kind.freedoms(),
     };
@@ -103,6 +108,8 @@ impl Lowered {
             in_tree: tree_joints(mechanism, &bearings),
             mechanism: mechanism.clone(),
             split: Vec::new(),
+            measured: Vec::new(),
+            added_for: Vec::new(),
         };
         let is_gear = |j: &JointId| {
             let kind = mechanism.joints[j.0].kind;
@@ -118,18 +125,26 @@ impl Lowered {
         }
         let is_counted = |j: &usize| {
             let kind = mechanism.joints[*j].kind;
-            let is_needed = kind.holds(Condition::Thread) || mechanism.is_driven(JointId(*j));
+            let is_needed =
+                kind.holds(Condition::Thread) || mechanism.needs_coordinate(JointId(*j));
             is_needed && kind.can_carry() && !lowered.in_tree[*j]
         };
         lowered.split = (0..mechanism.joints.len())
             .filter(is_counted)
             .map(JointId)
             .collect();
-        if lowered.split.is_empty() {
-            return Ok(lowered);
+        lowered.add_welds(mechanism);
+        lowered.add_measuring_joints(mechanism);
+        if !lowered.added_for.is_empty() {
+            lowered.in_tree = tree_joints(&lowered.mechanism, &bearings);
         }
-        let mut with = mechanism.clone();
-        for joint in &lowered.split {
+        Ok(lowered)
+    }
+
+    /// Adds a massless body, with its weld, for each joint that is split.
+    fn add_welds(&mut self, mechanism: &Mechanism) {
+        let with = &mut self.mechanism;
+        for joint in &self.split {
             let Joint {
                 name,
                 bodies,
@@ -142,9 +157,28 @@ impl Lowered {
             let weld = Joint::new(name, [moved, bodies[1]], JointKind::Weld, [sides[1]; 2]);
             with.joints.push(weld);
         }
-        lowered.in_tree = tree_joints(&with, &bearings);
-        lowered.mechanism = with;
-        Ok(lowered)
+        self.added_for.clone_from(&self.split);
+    }
+
+    /// Adds a joint for each coupled distance, which measures it and does not hold it.
+    fn add_measuring_joints(&mut self, mechanism: &Mechanism) {
+        for (owner, of) in mechanism.coupled() {
+            let Coordinate::Distance { bodies, points } = of else {
+                self.measured.push(None);
+                continue;
+            };
+            let side = |point| Side {
+                point,
+                ..Side::default()
+            };
+            let name = &mechanism.joints[owner.0].name;
+            let kind = JointKind::Distance { length: 0.0 };
+            let joint = Joint::new(name, bodies, kind, points.map(side));
+            self.measured
+                .push(Some(JointId(self.mechanism.joints.len())));
+            self.mechanism.joints.push(joint);
+            self.added_for.push(owner);
+        }
     }
 
     /// The assembly with the placements of the massless bodies.
@@ -161,14 +195,22 @@ impl Lowered {
 
     /// The body to which a massless one is welded.
     fn welded_to(&self, k: usize) -> BodyId {
-        let joints = self.mechanism.joints.len() - self.split.len();
+        let joints = self.mechanism.joints.len() - self.added_for.len();
         self.mechanism.joints[joints + k].bodies[1]
+    }
+
+    /// The joint of the mechanism as it was described, of which this is one or for which this was added.
+    pub(super) fn described_joint(&self, joint: JointId) -> JointId {
+        let own = self.mechanism.joints.len() - self.added_for.len();
+        match joint.0.checked_sub(own) {
+            Some(added) => self.added_for[added],
+            None => joint,
+        }
     }
 
     /// An error in terms of the mechanism as it was described.
     pub(super) fn described(&self, mut error: AssemblyError) -> AssemblyError {
         let bodies = self.mechanism.bodies.len() - self.split.len();
-        let joints = self.mechanism.joints.len() - self.split.len();
         let own_bodies = |list: &mut Vec<BodyId>| {
             for body in list.iter_mut().filter(|b| b.0 >= bodies) {
                 *body = self.welded_to(body.0 - bodies);
@@ -177,13 +219,12 @@ impl Lowered {
             list.dedup();
         };
         let own_joints = |list: &mut Vec<JointId>| {
-            for joint in list.iter_mut().filter(|j| j.0 >= joints) {
-                *joint = self.split[joint.0 - joints];
-            }
+            list.iter_mut()
+                .for_each(|joint| *joint = self.described_joint(*joint));
             list.sort_unstable();
             list.dedup();
         };
-        if self.split.is_empty() {
+        if self.added_for.is_empty() {
             return error;
         }
         match &mut error {
@@ -196,9 +237,7 @@ impl Lowered {
             AssemblyError::Inconsistent { joints, .. }
             | AssemblyError::NotThroughout { joints, .. } => own_joints(joints),
             AssemblyError::NearlyParallel { joints: pair, .. } => {
-                for joint in pair.iter_mut().filter(|j| j.0 >= joints) {
-                    *joint = self.split[joint.0 - joints];
-                }
+                *pair = pair.map(|joint| self.described_joint(joint));
             }
             AssemblyError::NotMeshing { .. } | AssemblyError::OffTable { .. } => {}
             AssemblyError::Structure(structure) => match structure {

@@ -1,9 +1,10 @@
 //! The description of a mechanism in space. Lengths in m, angles in rad.
 
+use super::coordinate::Coordinate;
 use super::frames::Frame;
 use super::joint_kinds::{Condition, JointKind};
 use super::vector::{Vec3, vec3};
-use crate::mechanism::{Body, BodyId, JointId};
+use crate::mechanism::{Body, BodyId, Coupling, JointId};
 
 /// A mechanism in space. Points and directions are given in the frame of the body they belong to.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -16,6 +17,8 @@ pub struct Mechanism {
     pub joints: Vec<Joint>,
     /// Every actuator: one independent coordinate each.
     pub actuators: Vec<Actuator>,
+    /// The couplings of the joints of kind [`JointKind::Coupling`].
+    pub couplings: Vec<Coupling<Coordinate>>,
 }
 
 /// A joint between two bodies.
@@ -252,6 +255,11 @@ impl Mechanism {
             && (carrier.0 >= self.bodies.len() || joint.bodies.contains(&carrier))
         {
             return Some("the carrier of a gear pair is not a third body");
+        }
+        if let JointKind::Coupling { index, .. } = joint.kind
+            && let Some(fault) = self.coupling_fault(index)
+        {
+            return Some(fault);
         }
         let finite = |s: &Side| s.point.is_finite() && s.axis.is_finite() && s.normal.is_finite();
         let number = match joint.kind {

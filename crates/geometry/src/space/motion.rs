@@ -45,12 +45,7 @@ impl<C: Constant> Plan<C> {
                     points = closure.point_motion(&pose.frames, &pose.motion.states);
                     last = c;
                 }
-                closure.row_acceleration(
-                    closure.kinds[k],
-                    &pose.frames,
-                    &pose.motion.states,
-                    points,
-                )
+                closure.row_acceleration(closure.kinds[k], pose, points)
             };
             self.carry_known(
                 group,

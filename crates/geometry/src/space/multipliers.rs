@@ -1,6 +1,8 @@
 //! Multipliers of the loops by the transposed factors, group by group in reverse order, and the forces and moments in the joints.
 
 use super::plan::{JointPlace, Plan, Pose};
+use super::tree::Link;
+use super::vector::Vec3;
 use super::wrench::Wrench;
 use crate::mechanism::JointId;
 use dwell_numerics::{Constant, Lift, Scalar, map_array};
@@ -65,6 +67,9 @@ impl<C: Constant> Plan<C> {
         forces.required.fill([Wrench::default()]);
         forces.transmitted.fill([Wrench::default()]);
         forces.balance.fill([T::from_f64(0.0)]);
+        for (of_row, multiplier) in forces.multipliers.iter_mut().zip(multipliers) {
+            *of_row = [*multiplier];
+        }
         for (closure, actions) in self.closures.iter().zip(&mut forces.closure_actions) {
             *actions = [Wrench::default()];
             for r in closure.rows.clone() {
@@ -169,6 +174,46 @@ impl<C: Constant> Plan<C> {
         wrenches
     }
 
+    /// The unit vector from a joint's first point to its second, for a joint that closes a loop, as distances and couplings do.
+    #[inline(always)]
+    pub fn line<T: Lift<C>>(&self, pose: &Pose<T>, joint: JointId) -> Vec3<T> {
+        let JointPlace::Closure(closure) = self.joint_places[joint.0] else {
+            return Vec3::zero();
+        };
+        let [_, _, d] = self.closures[closure].ends(&pose.frames);
+        d.scaled(T::from_f64(1.0) / d.dot(d).sqrt())
+    }
+
+    /// Subtracts what couplings do along the freedoms of a link, which is within its joint.
+    #[inline(always)]
+    fn without_couplings<T: Lift<C>, const N: usize>(
+        &self,
+        pose: &Pose<T>,
+        forces: &Forces<T, N>,
+        link: &Link<C>,
+        wrenches: &mut [Wrench<T>; N],
+    ) {
+        for closure in &self.closures {
+            let Some(coupled) = &closure.coupled else {
+                continue;
+            };
+            let multipliers = forces.multipliers[closure.rows.start];
+            for (p, driver) in coupled.coordinates.iter().enumerate() {
+                if !link.freedoms.contains(&driver.freedom) {
+                    continue;
+                }
+                let entry = pose.entries[closure.entries + p];
+                let along = pose.screws[driver.freedom].axis.scaled(entry);
+                for (wrench, multiplier) in wrenches.iter_mut().zip(multipliers) {
+                    let action = along
+                        .scaled(multiplier * T::lift(driver.factor))
+                        .scaled(T::from_f64(link.sign));
+                    wrench.subtract(action, driver.is_force);
+                }
+            }
+        }
+    }
+
     /// The action of a joint's first body on the second, about the joint's point on the second, without that of an actuator.
     #[inline(always)]
     pub fn reaction<T: Lift<C>, const N: usize>(
@@ -187,6 +232,7 @@ impl<C: Constant> Plan<C> {
         };
         let link = &self.tree.links[index];
         let mut wrenches = self.transmitted(pose, forces, index);
+        self.without_couplings(pose, forces, link, &mut wrenches);
         for (actuator, driver) in self.drivers.iter().enumerate() {
             if !link.freedoms.contains(&driver.freedom) {
                 continue;
@@ -195,11 +241,7 @@ impl<C: Constant> Plan<C> {
             let sign = T::from_f64(link.sign);
             for (wrench, action) in wrenches.iter_mut().zip(actions) {
                 let action = pose.screws[driver.freedom].axis.scaled(action * sign);
-                if driver.is_force {
-                    wrench.force -= action;
-                } else {
-                    wrench.moment -= action;
-                }
+                wrench.subtract(action, driver.is_force);
             }
         }
         if link.sign > 0.0 {

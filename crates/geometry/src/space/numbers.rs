@@ -1,6 +1,7 @@
 //! A plan whose dimensions are numbers of another type, so that an evaluation depends on them, and positions from known solutions.
 
 use super::closure::{Closure, RowKind, rows_of};
+use super::coordinate::Coordinate;
 use super::frames::Frame;
 use super::joint_kinds::JointKind;
 use super::mechanism::{JointNumbers, Mechanism};
@@ -79,6 +80,10 @@ impl Closure {
             ),
             ratios: self.ratios.iter().map(|&r| C::from_f64(r)).collect(),
             kinds,
+            coupled: self
+                .coupled
+                .as_ref()
+                .map(|of| Box::new(of.with_numbers(tree))),
             plane: self.plane,
             rows: self.rows.clone(),
             links: self.links.clone(),
@@ -90,17 +95,26 @@ impl Closure {
 }
 
 impl Plan {
-    /// The plan of a mechanism, from which this one was compiled, with these numbers of its joints in another type. Its structure, its
-    /// groups, the directions of its planes, and its stored poses stay.
-    pub fn with_numbers<C: Constant + Lift<C>>(
+    /// The numbers of the joints of a mechanism and of those that were added to it, with their kinds.
+    fn joints_with_added<C: Constant>(
         &self,
         mechanism: &Mechanism,
         joints: &[JointNumbers<C>],
-    ) -> Option<Plan<C>> {
+    ) -> Option<(Vec<JointNumbers<C>>, Vec<JointKind>)> {
         let mut joints = joints.to_vec();
         let mut kinds: Vec<JointKind> = mechanism.joints.iter().map(|joint| joint.kind).collect();
-        if joints.len() != kinds.len() {
+        // The points of coupled distances are no numbers of joints.
+        if joints.len() != kinds.len() || self.measured.iter().any(Option::is_some) {
             return None;
+        }
+        // A coupling acts along the axis of its dependent coordinate.
+        for (j, joint) in mechanism.joints.iter().enumerate() {
+            if let JointKind::Coupling { index, .. } = joint.kind
+                && let Coordinate::Angle(of) | Coordinate::Travel(of) =
+                    mechanism.couplings.get(index)?.dependent
+            {
+                joints[j].sides = joints.get(of.0)?.sides;
+            }
         }
         for joint in &self.split {
             let sides = [joints[joint.0].sides[1]; 2];
@@ -110,6 +124,17 @@ impl Plan {
             });
             kinds.push(JointKind::Weld);
         }
+        Some((joints, kinds))
+    }
+
+    /// The plan of a mechanism, from which this one was compiled, with these numbers of its joints in another type. Its structure, its
+    /// groups, the directions of its planes, and its stored poses stay.
+    pub fn with_numbers<C: Constant + Lift<C>>(
+        &self,
+        mechanism: &Mechanism,
+        joints: &[JointNumbers<C>],
+    ) -> Option<Plan<C>> {
+        let (joints, kinds) = self.joints_with_added(mechanism, joints)?;
         let tree = self.tree.with_numbers(&joints);
         let closure = |closure: &Closure| {
             let of_joint = closure.joint.map(|joint| (kinds[joint.0], joints[joint.0]));
@@ -130,6 +155,8 @@ impl Plan {
             first_links: self.first_links.clone(),
             last_links: self.last_links.clone(),
             split: self.split.clone(),
+            measured: self.measured.clone(),
+            has_tables: self.has_tables,
             start: self.start.clone(),
             predictions: self.predictions.clone(),
             range: self.range,

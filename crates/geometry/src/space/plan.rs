@@ -56,8 +56,12 @@ pub struct Plan<C = f64> {
     pub(super) last_links: Vec<usize>,
     /// By actuator.
     pub(super) drivers: Vec<Driver<C>>,
+    /// Whether a coupling has a table, which must have a value.
+    pub(super) has_tables: bool,
     /// The joints whose second body is a massless one that is [welded](super::lower) to their own; the welds follow in this order.
     pub(super) split: Vec<JointId>,
+    /// By coupled coordinate: the joint that measures it, if it is a distance. These joints come last.
+    pub(super) measured: Vec<Option<JointId>>,
     /// The stored pose of the assembly.
     pub(super) start: Node,
     /// The poses stored along the range of one actuator.
@@ -163,11 +167,11 @@ impl Plan {
         has_planes: bool,
     ) -> Result<Self, AssemblyError> {
         let (mechanism, assembly) = (&lowered.mechanism, &lowered.assembly(assembly));
-        let mut plan = Self::whole(mechanism, &lowered.in_tree)?;
+        let mut plan = Self::whole(lowered)?;
         plan.has_planes = has_planes;
-        plan.split.clone_from(&lowered.split);
         plan.measure_gears()?;
         let start = plan.assemble(mechanism, assembly)?;
+        plan.check_tables_at_start(&start)?;
         let start = plan.find_groups(mechanism, start)?;
         let kind = mechanism.actuators.first().map(|a| a.kind);
         plan.assembly_q.clone_from(&assembly.q);

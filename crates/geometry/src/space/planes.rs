@@ -102,8 +102,8 @@ impl Plan {
             }
             FreedomKind::Screw(_) | FreedomKind::BallTurn | FreedomKind::Length => false,
         };
-        (closure.joint.is_some() && closure.on == closure.bodies && path.all(fits))
-            .then_some(normal)
+        let is_loop = closure.joint.is_some() && closure.coupled.is_none();
+        (is_loop && closure.on == closure.bodies && path.all(fits)).then_some(normal)
     }
 
     /// The rows of a closure along and across the plane with this normal, and that normal on both bodies; `None` if they would not be
@@ -150,7 +150,7 @@ impl Plan {
                     !is_turn || stays
                 }
                 RowKind::Point(_) | RowKind::Length(_) | RowKind::Driven(_) => false,
-                RowKind::Mesh(_) | RowKind::NoSpin(_) => false,
+                RowKind::Mesh(_) | RowKind::NoSpin(_) | RowKind::Coupled(..) => false,
             }
         };
         let of_row = |kind: &RowKind| {

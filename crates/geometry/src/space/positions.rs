@@ -114,6 +114,9 @@ impl Plan {
             }
         }
         self.place(&self.last_links, pose);
+        if self.has_tables {
+            self.check_tables(q.first().map_or(0.0, |q| q.value()), pose)?;
+        }
         Ok(())
     }
 
@@ -274,6 +277,11 @@ impl<C: Constant> Plan<C> {
                 pose.residuals[index] = row.residual;
                 pose.row_wrenches[index] = row.wrench;
             }
+            if let Some(coupled) = &closure.coupled {
+                let derivatives = coupled.derivatives(&pose.coordinates);
+                pose.entries[closure.entries..][..2].copy_from_slice(&derivatives);
+                continue;
+            }
             let freedoms = closure.path.len();
             for (p, &(freedom, sign)) in closure.path.iter().enumerate() {
                 let kind = self.tree.freedoms[freedom];
@@ -295,6 +303,8 @@ impl<C: Constant> Plan<C> {
                         RowKind::Length(_) | RowKind::Driven(_) => twist.force_power(wrench),
                         RowKind::Mesh(_) => twist.force_power(wrench),
                         RowKind::Parallel(..) | RowKind::NoSpin(_) => twist.moment_power(wrench),
+                        // The derivatives of a coupling are those of its law.
+                        RowKind::Coupled(..) => continue,
                     };
                 }
             }

@@ -290,6 +290,7 @@ mod tests {
                 joint("D", [0, 3], JointKind::Revolute, vec3(0.25, 0.06, -0.04), y),
             ],
             actuators: vec![Actuator::angle("q", 0)],
+            couplings: Vec::new(),
         };
         Plan::compile(&mechanism, &Assembly::at(&[0.0])).expect("a plan")
     }

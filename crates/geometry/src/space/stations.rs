@@ -234,6 +234,7 @@ mod tests {
                 joint("P", [1, 4], JointKind::Revolute, b, z),
             ],
             actuators: vec![Actuator::angle("phi", 0), Actuator::angle("psi", 4)],
+            couplings: Vec::new(),
         };
         Plan::compile(&mechanism, &Assembly::at(&[0.0; 2])).expect("a plan")
     }

@@ -2,11 +2,11 @@
 
 use super::frames::Frame;
 use super::joint_kinds::{Condition, JointKind};
-use super::mechanism::{ActuatorKind, Assembly, Joint, JointNumbers, Mechanism, Side};
+use super::mechanism::{Actuator, ActuatorKind, Assembly, Joint, JointNumbers, Mechanism, Side};
 use super::vector::{Rotation, Vec3};
 use crate::error::StructureError;
 use crate::mechanism::{BodyId, JointId};
-use dwell_numerics::{Constant, Scalar};
+use dwell_numerics::{Constant, Lift, Scalar};
 use std::ops::Range;
 
 /// How a freedom of a tree joint moves.
@@ -20,7 +20,7 @@ pub(super) enum FreedomKind<C = f64> {
     Screw(C),
     /// Rotation about an axis of the ground: one of three components of a small turn.
     BallTurn,
-    /// The distance of two points, which an actuator gives, m: no link moves by it.
+    /// The distance of two points, which an actuator or a coupling gives, m: no link moves by it.
     Length,
 }
 
@@ -78,7 +78,7 @@ pub(super) struct Tree<C = f64> {
     pub(super) balls: usize,
     /// The joints that close loops.
     pub(super) closures: Vec<JointId>,
-    /// The distances that actuators give, with their freedoms, which come last.
+    /// The distances that actuators and couplings give, with their freedoms, which come last.
     pub(super) driven_lengths: Vec<(JointId, usize)>,
 }
 
@@ -90,6 +90,14 @@ pub(super) struct Driver<C = f64> {
     pub(super) factor: C,
     /// Whether its action is a force, and not a couple.
     pub(super) is_force: bool,
+}
+
+impl<C: Constant> Driver<C> {
+    /// Its coordinate, rad or m, or the coordinate's rate, from those of all freedoms.
+    #[inline(always)]
+    pub(super) fn coordinate<T: Lift<C>>(&self, of_freedoms: &[T]) -> T {
+        of_freedoms[self.freedom] / T::lift(self.factor)
+    }
 }
 
 /// A side as a frame: origin in its point, z along the axis and x along the normal.
@@ -112,11 +120,15 @@ impl<C: Scalar> Side<C> {
 }
 
 impl Tree {
-    /// Finds the tree.
+    /// Finds the tree; `measured` are the joints that measure coupled distances.
     ///
     /// # Errors
     /// [`StructureError::NotConnected`] for bodies that no joint connects with the ground.
-    pub(super) fn find(mechanism: &Mechanism, in_tree: &[bool]) -> Result<Self, StructureError> {
+    pub(super) fn find(
+        mechanism: &Mechanism,
+        in_tree: &[bool],
+        measured: &[Option<JointId>],
+    ) -> Result<Self, StructureError> {
         let mut tree = Self {
             link_of: vec![None; mechanism.bodies.len()],
             internal: vec![Frame::default(); mechanism.bodies.len()],
@@ -162,15 +174,23 @@ impl Tree {
             .filter(|j| !in_tree[*j])
             .map(JointId)
             .collect();
-        for actuator in &mechanism.actuators {
-            if let ActuatorKind::Length(joint) = actuator.kind {
-                tree.driven_lengths.push((joint, tree.freedoms.len()));
-                tree.freedoms.push(FreedomKind::Length);
-            }
-        }
+        tree.add_lengths(&mechanism.actuators, measured);
         let numbers: Vec<JointNumbers> = mechanism.joints.iter().map(Joint::numbers).collect();
         tree.set_numbers(&numbers);
         Ok(tree)
+    }
+
+    /// Adds the freedoms of the distances that actuators drive, and of those that couplings measure.
+    fn add_lengths(&mut self, actuators: &[Actuator], measured: &[Option<JointId>]) {
+        let of_actuator = |actuator: &Actuator| match actuator.kind {
+            ActuatorKind::Length(joint) => Some(joint),
+            ActuatorKind::Angle(_) | ActuatorKind::Travel(_) => None,
+        };
+        let by_actuators = actuators.iter().filter_map(of_actuator);
+        for joint in by_actuators.chain(measured.iter().flatten().copied()) {
+            self.driven_lengths.push((joint, self.freedoms.len()));
+            self.freedoms.push(FreedomKind::Length);
+        }
     }
 
     /// A body that is not placed yet and that a joint connects with one that is.
@@ -338,6 +358,18 @@ impl<C: Constant> Tree<C> {
             factor,
             is_force: is_travel,
         })
+    }
+
+    /// The factor of a driver with the numbers of this tree.
+    pub(super) fn factor(&self, of: Driver) -> C {
+        let sign = C::from_f64(of.factor.signum());
+        match self.freedoms[of.freedom] {
+            FreedomKind::Screw(pitch) if of.is_force => {
+                let link = self.links.iter().find(|l| l.freedoms.contains(&of.freedom));
+                C::from_f64(link.map_or(1.0, |link| link.sign)) / pitch
+            }
+            _ => sign,
+        }
     }
 
     /// Sets the frames and the pitches from the numbers of the joints.

@@ -20,4 +20,15 @@ impl<T: Scalar> Wrench<T> {
         self.force += force;
         self.moment += couple + arm.cross(force);
     }
+
+    /// Subtracts a force, or else a couple.
+    #[inline(always)]
+    pub(super) fn subtract(&mut self, action: Vec3<T>, is_force: bool) {
+        let part = if is_force {
+            &mut self.force
+        } else {
+            &mut self.moment
+        };
+        *part -= action;
+    }
 }

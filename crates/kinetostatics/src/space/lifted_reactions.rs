@@ -18,7 +18,7 @@
 //! constants of the mechanism.
 
 use super::mass::Mass;
-use super::model::{Component, Model, Reaction};
+use super::model::{Axes, Component, Model, Reaction};
 use crate::model::Workspace as PlanarWorkspace;
 use crate::reduced::Coefficients;
 use dwell_geometry::space::{JointKind, PlanarEquivalent, Rotation, Vec3};
@@ -169,6 +169,16 @@ impl LiftedReactions {
             plan,
         };
         lifting.find_driven();
+        let is_on_line =
+            |reaction: &Reaction| matches!(reaction.component, Component::Force(Axes::Line, _));
+        // Nothing fixed in a body has the direction of a line between two.
+        if of
+            .compiled_reactions()
+            .iter()
+            .any(|(reaction, _)| is_on_line(reaction))
+        {
+            return None;
+        }
         let mut last = None;
         for (reaction, axes) in of.compiled_reactions() {
             let direction = lifting.direction(reaction, axes.as_ref());

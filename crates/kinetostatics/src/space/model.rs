@@ -11,7 +11,7 @@ use crate::error::PositionResult;
 use crate::friction::FrictionWorkspace;
 use crate::load::SignalWorkspace;
 use crate::pass::InverseDynamics;
-use dwell_geometry::space::{Assembly, Forces, Mechanism, Plan, Pose, PoseMotion, Wrench};
+use dwell_geometry::space::{Assembly, Forces, Joint, Mechanism, Plan, Pose, PoseMotion, Wrench};
 use dwell_geometry::{AssemblyError, BodyId, JointId};
 use dwell_numerics::Scalar;
 use std::sync::Arc;
@@ -24,6 +24,8 @@ pub enum Axes {
     Ground,
     /// The axes of the joint on its first body: normal, axis × normal, axis.
     Joint,
+    /// The line from the joint's first point to its second, of a distance or a coupling of one: the component number 0 is along it.
+    Line,
 }
 
 /// A component of a reaction, by its number: 0, 1, 2 for x, y, z. The moment is about the joint's point on the second body.
@@ -381,7 +383,15 @@ fn compile_reaction(
     reaction: &Reaction,
 ) -> Result<CompiledReaction, ModelError> {
     let (Component::Force(_, k) | Component::Moment(_, k)) = reaction.component;
+    let is_on_line = reaction.component == Component::Force(Axes::Line, 0);
+    let is_line = |joint: &&Joint| {
+        !matches!(
+            reaction.component,
+            Component::Force(Axes::Line, _) | Component::Moment(Axes::Line, _)
+        ) || is_on_line && joint.kind.acts_along_line()
+    };
     let joint = mechanism.joints.get(reaction.joint.0).filter(|_| k < 3);
+    let joint = joint.filter(is_line);
     let joint = joint.ok_or(ModelError::Reaction(*reaction))?;
     Ok(pass::compile_reaction(
         *reaction,

@@ -1,7 +1,7 @@
 //! What a pass over a mechanism in space reads: the plan, the inertia of the bodies, and the reactions.
 
 use super::mass::Mass;
-use super::model::{Component, Reaction};
+use super::model::{Axes, Component, Reaction};
 use crate::pass::InverseDynamics;
 use dwell_geometry::space::{Forces, JointNumbers, Mechanism, Plan, Pose, Rotation, Vec3, Wrench};
 use dwell_numerics::{Constant, Lift, map_array};
@@ -38,7 +38,7 @@ pub(super) fn compile_reaction<C: Constant>(
     plan: &Plan<C>,
 ) -> CompiledReaction<C> {
     let (Component::Force(axes, _) | Component::Moment(axes, _)) = reaction.component;
-    let of_joint = (axes == super::model::Axes::Joint).then(|| {
+    let of_joint = (axes == Axes::Joint).then(|| {
         let body = mechanism.joints[reaction.joint.0].side_body(0).0;
         let side = &joint.sides[0];
         let in_body = Rotation::of_axes(side.axis, side.normal);
@@ -152,7 +152,9 @@ impl<C: Constant> PassModel<C> {
                 wrenches = self.plan.reaction(pose, forces, reaction.joint);
             }
             let (Component::Force(_, k) | Component::Moment(_, k)) = reaction.component;
+            let line = matches!(reaction.component, Component::Force(Axes::Line, _));
             let along = match axes {
+                None if line => self.plan.line(pose, reaction.joint),
                 None => Vec3::AXES[k].cast(),
                 Some((body, axes)) => {
                     let frame = self.plan.frame(pose, *body);

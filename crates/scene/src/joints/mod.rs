@@ -4,6 +4,8 @@ mod coupling;
 mod gears;
 mod pairs;
 
+pub(crate) use coupling::coupling;
+
 use crate::bodies::{Bodies, NamedPoint, TWO_POINTS};
 use crate::diagnostics::{Diagnostics, Span};
 use crate::kind::{kind, reject_unread_kind};

@@ -2,8 +2,10 @@
 
 use super::values::{direction, two_directions};
 use crate::bodies::{Bodies, TWO_POINTS};
+use crate::coordinates::ParsedCoordinates;
 use crate::diagnostics::{Diagnostics, Span};
 use crate::dimensions::Space;
+use crate::joints::coupling;
 use crate::keys::kinds;
 use crate::kind::{kind_among, reject_unread_kind};
 use crate::names::check;
@@ -11,8 +13,8 @@ use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::value::{NumberRule, SignRule};
 use crate::wording::shorten;
-use dwell_geometry::JointId;
-use dwell_geometry::space::{Condition, Joint, JointKind, Side, Vec3};
+use dwell_geometry::space::{Condition, Coordinate, CouplingAction, Joint, JointKind, Side, Vec3};
+use dwell_geometry::{Coupling, JointId};
 use std::f64::consts::TAU;
 
 /// A joint as read; its contents are `None` if it is invalid, but its name counts as known.
@@ -30,6 +32,9 @@ pub(super) struct ParsedJoint<'a> {
 #[derive(Debug)]
 pub(crate) struct Joints<'a> {
     pub(super) list: Vec<ParsedJoint<'a>>,
+    pub(super) couplings: Vec<Coupling<Coordinate>>,
+    /// Couplings, which are read after the coordinates.
+    pending_couplings: Vec<(usize, TableReader<'a>)>,
     pub(super) log: &'a Diagnostics,
 }
 
@@ -40,12 +45,21 @@ impl<'a> Joints<'a> {
         log: &'a Diagnostics,
     ) -> Self {
         let mut list = Vec::new();
+        let mut pending_couplings = Vec::new();
         for (j, entry) in fields.iter().flat_map(|f| &f.entries).enumerate() {
             check("a joint", entry);
             entry.place(SceneLocation::Joint(JointId(j)));
             let count = log.count();
-            let read = read_joint(entry, JointId(j), bodies);
-            let (joint, has_zero) = read.filter(|_| log.count() == count).unzip();
+            let (joint, has_zero) = match read_joint(entry, JointId(j), bodies) {
+                Some(ReadJoint::Coupling(fields)) => {
+                    pending_couplings.push((j, fields));
+                    (None, None)
+                }
+                Some(ReadJoint::Whole(joint, has_zero)) if log.count() == count => {
+                    (Some(joint), Some(has_zero))
+                }
+                _ => (None, None),
+            };
             list.push(ParsedJoint {
                 name: entry.name,
                 key: entry.key.clone(),
@@ -54,7 +68,46 @@ impl<'a> Joints<'a> {
                 log,
             });
         }
-        Self { list, log }
+        Self {
+            list,
+            couplings: Vec::new(),
+            pending_couplings,
+            log,
+        }
+    }
+
+    /// Reads the couplings, once the coordinates are known.
+    pub(super) fn read_couplings(&mut self, named: &ParsedCoordinates<'_, Coordinate>) {
+        for (k, fields) in std::mem::take(&mut self.pending_couplings) {
+            let coupling = coupling(JointId(k), &fields, named);
+            self.list[k].joint = coupling.and_then(|coupling| self.coupling_joint(k, coupling));
+        }
+    }
+
+    /// The joint of a coupling, with bodies and sides of the dependent coordinate.
+    fn coupling_joint(&mut self, k: usize, coupling: Coupling<Coordinate>) -> Option<Joint> {
+        let (bodies, sides, action) = match coupling.dependent {
+            Coordinate::Angle(joint) | Coordinate::Travel(joint) => {
+                let joint = self.list.get(joint.0)?.joint.as_ref()?;
+                let action = if coupling.dependent.is_angle() {
+                    CouplingAction::Couple
+                } else {
+                    CouplingAction::Force
+                };
+                (joint.bodies, joint.sides, action)
+            }
+            Coordinate::Distance { bodies, points } => {
+                let sides = points.map(|point| Side {
+                    point,
+                    ..Side::default()
+                });
+                (bodies, sides, CouplingAction::Line)
+            }
+        };
+        let index = self.couplings.len();
+        self.couplings.push(coupling);
+        let kind = JointKind::Coupling { index, action };
+        Some(Joint::new(self.list[k].name, bodies, kind, sides))
     }
 
     /// The joint of that name; `at` is where the text names it.
@@ -73,7 +126,7 @@ impl<'a> Joints<'a> {
 }
 
 /// The kinds of joints that exist only in the plane, and their counterparts in space.
-const PLANAR_KINDS: [(&str, &str); 4] = [
+const PLANAR_KINDS: [(&str, &str); 3] = [
     (
         "slot",
         "`point-on-line` keeps a point of the second body on a line of the first, as a slot does in the plane",
@@ -85,10 +138,6 @@ const PLANAR_KINDS: [(&str, &str); 4] = [
     (
         "rolling",
         "a `gear` pair in which one of the bodies slides moves alike",
-    ),
-    (
-        "coupling",
-        "cams and other functions of a coordinate are for scenes in the plane",
     ),
 ];
 
@@ -110,8 +159,19 @@ fn reject_planar_kind(fields: &TableReader<'_>) -> Option<()> {
     }
 }
 
-/// The joint, and whether the zero of its angle is stated.
-fn read_joint(entry: &Entry<'_>, id: JointId, bodies: &Bodies<'_, Space>) -> Option<(Joint, bool)> {
+/// A joint as far as it can be read before the coordinates.
+enum ReadJoint<'a> {
+    /// The joint, and whether the zero of its angle is stated.
+    Whole(Joint, bool),
+    /// A coupling, which names coordinates.
+    Coupling(TableReader<'a>),
+}
+
+fn read_joint<'a>(
+    entry: &Entry<'a>,
+    id: JointId,
+    bodies: &Bodies<'_, Space>,
+) -> Option<ReadJoint<'a>> {
     let fields = TableReader::open(entry, format!("joint `{}`", shorten(entry.name)))?;
     reject_planar_kind(&fields)?;
     let (kind, kind_entry) = kind_among(&fields, "joint", &kinds("joints-in-space"))?;
@@ -121,8 +181,12 @@ fn read_joint(entry: &Entry<'_>, id: JointId, bodies: &Bodies<'_, Space>) -> Opt
     let Some(kind) = JointKind::named(kind) else {
         return reject_unread_kind(kind_entry);
     };
+    if kind.is_coupling() {
+        return Some(ReadJoint::Coupling(fields));
+    }
     if kind.holds(Condition::Teeth) {
-        return gear(entry.name, id, kind_entry, &fields, bodies).map(|joint| (joint, true));
+        let joint = gear(entry.name, id, kind_entry, &fields, bodies)?;
+        return Some(ReadJoint::Whole(joint, true));
     }
     let what = fields.name_of(kind_entry);
     let points = bodies.find_two_points(kind_entry.value, TWO_POINTS, what);
@@ -148,10 +212,8 @@ fn read_joint(entry: &Entry<'_>, id: JointId, bodies: &Bodies<'_, Space>) -> Opt
         normal: normals[k],
     };
     let sides = [side(0, &a), side(1, &b)];
-    Some((
-        Joint::new(entry.name, [a.0, b.0], joint_kind?, sides),
-        has_zero,
-    ))
+    let joint = Joint::new(entry.name, [a.0, b.0], joint_kind?, sides);
+    Some(ReadJoint::Whole(joint, has_zero))
 }
 
 /// A kind with its numbers.

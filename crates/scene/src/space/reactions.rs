@@ -8,7 +8,7 @@ use crate::requests::{ReactionNotation, component_named, joint_and_component};
 use crate::scene_data::SpaceScene;
 use crate::wording::shorten;
 use dwell_geometry::JointId;
-use dwell_geometry::space::{Joint, JointKind, Vec3};
+use dwell_geometry::space::{CouplingAction, Joint, JointKind, Vec3};
 use dwell_kinetostatics::space::{Axes, Component, Reaction};
 
 /// The components by their names.
@@ -27,12 +27,33 @@ const COMPONENTS: [(&str, Component); 12] = [
     ("moment-axial", Component::Moment(Axes::Joint, 2)),
 ];
 
+/// The only component of a coupling: along its dependent coordinate.
+fn of_coupling(kind: JointKind) -> Option<(&'static str, Component)> {
+    let JointKind::Coupling { action, .. } = kind else {
+        return None;
+    };
+    Some(match action {
+        CouplingAction::Couple => ("moment", Component::Moment(Axes::Joint, 2)),
+        CouplingAction::Force => ("force", Component::Force(Axes::Joint, 2)),
+        CouplingAction::Line => ("force", Component::Force(Axes::Line, 0)),
+    })
+}
+
+/// The component of a distance along its line.
+fn of_distance(kind: JointKind) -> Option<(&'static str, Component)> {
+    let is_distance = matches!(kind, JointKind::Distance { .. });
+    is_distance.then_some(("axial", Component::Force(Axes::Line, 0)))
+}
+
 /// Whether a joint of a kind can have a component that is not zero.
 fn exists(kind: JointKind, component: Component) -> bool {
     let [force, moment] = kind.reaction();
     match component {
         Component::Force(Axes::Joint, k) => kind.has_axis() && force[k],
         Component::Moment(Axes::Joint, k) => moment[k],
+        Component::Force(Axes::Line, _) | Component::Moment(Axes::Line, _) => {
+            kind.acts_along_line()
+        }
         Component::Force(Axes::Ground, _) => true,
         Component::Moment(Axes::Ground, _) => kind.has_moment(),
     }
@@ -40,6 +61,9 @@ fn exists(kind: JointKind, component: Component) -> bool {
 
 /// The components of a joint in the axes of the ground, without those that are always zero.
 pub(super) fn in_ground_axes(joint: &Joint, ground: usize) -> Vec<Component> {
+    if let Some((_, component)) = of_coupling(joint.kind) {
+        return vec![component];
+    }
     let own_axis = (0..2).find(|k| joint.side_body(*k).0 == ground);
     let own_axis = own_axis.map(|k| joint.sides[k].axis);
     // Where the joint's axis is one of the ground's, the component along it is the axial one.
@@ -77,7 +101,10 @@ impl ReactionNotation for Space {
             None => in_ground_axes(joint, bodies.ground.unwrap_or_default()),
             Some(component) => {
                 let existing = COMPONENTS.iter().filter(|(_, c)| exists(joint.kind, *c));
-                let existing: Vec<_> = existing.copied().collect();
+                let existing = match of_coupling(joint.kind) {
+                    Some(only) => vec![only],
+                    None => existing.copied().chain(of_distance(joint.kind)).collect(),
+                };
                 let found = component_named(component, &shorten(name), &existing, at, joints.log);
                 Vec::from_iter(found)
             }
@@ -90,7 +117,9 @@ impl ReactionNotation for Space {
     }
 
     fn name_of_reaction(reaction: Reaction, joints: &Joints<'_>) -> String {
-        name(joints.list[reaction.joint.0].name, reaction.component)
+        let joint = &joints.list[reaction.joint.0];
+        let kind = joint.joint.as_ref().map(|joint| joint.kind);
+        name(joint.name, kind, reaction.component)
     }
 }
 
@@ -98,12 +127,14 @@ impl SpaceScene {
     /// The name of a reaction: `joint.component`.
     pub fn reaction_name(&self, reaction: Reaction) -> String {
         let joint = &self.mechanism.joints[reaction.joint.0];
-        name(&joint.name, reaction.component)
+        name(&joint.name, Some(joint.kind), reaction.component)
     }
 }
 
 /// The name of a component of the reaction of a joint.
-fn name(joint: &str, component: Component) -> String {
-    let found = COMPONENTS.iter().find(|(_, c)| *c == component);
+fn name(joint: &str, kind: Option<JointKind>, component: Component) -> String {
+    let of_kind = kind.and_then(|kind| of_coupling(kind).or_else(|| of_distance(kind)));
+    let mut all = of_kind.into_iter().chain(COMPONENTS);
+    let found = all.find(|(_, c)| *c == component);
     format!("{joint}.{}", found.map_or("", |(name, _)| name))
 }

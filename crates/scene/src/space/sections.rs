@@ -29,8 +29,9 @@ impl Sections for Space {
     fn complete_joints(
         joints: &mut Joints<'_>,
         actuators: &[ParsedActuator<'_, Self>],
-        _: &ParsedCoordinates<'_, Coordinate>,
+        coordinates: &ParsedCoordinates<'_, Coordinate>,
     ) -> Vec<Option<[BodyId; 2]>> {
+        joints.read_couplings(coordinates);
         require_lengths(joints, actuators);
         let joints = joints.list.iter();
         joints.map(|j| Some(j.joint.as_ref()?.bodies)).collect()
@@ -75,6 +76,7 @@ impl Sections for Space {
             ground,
             joints: joints.list.into_iter().filter_map(|j| j.joint).collect(),
             actuators,
+            couplings: joints.couplings,
         }
     }
 

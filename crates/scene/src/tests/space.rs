@@ -314,6 +314,9 @@ fn every_example_of_a_key_in_space_is_read() {
                 "[friction.<slide>] in space" => format!("friction.slide = {inner}"),
                 "[friction.<tube>] in space" => format!("friction.tube = {inner}"),
                 "[stops.<stop>]" => format!("stops.other = {inner}"),
+                "coupling" => {
+                    format!("coordinates.rise = {{ travel = \"slide\" }}\njoints.other = {inner}")
+                }
                 _ if kinds("joints-in-space")
                     .iter()
                     .any(|t| t.kind_key() == first) =>

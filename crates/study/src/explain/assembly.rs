@@ -1,9 +1,9 @@
 //! Explains why a scene cannot be compiled or assembled.
 
 use crate::explain::{
-    Labels, StudyError, TABLE_HELP, actuator_labels, body_labels, body_names,
-    body_names_or_mechanism, joint_labels, joint_names, labels, non_finite_coupling,
-    non_finite_coupling_error, own_length, scene_error, start_labels,
+    Labels, StudyError, actuator_labels, body_labels, body_names, body_names_or_mechanism,
+    joint_labels, joint_names, labels, non_finite_coupling, non_finite_coupling_error, own_length,
+    scene_error, start_labels, uncovered_start_error,
 };
 use crate::number_format::{count, number};
 use dwell_dynamics::MachineError;
@@ -45,7 +45,8 @@ pub fn explain_model(scene: &PlaneScene, error: &ModelError) -> StudyError {
     let is_sound = !matches!(assembly, AssemblyError::Structure(_));
     match non_finite_coupling(&scene.mechanism, &scene.assembly.coordinates) {
         Some(fault) if is_sound => {
-            non_finite_coupling_error(scene, &fault, "at the assembly coordinates")
+            let position = "at the assembly coordinates";
+            non_finite_coupling_error(scene, &scene.mechanism, &fault, position)
         }
         _ => explain_assembly(scene, assembly),
     }
@@ -123,12 +124,7 @@ fn explain_assembly(scene: &PlaneScene, error: &AssemblyError) -> StudyError {
             scene_error(scene, error.to_string(), "", [(SceneLocation::Whole, "")])
         }
         AssemblyError::OffTable { coupling, .. } => {
-            let name = &mechanism.joints[coupling.0].name;
-            let message = format!("the table of coupling `{name}` has no value at the start");
-            let table = [SceneLocation::CouplingLaw(*coupling)];
-            let mut places = labels(table.into_iter(), "does not reach the start");
-            places.extend(start_labels(scene));
-            scene_error(scene, message, TABLE_HELP, places)
+            uncovered_start_error(scene, mechanism, *coupling, start_labels(scene))
         }
         AssemblyError::SingularAssembly { bodies, joints } => {
             let what = "the start is a limit position or a change point: the actuator does not determine the motion of";

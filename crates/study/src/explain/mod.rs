@@ -16,7 +16,11 @@ pub(crate) use assembly::{
     wrong_actuators,
 };
 pub use assembly::{explain_machine, explain_model};
-pub(crate) use coupling::{couplings, non_finite_coupling, non_finite_coupling_error};
+pub(crate) use coupling::{
+    CONTINUITY_HELP, CoupledMechanism, CouplingLaw, discontinuous_coupling_error, jump_location,
+    non_finite_coupling, non_finite_coupling_error, uncovered_coupling_error,
+    uncovered_start_error,
+};
 pub use labels::scene_error;
 pub(crate) use labels::{
     Labels, actuator_labels, body_labels, body_names, body_names_or_mechanism, joint_labels,

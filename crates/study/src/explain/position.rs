@@ -2,7 +2,7 @@
 
 use crate::explain::{
     NamedScene as _, StudyError, body_names, body_names_or_mechanism, describe_gap, joint_labels,
-    labels, scene_error,
+    labels, scene_error, uncovered_coupling_error,
 };
 use crate::number_format::{digits, number};
 use dwell_geometry::{ActuatorId, Mechanism, Plan, PositionError, RangeLimit};
@@ -154,13 +154,9 @@ pub(crate) fn explain_position_in(
             let message = format!("{at} is outside its range, {range}");
             (message, "start within the range, which `dwell check` shows")
         }
-        PositionError::OffTable { coupling, .. } => (
-            format!(
-                "the table of coupling `{}` has no value at {at}",
-                scene.mechanism.joints[coupling.0].name
-            ),
-            TABLE_HELP,
-        ),
+        PositionError::OffTable { coupling, .. } => {
+            return uncovered_coupling_error(scene, &scene.mechanism, coupling, &at);
+        }
         PositionError::LanesDiverge { .. } => (
             format!("the poses near {at} cannot be evaluated together in SIMD lanes"),
             "evaluate them one by one",
@@ -170,10 +166,6 @@ pub(crate) fn explain_position_in(
             "check the numbers of the motion",
         ),
     };
-    if let PositionError::OffTable { coupling, .. } = *error {
-        let table = [SceneLocation::CouplingLaw(coupling)].into_iter();
-        return scene_error(scene, message, help, labels(table, "has no value there"));
-    }
     let places = match group.map(|g| plan.group_joints(g)) {
         Some(joints) if !joints.is_empty() => joint_labels(&joints, "cannot stay joined there"),
         _ => {

@@ -10,8 +10,8 @@ use crate::explain::{StudyError, describe_coordinate};
 use crate::machines::MachineScene as _;
 use crate::number_format::{coordinate_unit, count};
 use dwell_findings::Record;
-use dwell_geometry::Range;
-use dwell_geometry::space::{ChangePoint, Plan};
+use dwell_geometry::space::{ChangePoint, CouplingEnd, Plan};
+use dwell_geometry::{JointId, Range};
 use dwell_kinetostatics::space::{Model, Reaction};
 use dwell_scene::SpaceScene;
 
@@ -82,8 +82,32 @@ fn describe_range(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> Strin
         (Range::Unresolved(..), _) => "; how it goes on from there is not known",
         _ => ": limit positions at both ends",
     };
+    let note = &coupling_note(scene, plan).unwrap_or_else(|| note.to_owned());
     let text = range_text(scene, &actuator.name, is_angle(scene), range, note, record);
     text + &describe_change_points(scene, plan, record)
+}
+
+/// What ends the range, if couplings do.
+fn coupling_note(scene: &SpaceScene, plan: &Plan) -> Option<String> {
+    let ends = plan.coupling_ends();
+    if ends == [None; 2] {
+        return None;
+    }
+    let found = plan.range_ends();
+    let notes = ["lower", "upper"].into_iter().enumerate().map(|(k, end)| {
+        let name = |joint: JointId| &scene.mechanism.joints[joint.0].name;
+        match ends[k] {
+            Some((joint, CouplingEnd::Table)) => {
+                format!("the {end} end is that of the table of `{}`", name(joint))
+            }
+            Some((joint, CouplingEnd::Jump)) => {
+                format!("at the {end} end the function of `{}` jumps", name(joint))
+            }
+            None if found[k] => format!("a limit position at the {end} end"),
+            None => format!("no {end} limit was found up to there"),
+        }
+    });
+    Some(format!("; {}", notes.collect::<Vec<_>>().join("; ")))
 }
 
 /// The change points in the range.

@@ -1,11 +1,12 @@
 //! Explains why a scene in space cannot be assembled, or has no pose at a coordinate.
 
 use crate::explain::{
-    Labels, NamedScene as _, StudyError, body_labels, describe_ends, describe_gap, driven_labels,
-    freedom_text, inconsistent, joint_labels, labels, missing_section_label, not_connected,
-    own_coordinate, own_length, scene_error,
+    CONTINUITY_HELP, Labels, NamedScene as _, StudyError, body_labels, describe_ends, describe_gap,
+    driven_labels, freedom_text, inconsistent, joint_labels, labels, missing_section_label,
+    non_finite_coupling, non_finite_coupling_error, not_connected, own_coordinate, own_length,
+    scene_error, uncovered_coupling_error, uncovered_start_error,
 };
-use dwell_geometry::space::{JointKind, Plan};
+use dwell_geometry::space::{CouplingEnd, JointKind, Plan};
 use dwell_geometry::{ActuatorId, AssemblyError, BodyId, JointId, PositionError, StructureError};
 use dwell_kinetostatics::space::{Model, ModelError};
 use dwell_kinetostatics::{KinetostaticsError, LoadError, MachineModel as _};
@@ -42,7 +43,16 @@ fn start_labels(scene: &SpaceScene) -> Labels {
 /// Explains why a scene could not be compiled.
 pub(super) fn explain_model(scene: &SpaceScene, error: &ModelError) -> StudyError {
     match error {
-        ModelError::Assembly(error) => explain_assembly(scene, error),
+        ModelError::Assembly(error) => {
+            let is_sound = !matches!(error, AssemblyError::Structure(_));
+            match non_finite_coupling(&scene.mechanism, &scene.assembly.q) {
+                Some(fault) if is_sound => {
+                    let position = "at the assembly coordinates";
+                    non_finite_coupling_error(scene, &scene.mechanism, &fault, position)
+                }
+                _ => explain_assembly(scene, error),
+            }
+        }
         ModelError::UnbalancedRod { body } => {
             let name = &scene.mechanism.bodies[body.0].name;
             let message = format!(
@@ -109,10 +119,11 @@ fn explain_assembly(scene: &SpaceScene, error: &AssemblyError) -> StudyError {
             let help = "start a little away from it, or drive another joint";
             scene_error(scene, message, help, with_start(joints, "singular here"))
         }
+        AssemblyError::OffTable { coupling, .. } => {
+            uncovered_start_error(scene, &scene.mechanism, *coupling, start_labels(scene))
+        }
         // Only planar mechanisms yield these.
-        AssemblyError::Ambiguous { .. }
-        | AssemblyError::NotMeshing { .. }
-        | AssemblyError::OffTable { .. } => {
+        AssemblyError::Ambiguous { .. } | AssemblyError::NotMeshing { .. } => {
             scene_error(scene, error.to_string(), "", [(SceneLocation::Whole, "")])
         }
     }
@@ -220,6 +231,9 @@ pub(super) fn explain_position(
     let name = scene.mechanism.actuators.first().map_or("", |a| &a.name);
     let place = |q| format!("`{name}` = {}", own_coordinate(scene, q, is_angle));
     let at = error.coordinate().map_or_else(String::new, place);
+    if let Some(explained) = explain_coupling_end(scene, plan, error, &at) {
+        return explained;
+    }
     let (message, help) = match *error {
         PositionError::OutOfRange { from, to, .. } => (
             format!(
@@ -257,6 +271,28 @@ pub(super) fn explain_position(
     };
     let place = SceneLocation::Actuator(ActuatorId(0));
     scene_error(scene, message, help, [(place, "its coordinate")])
+}
+
+/// Explains a position at which the function of a coupling has no value, or before which it jumps.
+fn explain_coupling_end(
+    scene: &SpaceScene,
+    plan: &Plan,
+    error: &PositionError,
+    at: &str,
+) -> Option<StudyError> {
+    let (joint, end) = match *error {
+        PositionError::OutOfRange { q, to, .. } => plan.coupling_ends()[usize::from(q > to)]?,
+        PositionError::OffTable { coupling, .. } => (coupling, CouplingEnd::Table),
+        _ => return None,
+    };
+    if end == CouplingEnd::Table {
+        let mechanism = &scene.mechanism;
+        return Some(uncovered_coupling_error(scene, mechanism, joint, at));
+    }
+    let name = &scene.mechanism.joints[joint.0].name;
+    let message = format!("the function of coupling `{name}` jumps before {at}");
+    let labels = labels([SceneLocation::CouplingLaw(joint)].into_iter(), "jumps");
+    Some(scene_error(scene, message, CONTINUITY_HELP, labels))
 }
 
 /// Explains a position of several coordinates at which some joints close loops that have no position.

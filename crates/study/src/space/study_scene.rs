@@ -21,7 +21,7 @@ use {
     crate::assembled::BodyStates,
     crate::explain::NamedScene as _,
     crate::output::{Outcome, Picture},
-    crate::trajectory::document::Document,
+    crate::trajectory::document::{Document, contacts},
     crate::trajectory::figures::PictureSpan,
     crate::trajectory::output::outcome_of,
     dwell_geometry::space::{Placement, Rotation, vec3},
@@ -96,7 +96,8 @@ impl StudyScene for SpaceScene {
         let positions = drawn_positions(source, computed, swept);
         let mut all_figures = vec![positions.figure()];
         all_figures.extend(figures(scene, swept, computed, span)?);
-        let document = Document::of_file(&scene.file, size, computed);
+        let mut document = Document::of_file(&scene.file, size, computed);
+        document.contacts = contacts(&scene.mechanism);
         let animation = positions.animation();
         let mut outcome = outcome_of(&scene.file, computed, &document, all_figures, animation)?;
         outcome.run = Some(Box::new(space_page(source, computed)));

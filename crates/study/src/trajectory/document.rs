@@ -1,6 +1,6 @@
 //! The text of a trajectory analysis: the printed summary, and the Markdown page with extrema, column meanings and figures.
 
-use crate::explain::couplings;
+use crate::explain::CoupledMechanism;
 use crate::number_format::{count, number};
 use crate::output::{indeterminate_note, provenance_line};
 use crate::ranges::extent;
@@ -10,7 +10,6 @@ use crate::trajectory::compute::{
 };
 use crate::trajectory::highlights::Movement;
 use dwell_findings::{Column, Record, RecordedExtrema};
-use dwell_geometry::Mechanism;
 use dwell_kinetostatics::{Distribution, Section};
 use dwell_laws::Law;
 use dwell_report::{Block, Document as Page, Figure};
@@ -34,10 +33,11 @@ const LARGEST_OF_ROWS: &str =
     "these are the largest values of the rows: the motion has too many steps to look between them";
 
 /// The reactions of joints that couple two coordinates by a curve: not by a ratio, as teeth do, which push on either side.
-fn contacts(mechanism: &Mechanism) -> Vec<String> {
+pub(crate) fn contacts(mechanism: &impl CoupledMechanism) -> Vec<String> {
     let is_line = |law: &Law| matches!(law, Law::Polynomial(p) if p.coefficients.len() <= 2);
-    let all = couplings(mechanism).filter(|(_, law, _)| !is_line(law));
-    let names = all.map(|(joint, ..)| &mechanism.joints[joint.0].name);
+    let all = mechanism.coupling_laws().into_iter();
+    let curves = all.filter(|of| !is_line(of.law));
+    let names = curves.map(|of| mechanism.joint_name(of.joint).to_owned());
     names
         .flat_map(|name| ["force", "moment"].map(|component| format!("{name}.{component}")))
         .collect()
@@ -51,7 +51,7 @@ pub(crate) struct Document<'a> {
     /// The bodies that are not modelled.
     unmodelled: Vec<String>,
     /// The reactions of cams and other couplings by a curve.
-    contacts: Vec<String>,
+    pub(crate) contacts: Vec<String>,
     results: &'a TrajectoryResults,
     trajectory: &'a Trajectory<'a>,
     extrema: Vec<ColumnExtrema>,

@@ -134,14 +134,14 @@ impl<'a> SpaceClaims<'a> {
     /// The reactions of one kind of axes in those of the ground.
     fn in_ground<T: Scalar>(&self, reactions: &[T], poses: &[BodyPose], of: Axes) -> Vec<f64> {
         let first = match of {
-            Axes::Ground => 0,
+            Axes::Ground | Axes::Line => 0,
             Axes::Joint => COMPONENTS,
         };
         let of_joint = |(joint, all): (&Joint, &[T])| {
             let side = &joint.sides[0];
             let turned = |v: Vec3| poses[joint.side_body(0).0].rotation.apply(v);
             let axes = match of {
-                Axes::Ground => Vec3::AXES,
+                Axes::Ground | Axes::Line => Vec3::AXES,
                 Axes::Joint => [side.normal, side.axis.cross(side.normal), side.axis].map(turned),
             };
             let vector = |k: usize| {

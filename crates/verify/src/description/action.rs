@@ -2,11 +2,11 @@
 //! positions of the bodies, never from the rows.
 
 use crate::pose::Pose;
+use crate::rows::coupling::Coupling;
 use crate::rows::terms::{Ends, Term, perpendicular};
 use crate::wrenches::BodyWrench;
 use dwell_geometry::BodyId;
 use dwell_geometry::space::Vec3;
-use dwell_laws::Law;
 
 /// A direction.
 #[derive(Debug, Clone, Copy)]
@@ -45,8 +45,9 @@ pub(crate) enum Action {
     Coupled {
         dependent: Box<Action>,
         independent: Box<Action>,
-        by: Box<Term>,
-        law: Law,
+        coupling: Box<Coupling>,
+        /// The share of the second, if the first is a component of the action along one direction: a product of both.
+        share: Option<[Direction; 2]>,
     },
 }
 
@@ -121,12 +122,14 @@ impl Action {
             Self::Coupled {
                 dependent,
                 independent,
-                by,
-                law,
+                coupling,
+                share,
             } => {
-                let slope = law.eval(by.value(poses))[1];
+                let [slope, _] = coupling.slopes(poses);
+                let product = |[a, b]: &[Direction; 2]| a.vector(poses).dot(b.vector(poses));
+                let share = share.as_ref().map_or(1.0, product);
                 let mut all = dependent.wrenches(poses, value);
-                all.extend(independent.wrenches(poses, -slope * value));
+                all.extend(independent.wrenches(poses, -slope * share * value));
                 all
             }
         }
@@ -155,11 +158,16 @@ impl Action {
             Self::Coupled {
                 dependent,
                 independent,
-                by,
-                ..
+                coupling,
+                share,
             } => {
-                if let Some(ends) = by.ends_mut() {
+                for ends in coupling.both.iter_mut().filter_map(Term::ends_mut) {
                     of_ends(ends);
+                }
+                for direction in share.iter_mut().flatten() {
+                    if let Direction::Line(ends) = direction {
+                        of_ends(ends);
+                    }
                 }
                 dependent.each_point(change);
                 independent.each_point(change);

@@ -24,6 +24,7 @@ use super::{DescribedBody, DescribedJoint, DescribedReaction, DescribedRow, Desc
 use crate::error::{DenseError, Result};
 use crate::inertias::Inertias;
 use crate::pose::{Columns, lifted};
+use crate::rows::coupling::Coupling;
 use crate::rows::gear::Gear;
 use crate::rows::row::Row;
 use crate::rows::terms::{Ends, Term, perpendicular};
@@ -183,12 +184,7 @@ impl Lift<'_> {
             }
             JointKind::Distance { length } => vec![Row::single(Term::Distance(at), length)],
             JointKind::Coupling(r) => {
-                let coupling = &self.mechanism.couplings[r];
-                let both = [coupling.dependent, coupling.independent];
-                vec![Row::Coupling(
-                    Box::new(both.map(|c| self.term(c))),
-                    coupling.law.clone(),
-                )]
+                vec![Row::Coupling(Box::new(self.coupling(r)))]
             }
         }
     }
@@ -208,6 +204,14 @@ impl Lift<'_> {
                 name: actuator.name.clone(),
             }
         })
+    }
+
+    fn coupling(&self, r: usize) -> Coupling {
+        let coupling = &self.mechanism.couplings[r];
+        Coupling {
+            both: [coupling.dependent, coupling.independent].map(|c| self.term(c)),
+            law: coupling.law.clone(),
+        }
     }
 
     fn term(&self, coordinate: Coordinate) -> Term {
@@ -262,8 +266,8 @@ impl Lift<'_> {
                 vec![Action::Coupled {
                     dependent: Box::new(self.along(coupling.dependent)),
                     independent: Box::new(self.along(coupling.independent)),
-                    by: Box::new(self.term(coupling.independent)),
-                    law: coupling.law.clone(),
+                    coupling: Box::new(self.coupling(r)),
+                    share: None,
                 }]
             }
         }

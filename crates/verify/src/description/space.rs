@@ -12,11 +12,14 @@ use super::action::{Action, Direction};
 use super::{DescribedBody, DescribedJoint, DescribedReaction, DescribedRow, Description};
 use crate::error::{DenseError, Result};
 use crate::pose::Columns;
+use crate::rows::coupling::Coupling;
 use crate::rows::mesh::Mesh;
 use crate::rows::row::Row;
 use crate::rows::terms::{Directions, Ends, Term};
-use dwell_geometry::JointId;
-use dwell_geometry::space::{Actuator, ActuatorKind, IdleBody, Joint, JointKind, Mechanism, Vec3};
+use dwell_geometry::space::{
+    Actuator, ActuatorKind, Coordinate, IdleBody, Joint, JointKind, Mechanism, Vec3,
+};
+use dwell_geometry::{BodyId, JointId};
 use dwell_kinetostatics::space::Mass;
 use std::f64::consts::TAU;
 
@@ -48,7 +51,7 @@ impl Description {
             // A driven distance holds nothing by itself.
             let drives = |a: &Actuator| a.kind == ActuatorKind::Length(JointId(j));
             if !mechanism.actuators.iter().any(drives) {
-                let of_joint = rows_of(joint).into_iter().enumerate();
+                let of_joint = rows_of(mechanism, joint).into_iter().enumerate();
                 rows.extend(of_joint.map(|(k, (row, is_angle))| DescribedRow {
                     row,
                     is_angle,
@@ -56,7 +59,7 @@ impl Description {
                 }));
             }
             let from = reactions.len();
-            reactions.extend(reactions_of(joint));
+            reactions.extend(reactions_of(mechanism, joint));
             joints.push(DescribedJoint {
                 name: joint.name.clone(),
                 rows: start..rows.len(),
@@ -126,7 +129,7 @@ fn angle(joint: &Joint) -> Term {
 }
 
 /// The rows of a joint, and whether each is an angle.
-fn rows_of(joint: &Joint) -> Vec<(Row, bool)> {
+fn rows_of(mechanism: &Mechanism, joint: &Joint) -> Vec<(Row, bool)> {
     let [first, second] = &joint.sides;
     let (at, bodies) = (ends(joint), joint.bodies.map(|b| b.0));
     let across = [first.normal, first.axis.cross(first.normal)];
@@ -168,6 +171,63 @@ fn rows_of(joint: &Joint) -> Vec<(Row, bool)> {
             .map(|mesh| (Row::Mesh(mesh), false))
             .into_iter()
             .collect(),
+        JointKind::Coupling { index, .. } => {
+            let is_angle = mechanism.couplings[index].dependent.is_angle();
+            let coupling = Box::new(coupling(mechanism, index));
+            vec![(Row::Coupling(coupling), is_angle)]
+        }
+    }
+}
+
+/// A coupling of the mechanism.
+fn coupling(mechanism: &Mechanism, index: usize) -> Coupling {
+    let coupling = &mechanism.couplings[index];
+    Coupling {
+        both: [coupling.dependent, coupling.independent].map(|of| term(mechanism, of)),
+        law: coupling.law.clone(),
+    }
+}
+
+fn distance_ends(bodies: [BodyId; 2], points: [Vec3; 2]) -> Ends {
+    let bodies = bodies.map(|b| b.0);
+    Ends { bodies, points }
+}
+
+/// A coordinate; an angle without whole revolutions.
+fn term(mechanism: &Mechanism, of: Coordinate) -> Term {
+    match of {
+        Coordinate::Angle(id) => angle(&mechanism.joints[id.0]),
+        Coordinate::Travel(id) => {
+            let joint = &mechanism.joints[id.0];
+            Term::AlongFirst(ends(joint), joint.sides[0].axis)
+        }
+        Coordinate::Distance { bodies, points } => Term::Distance(distance_ends(bodies, points)),
+    }
+}
+
+/// A force or a couple along a coordinate, of its first body on its second, and its direction.
+fn along(mechanism: &Mechanism, of: Coordinate) -> (Action, Direction) {
+    match of {
+        Coordinate::Angle(id) | Coordinate::Travel(id) => {
+            let joint = &mechanism.joints[id.0];
+            let at = ends(joint);
+            let axis = Direction::Body(at.bodies[0], joint.sides[0].axis);
+            let bodies = at.bodies;
+            let action = if of.is_angle() {
+                Action::Couple {
+                    bodies,
+                    about: axis,
+                }
+            } else {
+                Action::force(at, axis)
+            };
+            (action, axis)
+        }
+        Coordinate::Distance { bodies, points } => {
+            let at = distance_ends(bodies, points);
+            let line = Direction::Line(at);
+            (Action::force(at, line), line)
+        }
     }
 }
 
@@ -188,28 +248,50 @@ pub(crate) fn mesh(joint: &Joint) -> Option<Mesh> {
 }
 
 /// Force and moment of the first body on the second about the second's point (of gears the pitch point), in the axes of the ground.
-fn reactions_of(joint: &Joint) -> impl Iterator<Item = DescribedReaction> {
+fn reactions_of(mechanism: &Mechanism, joint: &Joint) -> impl Iterator<Item = DescribedReaction> {
     let bodies = joint.bodies.map(|b| b.0);
     let at = (joint.side_body(1).0, joint.sides[1].point);
     (0..6).map(move |k| {
         let direction = Direction::Ground(Vec3::AXES[k % 3]);
+        let component = match k {
+            0..3 => Action::Force {
+                bodies,
+                along: direction,
+                at,
+                offset: (at.0, Vec3::ZERO),
+            },
+            _ => Action::Couple {
+                bodies,
+                about: direction,
+            },
+        };
         DescribedReaction {
             name: format!("{}, {}", joint.name, COMPONENTS[k]),
             is_moment: k >= 3,
-            action: match k {
-                0..3 => Action::Force {
-                    bodies,
-                    along: direction,
-                    at,
-                    offset: (at.0, Vec3::ZERO),
-                },
-                _ => Action::Couple {
-                    bodies,
-                    about: direction,
-                },
+            action: match joint.kind {
+                JointKind::Coupling { index, .. } => {
+                    coupled(mechanism, index, component, direction)
+                }
+                _ => component,
             },
         }
     })
+}
+
+/// A component of the action of a coupling, a couple or a force along a direction, with its share of the action along the
+/// independent coordinate.
+fn coupled(mechanism: &Mechanism, index: usize, component: Action, direction: Direction) -> Action {
+    let of = &mechanism.couplings[index];
+    if of.dependent.is_angle() != matches!(component, Action::Couple { .. }) {
+        return component;
+    }
+    let (_, axis) = along(mechanism, of.dependent);
+    Action::Coupled {
+        dependent: Box::new(component),
+        independent: Box::new(along(mechanism, of.independent).0),
+        coupling: Box::new(coupling(mechanism, index)),
+        share: Some([axis, direction]),
+    }
 }
 
 /// A body held from its idle rotation: ω·u = 0.
@@ -259,5 +341,13 @@ fn attachments(mechanism: &Mechanism) -> Vec<(usize, Vec3)> {
         let sides = joint.sides.iter().enumerate();
         sides.map(|(k, side)| (joint.side_body(k).0, side.point))
     });
-    sides.collect()
+    let coupled = mechanism.couplings.iter();
+    let coupled = coupled.flat_map(|of| [of.dependent, of.independent]);
+    let distances = coupled.flat_map(|of| match of {
+        Coordinate::Distance { bodies, points } => {
+            vec![(bodies[0].0, points[0]), (bodies[1].0, points[1])]
+        }
+        Coordinate::Angle(_) | Coordinate::Travel(_) => Vec::new(),
+    });
+    sides.chain(distances).collect()
 }

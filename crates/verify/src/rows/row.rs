@@ -1,11 +1,11 @@
 //! One scalar equation: a sum of terms, a pair of gears, or a coupling by a law.
 
+use super::coupling::Coupling;
 use super::gear::Gear;
 use super::mesh::Mesh;
 use super::terms::{Ends, Gradient, Term, couple};
 use crate::pose::{Pose, Twist};
 use dwell_geometry::space::Vec3;
-use dwell_laws::Law;
 
 /// One row. An imposed value is subtracted from each.
 #[derive(Debug, Clone)]
@@ -21,7 +21,7 @@ pub(crate) enum Row {
     /// The teeth of gears in space.
     Mesh(Mesh),
     /// dependent − law(independent).
-    Coupling(Box<[Term; 2]>, Law),
+    Coupling(Box<Coupling>),
     /// ω·u = 0 of a body with an idle rotation about u, fixed in it: it is held from turning about u.
     Idle(usize, Vec3),
 }
@@ -59,10 +59,10 @@ impl Row {
             Self::Sum { terms, .. } => terms.iter().for_each(|(f, m)| term(*f, m)),
             Self::Gear(gear) => gear.terms().iter().for_each(|(f, m)| term(*f, m)),
             Self::Mesh(_) | Self::Idle(..) => {}
-            Self::Coupling(both, law) => {
-                let [dependent, independent] = &**both;
+            Self::Coupling(coupling) => {
+                let [dependent, independent] = &coupling.both;
                 term(1.0, dependent);
-                term(-law.eval(independent.value(poses))[1], independent);
+                term(-coupling.slopes(poses)[0], independent);
             }
         }
     }
@@ -79,7 +79,7 @@ impl Row {
             Self::Gear(gear) => change(&mut gear.ends),
             Self::Mesh(mesh) => change(&mut mesh.pitch),
             Self::Idle(..) => {}
-            Self::Coupling(both, _) => both.iter_mut().for_each(of_term),
+            Self::Coupling(coupling) => coupling.both.iter_mut().for_each(of_term),
         }
     }
 
@@ -101,6 +101,22 @@ impl Row {
                 add(body, factor, gradient);
             }
         });
+    }
+
+    /// Calls `add` with the gradient of what acts in its own joint: of a coupling, its dependent coordinate alone.
+    pub(crate) fn each_own_gradient(
+        &self,
+        poses: &[Pose],
+        mut add: impl FnMut(usize, f64, Gradient),
+    ) {
+        let Self::Coupling(coupling) = self else {
+            return self.each_gradient(poses, add);
+        };
+        let dependent = &coupling.both[0];
+        let gradients = dependent.gradients(poses);
+        for (body, gradient) in dependent.bodies().into_iter().zip(gradients) {
+            add(body, 1.0, gradient);
+        }
     }
 
     /// How far row k is from its imposed value.
@@ -126,10 +142,7 @@ impl Row {
                 let turn = now.after(&before.inverse()).vector();
                 turn.dot(now.apply(*u)) - moved
             }
-            Self::Coupling(both, law) => {
-                let [dependent, independent] = &**both;
-                dependent.value(poses) - law.eval(independent.value(poses))[0] - imposed
-            }
+            Self::Coupling(coupling) => coupling.residual(poses, imposed),
         }
     }
 
@@ -142,10 +155,9 @@ impl Row {
         self.each_term(poses, |factor, term| {
             sum += factor * term.second_rate(poses, twists);
         });
-        if let Self::Coupling(both, law) = self {
-            let by = &both[1];
-            let rate = by.rate(poses, twists);
-            sum -= law.eval(by.value(poses))[2] * rate * rate;
+        if let Self::Coupling(coupling) = self {
+            let rate = coupling.both[1].rate(poses, twists);
+            sum -= coupling.slopes(poses)[1] * rate * rate;
         }
         sum
     }

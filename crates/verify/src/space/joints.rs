@@ -62,7 +62,8 @@ pub fn closure_error(joint: &Joint, placements: &[Placement]) -> f64 {
         JointKind::PointOnLine => &[off_line],
         JointKind::PointInPlane => &[d.dot(u)],
         JointKind::Distance { length } => &[apart - length],
-        JointKind::Gear { .. } => &[],
+        // Rows of velocities, and couplings: they are no conditions of two sides.
+        JointKind::Gear { .. } | JointKind::Coupling { .. } => &[],
     };
     found.iter().fold(0.0, |all, part| all.max(part.abs()))
 }

@@ -139,6 +139,7 @@ impl Assembled {
                 ground: 0,
                 joints: Vec::new(),
                 actuators: Vec::new(),
+                couplings: Vec::new(),
             },
             placements: vec![Placement::default()],
             masses: vec![Mass::default()],

@@ -45,8 +45,13 @@ pub(super) fn add_joint_columns(scene: &SpaceScene, rows: &SpaceRows, list: &mut
         let axes = match axes {
             Axes::Ground => "ground's axes".to_owned(),
             Axes::Joint => format!("the joint's axes on {one}"),
+            Axes::Line => "along the line of the joint's points".to_owned(),
         };
-        let meaning = format!("{what} of {one} on {two}, {axes}{at}");
+        let meaning = if joint.kind.is_coupling() {
+            format!("{what} of {one} on {two} along the dependent coordinate of the coupling")
+        } else {
+            format!("{what} of {one} on {two}, {axes}{at}")
+        };
         let name = scene.reaction_name(*reaction);
         list.add(name, unit, Quantity::Reaction(k), meaning);
     }

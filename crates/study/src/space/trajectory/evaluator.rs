@@ -6,8 +6,8 @@ use super::totals::Totals;
 use crate::machines::first_uncovered;
 use crate::space::assembled::SpaceStates;
 use crate::trajectory::compute::{
-    Analysis, BodyNumbers, LargestErrors, Quantity, RowEvaluator, RowScene as _, StopCause,
-    TrajectorySample,
+    Analysis, BodyNumbers, CouplingMonitor, LargestErrors, Quantity, RowEvaluator, RowScene as _,
+    StopCause, TrajectorySample,
 };
 use dwell_geometry::BodyId;
 use dwell_geometry::space::{CoordinateFunction, Placement, Plan, Pose, Vec3};
@@ -32,6 +32,7 @@ pub struct SpaceEvaluator<'a> {
     load_forces: Vec<Option<LoadForce>>,
     measured: Vec<Option<CoordinateFunction>>,
     totals: Totals,
+    couplings: CouplingMonitor<'a, CoordinateFunction>,
 }
 
 impl<'a> SpaceEvaluator<'a> {
@@ -50,6 +51,10 @@ impl<'a> SpaceEvaluator<'a> {
             load_forces: LoadForce::of_all(scene, model.plan()),
             measured: measured.map(|of| of.function).collect(),
             totals: Totals::new(scene),
+            couplings: CouplingMonitor::new(&scene.mechanism, |variable| {
+                let plan = model.plan();
+                plan.coordinate_function(&scene.mechanism, variable).ok()
+            }),
         }
     }
 
@@ -103,6 +108,8 @@ impl RowEvaluator for SpaceEvaluator<'_> {
         plan.positions(q, &mut self.pose)?;
         plan.velocities(q_dot, &mut self.pose);
         plan.accelerations(q_ddot, &mut self.pose);
+        let pose = &self.pose;
+        self.couplings.check(|of| plan.coordinate(pose, of)[0])?;
         for (b, body) in self.bodies.0.iter_mut().enumerate() {
             let placement = plan.placement(&self.pose, b);
             *body = (placement, plan.body_motion(&self.pose, b));

@@ -58,9 +58,10 @@ impl SpaceRows {
             let of_joint = &whole[6 * j..6 * j + 6];
             let is_determined = |some: &[Reaction]| !some.iter().any(|r| open.contains(r));
             let (force, moment) = of_joint.split_at(3);
+            // The only component of a coupling is its magnitude.
             [
-                is_determined(force),
-                joint.kind.has_moment() && is_determined(moment),
+                !joint.kind.is_coupling() && is_determined(force),
+                joint.kind.has_moment() && !joint.kind.is_coupling() && is_determined(moment),
             ]
         });
         Ok(Self {

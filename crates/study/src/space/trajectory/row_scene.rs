@@ -4,7 +4,7 @@ use super::columns::{actuator_meanings, add_joint_columns, add_load_columns};
 use super::evaluator::SpaceEvaluator;
 use super::reactions::SpaceRows;
 use crate::explain::{
-    NamedScene as _, StudyError, describe_coordinate, off_table_error, scene_error,
+    NamedScene as _, StudyError, describe_coordinate, discontinuous_coupling_error, off_table_error,
 };
 use crate::number_format::digits;
 use crate::space::explain::{explain_loads, explain_position};
@@ -70,21 +70,20 @@ impl RowScene for SpaceScene {
 
     fn explain_stop(&self, model: &Model, stop: EarlyStop<'_>) -> StudyError {
         let plan = model.plan();
+        let when = || match &stop.last {
+            Some(last) => format!("soon after {}", position_of(self, stop.trajectory, last)),
+            None => {
+                let position = position_of(self, stop.trajectory, &stop.failed);
+                format!("at the first position, {position}")
+            }
+        };
         match stop.cause {
             StopCause::NoSolution(KinetostaticsError::Position(error)) => {
                 explain_position(self, plan, &error)
             }
             StopCause::NoSolution(error) => explain_loads(self, plan, &error),
             StopCause::OffTable { load, value } => {
-                let at = match &stop.last {
-                    Some(last) => {
-                        format!("soon after {}", position_of(self, stop.trajectory, last))
-                    }
-                    None => {
-                        let position = position_of(self, stop.trajectory, &stop.failed);
-                        format!("at the first position, {position}")
-                    }
-                };
+                let at = when();
                 let magnitude = &self.loads[load].magnitude;
                 let name_of = |c| self.name_of(c);
                 let is_angle = |c: Coordinate| c.is_angle();
@@ -94,9 +93,8 @@ impl RowScene for SpaceScene {
                         explain_loads(self, plan, &error)
                     })
             }
-            // Couplings stand in scenes of the plane alone.
-            StopCause::Discontinuity { .. } => {
-                scene_error::<String>(self, "the trajectory cannot continue", "", [])
+            StopCause::Discontinuity { joint, between } => {
+                discontinuous_coupling_error(self, &self.mechanism, joint, between, &when())
             }
         }
     }

@@ -94,7 +94,8 @@ impl<'a> SpaceDrawing<'a> {
     /// The joints of a body, each with the number of its side on it.
     fn sides(&self, body: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         let joints = self.scene.mechanism.joints.iter().enumerate();
-        joints.flat_map(move |(j, joint)| {
+        let drawn = joints.filter(|(_, joint)| !joint.kind.is_coupling());
+        drawn.flat_map(move |(j, joint)| {
             let sides = (0..2).filter(move |k| joint.side_body(*k).0 == body);
             sides.map(move |k| (j, k))
         })
@@ -180,7 +181,9 @@ impl<'a> SpaceDrawing<'a> {
         let joints = &self.scene.mechanism.joints;
         let own = &joints[joint];
         let mut meeting = Vec::new();
-        for (j, other) in joints.iter().enumerate().filter(|(j, _)| *j != joint) {
+        let others = joints.iter().enumerate();
+        let others = others.filter(|(j, other)| *j != joint && !other.kind.is_coupling());
+        for (j, other) in others {
             for (k, l) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 let is_near = (own.sides[k].point - other.sides[l].point).norm() < self.same;
                 if own.side_body(k) == other.side_body(l)

@@ -212,7 +212,8 @@ impl<'a> Scenery<'a> {
     fn words(&self) -> Vec<Shape> {
         let (drawing, view) = (self.drawing, self.picture.view);
         let mut labels: Vec<([f64; 2], String)> = Vec::new();
-        for (j, joint) in drawing.scene.mechanism.joints.iter().enumerate() {
+        let joints = drawing.scene.mechanism.joints.iter().enumerate();
+        for (j, joint) in joints.filter(|(_, joint)| !joint.kind.is_coupling()) {
             let anchor = |k| placed(self.placements, joint.side_body(k), drawing.anchor(j, k));
             let ends = [0, 1].map(|k| view.place(anchor(k)));
             let at = match joint.kind {

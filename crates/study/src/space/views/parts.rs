@@ -246,6 +246,8 @@ impl SpaceParts<'_> {
                 return self.parts.push(Part::Mark(second));
             }
             JointKind::Weld => (MarkLook::Weld, 1, [0, 1]),
+            // Not a part of the machine, but a law between two coordinates.
+            JointKind::Coupling { .. } => return,
             JointKind::Gear { .. } => {
                 ground.clear();
                 (MarkLook::Teeth, 1, [0, 1])

@@ -2,8 +2,8 @@
 
 use crate::explain::{
     NamedScene as _, StudyError, TABLE_HELP, body_names_or_mechanism, describe_coordinate,
-    describe_ends, describe_limit, joint_labels, non_finite_coupling, non_finite_coupling_error,
-    off_table_error, scene_error,
+    describe_ends, describe_limit, discontinuous_coupling_error, joint_labels, non_finite_coupling,
+    non_finite_coupling_error, off_table_error, scene_error,
 };
 use crate::number_format::digits;
 use crate::trajectory::compute::{Trajectory, TrajectorySample};
@@ -135,16 +135,7 @@ impl<'a> PlaneStop<'a> {
                     })
             }
             StopCause::Discontinuity { joint, between } => {
-                let name = &scene.mechanism.joints[joint.0].name;
-                let x = jump_location(between[0], between[1]);
-                let message = format!(
-                    "the function of coupling `{name}` is discontinuous {when}, at x = {x}"
-                );
-                let jumps = (
-                    SceneLocation::CouplingLaw(joint),
-                    format!("jumps at x = {x}"),
-                );
-                scene_error(scene, message, CONTINUITY_HELP, [jumps])
+                discontinuous_coupling_error(scene, &scene.mechanism, joint, between, &when)
             }
         }
     }
@@ -159,7 +150,8 @@ impl<'a> PlaneStop<'a> {
         let plan = self.plan;
         if let Some(fault) = non_finite_coupling(&scene.mechanism, &self.first_failed.q) {
             let at = if self.has_begun { "soon after" } else { "at" };
-            return non_finite_coupling_error(scene, &fault, &format!("{at} {position}"));
+            let position = format!("{at} {position}");
+            return non_finite_coupling_error(scene, &scene.mechanism, &fault, &position);
         }
         if !self.has_begun {
             return self.explain_first_position(scene, position, error);
@@ -357,16 +349,6 @@ fn explain_load(scene: &PlaneScene, error: KinetostaticsError, when: &str) -> St
         ),
     };
     scene_error(scene, message, help, [place])
-}
-
-/// Help for a discontinuous function.
-pub(crate) const CONTINUITY_HELP: &str = "the function must be continuous: make its pieces meet, or join them with a \
-     rise such as `cycloidal`; let an angle grow past 2π instead of resetting it";
-
-/// The location of a discontinuity between two neighbouring numbers.
-pub(crate) fn jump_location(a: f64, b: f64) -> String {
-    // Bisection is certain to these digits.
-    digits(if a.abs() > b.abs() { a } else { b }, 9)
 }
 
 /// The first group with a body whose angular velocity diverges at unit speed of the actuators.

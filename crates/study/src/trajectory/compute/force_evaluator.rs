@@ -3,7 +3,7 @@
 use crate::explain::table_of;
 use crate::machines::first_uncovered;
 use crate::trajectory::compute::{Analysis, CouplingMonitor, StopCause, TrajectorySample};
-use dwell_geometry::body_states::BodyStates;
+use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{Motion, Pose};
 use dwell_kinetostatics::{EvaluatedState, InverseDynamics, Model, Workspace};
 use dwell_scene::PlaneScene;
@@ -23,7 +23,7 @@ pub(crate) struct ForceEvaluator<'a> {
     pub(super) motion_buffer: Motion<f64>,
     /// The bodies at the velocities of the trajectory, whatever the analysis.
     pub(super) body_states: BodyStates,
-    couplings: CouplingMonitor<'a>,
+    couplings: CouplingMonitor<'a, CoordinateFunction>,
     /// Whether the table of a load may be exceeded.
     has_tables: bool,
 }
@@ -40,7 +40,9 @@ impl<'a> ForceEvaluator<'a> {
             has_forces: true,
             motion_buffer: model.plan().motion(),
             body_states: BodyStates::new(model.plan()),
-            couplings: CouplingMonitor::new(scene),
+            couplings: CouplingMonitor::new(&scene.mechanism, |variable| {
+                CoordinateFunction::find(&scene.mechanism, variable)
+            }),
             has_tables: (model.loads().iter()).any(|load| table_of(&load.magnitude).is_some()),
         }
     }
@@ -95,7 +97,8 @@ impl<'a> ForceEvaluator<'a> {
             plan.accelerations(pose, &sample.q_ddot, &mut self.motion_buffer);
             self.body_states.fill(plan, pose, &self.motion_buffer);
         }
-        self.couplings.check(&self.body_states)
+        let states = &self.body_states;
+        self.couplings.check(|of| states.coordinate(of)[0])
     }
 }
 

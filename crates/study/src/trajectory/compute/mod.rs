@@ -40,9 +40,7 @@ pub(crate) use column::{Column, ColumnList, Quantity, is_prefix_of, units};
 pub(crate) use columns::all_columns;
 pub(crate) use distances::Distance;
 pub(crate) use dyads::{Dyad, dyads};
-pub(crate) use early_stop::{
-    CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
-};
+pub(crate) use early_stop::{EarlyStop, StopCause, unreachable_error};
 pub(crate) use evaluator::PositionEvaluator;
 pub(crate) use extra_columns::extra_columns;
 pub(crate) use extrema::Extremum;

@@ -1,43 +1,45 @@
 //! A fault that ends a trajectory although the mechanism can be assembled: a coupling function is discontinuous between two positions.
 
-use crate::explain::couplings;
+use crate::explain::{CoupledMechanism, CouplingLaw};
 use crate::trajectory::compute::StopCause;
 use dwell_geometry::JointId;
-use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_laws::Law;
-use dwell_scene::PlaneScene;
 
 /// A coupling function, with its variable at the position before.
 #[derive(Clone)]
-struct MonitoredCoupling<'a> {
+struct MonitoredCoupling<'a, F> {
     joint: JointId,
     law: &'a Law,
-    variable: CoordinateFunction,
+    variable: F,
     previous: Option<f64>,
 }
 
-/// Checks one position after another.
+/// Checks one position after another; `F` is a coordinate of a compiled mechanism.
 #[derive(Clone)]
-pub(crate) struct CouplingMonitor<'a>(Vec<MonitoredCoupling<'a>>);
+pub(crate) struct CouplingMonitor<'a, F>(Vec<MonitoredCoupling<'a, F>>);
 
-impl<'a> CouplingMonitor<'a> {
-    pub(crate) fn new(scene: &'a PlaneScene) -> Self {
-        let mechanism = &scene.mechanism;
-        let coupling = |(joint, law, variable)| {
+impl<'a, F: Copy> CouplingMonitor<'a, F> {
+    /// Of a mechanism whose coordinates a function compiles.
+    pub(crate) fn new<M: CoupledMechanism>(
+        mechanism: &'a M,
+        compile: impl Fn(M::Coordinate) -> Option<F>,
+    ) -> Self {
+        let coupling = |of: CouplingLaw<'a, M::Coordinate>| {
             Some(MonitoredCoupling {
-                joint,
-                law,
-                variable: CoordinateFunction::find(mechanism, variable)?,
+                joint: of.joint,
+                law: of.law,
+                variable: compile(of.variable)?,
                 previous: None,
             })
         };
-        Self(couplings(mechanism).filter_map(coupling).collect())
+        let laws = mechanism.coupling_laws().into_iter();
+        Self(laws.filter_map(coupling).collect())
     }
 
-    /// Fails at the first coupling whose function is discontinuous since the position before.
-    pub(crate) fn check(&mut self, states: &BodyStates) -> Result<(), StopCause> {
+    /// Fails at the first coupling whose function is discontinuous since the position before; `value` is that of a coordinate now.
+    pub(crate) fn check(&mut self, value: impl Fn(F) -> f64) -> Result<(), StopCause> {
         for coupling in &mut self.0 {
-            let now = states.coordinate(coupling.variable)[0];
+            let now = value(coupling.variable);
             let previous = coupling.previous.replace(now);
             let jump = previous.and_then(|previous| coupling.law.discontinuity(previous, now));
             if let Some(between) = jump {

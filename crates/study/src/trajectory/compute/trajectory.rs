@@ -1,11 +1,9 @@
 //! The coordinates that an analysis follows: a prescribed motion, a free motion, or a sweep.
 
-use crate::explain::{StudyError, scene_error};
+use crate::explain::{CONTINUITY_HELP, StudyError, jump_location, scene_error};
 use crate::number_format::{count, digits};
 use crate::progress::{Progress, Step};
-use crate::trajectory::compute::{
-    Analysis, CONTINUITY_HELP, Column, EarlyStop, FollowedScene, RowScene, StopCause, jump_location,
-};
+use crate::trajectory::compute::{Analysis, Column, EarlyStop, FollowedScene, RowScene, StopCause};
 use dwell_geometry::{ActuatorId, Plan, Range};
 use dwell_scene::{CoordinateSweep, MAX_ANGLE, PlaneScene, PrescribedMotion, SceneLocation};
 use std::f64::consts::TAU;
