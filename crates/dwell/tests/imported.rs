@@ -38,7 +38,14 @@ fn cases() -> Result<Vec<Case>, Failure> {
         .to_vec();
     let loops = std::fs::read_to_string(format!("{FOLDER}/u3-fivebar.yaml"))?;
     five_bar.options.loops = Some(loops);
+    // Couplings in space, too.
+    let in_space = |mut case: Case| {
+        case.options.spatial = true;
+        case
+    };
     Ok(vec![
+        in_space(case("m5-jointeq.xml", &["a"], &[])),
+        in_space(case("u2-mimic.urdf", &["jl"], &["left.jl", "right.jr"])),
         case("m1-fourbar.xml", &[], &["coupler.C"]),
         case("m2-rssr.xml", &["A"], &["rod.C"]),
         case("m3-slidercrank.xml", &["A"], &["piston.C"]),

@@ -31,11 +31,11 @@ impl Writer<'_> {
         let along = of.along;
         let slides = along.stiffness != 0.0 || flat && along.damping != 0.0;
         let forced = along.friction != 0.0 || !of.is_angle() && slides;
-        let coupled = |one: &Coupling| flat && [one.dependent, one.independent].contains(&joint);
+        let coupled = |one: &Coupling| [one.dependent, one.independent].contains(&joint);
         of.is_driveable() && forced || self.model.couplings.iter().any(coupled)
     }
 
-    /// A coupling of joint coordinates, which scenes in the plane have.
+    /// A coupling of the angles or travels of two joints.
     pub(super) fn coupling(&mut self, coupling: &Coupling) {
         let degree = coupling.polynomial.iter().rposition(|c| *c != 0.0);
         let degree = degree.unwrap_or(0);
@@ -43,11 +43,13 @@ impl Writer<'_> {
         let [dependent, independent] = numbers.map(|k| &self.model.joints[k]);
         let simple = |kind| matches!(kind, Kind::Hinge | Kind::Slide);
         let what = format!("equality {}, polynomial of degree {degree}", coupling.name);
-        if self.plane.is_none() || !simple(dependent.kind) || !simple(independent.kind) {
-            return coupling.place.lost(format!("{what}: coupling in space"));
+        if !simple(dependent.kind) || !simple(independent.kind) {
+            return coupling
+                .place
+                .lost(format!("{what}: of joints with several coordinates"));
         }
-        let text = format!("{what}: coupling in the plane");
-        coupling.place.kept(text);
+        let place = ["in space", "in the plane"][usize::from(self.plane.is_some())];
+        coupling.place.kept(format!("{what}: coupling {place}"));
         let x = match independent.drawn - coupling.references[1] {
             0.0 => "x".to_owned(),
             shift => format!("(x + ({}))", number(shift)),
