@@ -29,6 +29,7 @@ pub mod lu;
 #[cfg(not(target_family = "wasm"))]
 mod lu_faer;
 pub mod minimum;
+pub mod optimise;
 pub mod panels;
 mod piecewise_quintic;
 pub mod polynomial_fit;

@@ -1,0 +1,655 @@
+//! Sequential quadratic programming: damped BFGS (M. J. D. Powell, 1978), a line search on an exact penalty function, a second-order
+//! correction of the constraints (J. Nocedal and S. J. Wright, *Numerical Optimization*, 2nd ed. 2006, ch. 18).
+
+use super::{QuadraticProgram, dot, largest};
+
+/// A constraint at a point: `value` ≥ 0, or = 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constraint {
+    /// Its value.
+    pub value: f64,
+    /// Its derivatives.
+    pub slope: Vec<f64>,
+    /// Whether its value is to be zero.
+    pub is_equality: bool,
+    /// The family to which it belongs: only the largest violation in a family is penalised. There may be more or fewer members at another
+    /// point, as of the extrema of a curve.
+    pub family: usize,
+    /// Its place in the family, from 0 to 1 and around: a member is the one at another point whose place is nearest.
+    pub place: f64,
+}
+
+impl Constraint {
+    /// How far it is from being satisfied.
+    pub fn violation(&self) -> f64 {
+        match self.is_equality {
+            true => self.value.abs(),
+            false => (-self.value).max(0.0),
+        }
+    }
+
+    /// The member of the same family among others that is nearest.
+    fn counterpart<'c>(&self, others: &'c [Self]) -> Option<&'c Self> {
+        let distance = |other: &Self| {
+            let apart = (other.place - self.place).abs();
+            apart.min((1.0 - apart).abs())
+        };
+        let family = others.iter().filter(|other| other.family == self.family);
+        family.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    }
+}
+
+/// A problem at a point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evaluation {
+    /// The goal.
+    pub goal: f64,
+    /// Its derivatives.
+    pub slope: Vec<f64>,
+    /// The constraints.
+    pub constraints: Vec<Constraint>,
+}
+
+impl Evaluation {
+    /// The largest violation of a constraint.
+    pub fn violation(&self) -> f64 {
+        let each = self.constraints.iter().map(Constraint::violation);
+        each.fold(0.0, f64::max)
+    }
+
+    /// The largest violation of each family.
+    fn violations(&self, families: usize) -> Vec<f64> {
+        let mut all = vec![0.0_f64; families];
+        for constraint in &self.constraints {
+            let sum = &mut all[constraint.family];
+            *sum = sum.max(constraint.violation());
+        }
+        all
+    }
+}
+
+/// When a search ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SequentialSettings {
+    /// The residual of the conditions of Karush, Kuhn and Tucker, and the violation, at which it has converged.
+    pub tolerance: f64,
+    /// The most iterations.
+    pub iterations: usize,
+    /// The number of families of constraints.
+    pub families: usize,
+}
+
+/// Where a search ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Optimum {
+    /// The point.
+    pub x: Vec<f64>,
+    /// The problem there.
+    pub evaluation: Evaluation,
+    /// By constraint: its multiplier, by how much the goal falls where the constraint is relaxed by one.
+    pub multipliers: Vec<f64>,
+    /// By variable: the multiplier of its bounds, positive at the lower and negative at the upper one.
+    pub of_bounds: Vec<f64>,
+    /// The largest component of ∇f − Σ λ ∇c, over 1 + that of ∇f.
+    pub residual: f64,
+    /// The largest product of a multiplier and the value of its inequality.
+    pub complementarity: f64,
+    /// Number of evaluations.
+    pub evaluations: usize,
+    /// Whether residual, violation and complementarity are below the tolerance.
+    pub is_converged: bool,
+}
+
+/// The value of a problem at a point; `None` where it has none.
+type Problem<'a> = dyn FnMut(&[f64]) -> Option<Evaluation> + 'a;
+
+/// A relative change that is rounding, and the least step.
+const ROUNDING: f64 = 1e-14;
+const LEAST_STEP: f64 = 1e-9;
+/// The part of the predicted decrease that is enough.
+const ENOUGH: f64 = 1e-4;
+/// The price of leaving violations as they are where linear constraints contradict each other.
+const PRICE: f64 = 1e4;
+/// Below this part of the curvature along a step that of the Lagrangian is damped.
+const DAMPED: f64 = 0.2;
+
+/// Searches the least goal between bounds, from a point; `None` if the problem has no value there. `done` takes each accepted point, and
+/// says whether to go on.
+pub fn minimise(
+    problem: &mut Problem<'_>,
+    start: &[f64],
+    bounds: &[[f64; 2]],
+    settings: SequentialSettings,
+    done: &mut dyn FnMut(&[f64], &Evaluation) -> bool,
+) -> Option<Optimum> {
+    let x: Vec<f64> = (start.iter().zip(bounds))
+        .map(|(x, [from, to])| x.clamp(*from, *to))
+        .collect();
+    let evaluation = problem(&x)?;
+    let mut search = Search {
+        hessian: unit(x.len()),
+        is_fresh: true,
+        penalties: vec![0.0; settings.families],
+        bounds,
+        settings,
+        best: Optimum {
+            multipliers: Vec::new(),
+            of_bounds: vec![0.0; x.len()],
+            residual: f64::INFINITY,
+            complementarity: f64::INFINITY,
+            evaluations: 1,
+            is_converged: false,
+            evaluation,
+            x,
+        },
+    };
+    for _ in 0..settings.iterations {
+        let Some(step) = search.step(None) else {
+            if search.is_fresh {
+                break;
+            }
+            search.restart();
+            continue;
+        };
+        search.judge(&step);
+        if search.best.is_converged {
+            break;
+        }
+        match search.line_search(problem, &step) {
+            Some(next) => {
+                let (x, evaluation) = next;
+                search.update(&step, &x, &evaluation);
+                (search.best.x, search.best.evaluation) = (x, evaluation);
+                if !done(&search.best.x, &search.best.evaluation) {
+                    break;
+                }
+            }
+            None if search.is_fresh => break,
+            None => search.restart(),
+        }
+    }
+    // The multipliers are those of the last point.
+    if !search.best.is_converged
+        && let Some(step) = search.step(None)
+    {
+        search.judge(&step);
+    }
+    Some(search.best)
+}
+
+fn unit(n: usize) -> Vec<Vec<f64>> {
+    let row = |i| (0..n).map(move |j| f64::from(u8::from(i == j)));
+    (0..n).map(|i| row(i).collect()).collect()
+}
+
+/// A step of the quadratic program.
+struct Step {
+    d: Vec<f64>,
+    /// Of the constraints, then of the bounds.
+    multipliers: Vec<f64>,
+    /// The part of the violations that it leaves.
+    left: f64,
+}
+
+struct Search<'a> {
+    hessian: Vec<Vec<f64>>,
+    /// Whether nothing is known of the curvature.
+    is_fresh: bool,
+    /// By family.
+    penalties: Vec<f64>,
+    bounds: &'a [[f64; 2]],
+    settings: SequentialSettings,
+    best: Optimum,
+}
+
+impl Search<'_> {
+    fn restart(&mut self) {
+        (self.hessian, self.is_fresh) = (unit(self.best.x.len()), true);
+    }
+
+    /// The step of the quadratic program, with other values of the constraints if they are given. Where linear constraints contradict each
+    /// other, they are relaxed together as little as possible.
+    fn step(&self, values: Option<&[f64]>) -> Option<Step> {
+        let (x, at) = (&self.best.x, &self.best.evaluation);
+        let constraints = &at.constraints;
+        let own: Vec<f64> = constraints.iter().map(|c| c.value).collect();
+        let values = values.unwrap_or(&own);
+        let mut normals: Vec<Vec<f64>> = constraints.iter().map(|c| c.slope.clone()).collect();
+        let mut limits: Vec<f64> = values.iter().map(|v| -v).collect();
+        let mut are_equalities: Vec<bool> = constraints.iter().map(|c| c.is_equality).collect();
+        for (k, [from, to]) in self.bounds.iter().enumerate() {
+            for (sign, room) in [(1.0, from - x[k]), (-1.0, x[k] - to)] {
+                let mut normal = vec![0.0; x.len()];
+                normal[k] = sign;
+                normals.push(normal);
+                limits.push(room);
+                are_equalities.push(false);
+            }
+        }
+        let program = QuadraticProgram {
+            hessian: &self.hessian,
+            slope: &at.slope,
+            normals: &normals,
+            limits: &limits,
+            are_equalities: &are_equalities,
+        };
+        if let Some(found) = program.solve() {
+            return Some(Step {
+                d: found.x,
+                multipliers: found.multipliers,
+                left: 0.0,
+            });
+        }
+        // One more variable: the part s of the violations that is left.
+        let mut hessian = self.hessian.clone();
+        hessian.iter_mut().for_each(|row| row.push(0.0));
+        let mut last = vec![0.0; x.len() + 1];
+        last[x.len()] = PRICE * (1.0 + largest(&at.slope));
+        hessian.push(last);
+        for (k, normal) in normals.iter_mut().enumerate() {
+            let is_left = k < values.len() && (are_equalities[k] || values[k] < 0.0);
+            normal.push(if is_left { -values[k] } else { 0.0 });
+        }
+        let mut normal = vec![0.0; x.len() + 1];
+        normal[x.len()] = -1.0;
+        normals.push(normal);
+        limits.push(-1.0);
+        are_equalities.push(false);
+        let program = QuadraticProgram {
+            hessian: &hessian,
+            slope: &[&at.slope[..], &[0.0]].concat(),
+            normals: &normals,
+            limits: &limits,
+            are_equalities: &are_equalities,
+        };
+        let mut found = program.solve()?;
+        let left = found.x.pop()?.clamp(0.0, 1.0);
+        found.multipliers.pop();
+        Some(Step {
+            d: found.x,
+            multipliers: found.multipliers,
+            left,
+        })
+    }
+
+    /// The conditions of an optimum, with the multipliers of a step: H d = Σ λ ∇c − ∇f.
+    fn judge(&mut self, step: &Step) {
+        let best = &mut self.best;
+        let constraints = &best.evaluation.constraints;
+        let (own, of_bounds) = step.multipliers.split_at(constraints.len());
+        let bends: Vec<f64> = self.hessian.iter().map(|row| dot(row, &step.d)).collect();
+        best.residual = largest(&bends) / (1.0 + largest(&best.evaluation.slope));
+        let inequalities = constraints.iter().zip(own).filter(|(c, _)| !c.is_equality);
+        let products: Vec<f64> = inequalities.map(|(c, l)| c.value * l).collect();
+        best.complementarity = largest(&products);
+        best.multipliers = own.to_vec();
+        best.of_bounds = of_bounds.chunks(2).map(|pair| pair[0] - pair[1]).collect();
+        let scale = 1.0 + best.evaluation.goal.abs();
+        let tolerance = self.settings.tolerance;
+        best.is_converged = best.residual <= tolerance
+            && best.evaluation.violation() <= tolerance
+            && best.complementarity <= tolerance * scale
+            && step.left == 0.0;
+    }
+
+    /// The next point along a step, with its values; `None` if there is none.
+    fn line_search(
+        &mut self,
+        problem: &mut Problem<'_>,
+        step: &Step,
+    ) -> Option<(Vec<f64>, Evaluation)> {
+        let at = &self.best.evaluation;
+        let mut sums = vec![0.0; self.penalties.len()];
+        for (constraint, multiplier) in at.constraints.iter().zip(&step.multipliers) {
+            sums[constraint.family] += multiplier.abs();
+        }
+        for (penalty, sum) in self.penalties.iter_mut().zip(sums) {
+            *penalty = sum.max(0.5 * (*penalty + sum));
+        }
+        let penalties = self.penalties.clone();
+        let merit = |of: &Evaluation| of.goal + dot(&penalties, &of.violations(penalties.len()));
+        let before = merit(at);
+        let removed = (1.0 - step.left) * dot(&penalties, &at.violations(penalties.len()));
+        let rate = (dot(&at.slope, &step.d) - removed).min(0.0);
+        let rounding = ROUNDING * (1.0 + before.abs());
+        let mut part = 1.0;
+        while part > LEAST_STEP {
+            let x = self.moved(&step.d, part);
+            self.best.evaluations += 1;
+            let next = problem(&x).filter(|next| merit(next).is_finite());
+            let Some(next) = next else {
+                part *= 0.3;
+                continue;
+            };
+            let after = merit(&next);
+            if after <= before + ENOUGH * part * rate + rounding {
+                return Some((x, next));
+            }
+            if part == 1.0
+                && let Some(x) = self.corrected(step, &next)
+            {
+                self.best.evaluations += 1;
+                let corrected = problem(&x).filter(|next| merit(next).is_finite());
+                if let Some(next) =
+                    corrected.filter(|next| merit(next) <= before + ENOUGH * rate + rounding)
+                {
+                    return Some((x, next));
+                }
+            }
+            // The least of the parabola through both values and the slope.
+            let parabolic = -0.5 * rate * part / ((after - before) / part - rate);
+            part = parabolic.clamp(0.1 * part, 0.5 * part);
+        }
+        None
+    }
+
+    fn moved(&self, d: &[f64], part: f64) -> Vec<f64> {
+        let each = self.best.x.iter().zip(d).zip(self.bounds);
+        let moved = each.map(|((x, d), [from, to])| (x + part * d).clamp(*from, *to));
+        moved.collect()
+    }
+
+    /// The point of the quadratic program whose constraints have the values at the end of a step.
+    fn corrected(&self, step: &Step, end: &Evaluation) -> Option<Vec<f64>> {
+        let constraints = &self.best.evaluation.constraints;
+        let value = |c: &Constraint| {
+            let there = c.counterpart(&end.constraints)?;
+            Some(there.value - dot(&c.slope, &step.d))
+        };
+        let values: Option<Vec<f64>> = constraints.iter().map(value).collect();
+        let second = self
+            .step(Some(&values?))
+            .filter(|second| second.left == 0.0)?;
+        Some(self.moved(&second.d, 1.0))
+    }
+
+    /// The curvature of the Lagrangian from the change of its slope.
+    fn update(&mut self, step: &Step, x: &[f64], next: &Evaluation) {
+        let at = &self.best.evaluation;
+        let s: Vec<f64> = x.iter().zip(&self.best.x).map(|(a, b)| a - b).collect();
+        let mut y: Vec<f64> = (next.slope.iter().zip(&at.slope))
+            .map(|(a, b)| a - b)
+            .collect();
+        for (constraint, multiplier) in at.constraints.iter().zip(&step.multipliers) {
+            if *multiplier == 0.0 {
+                continue;
+            }
+            let there = constraint.counterpart(&next.constraints);
+            let there = there.map_or(&constraint.slope, |there| &there.slope);
+            for (k, y) in y.iter_mut().enumerate() {
+                *y -= multiplier * (there[k] - constraint.slope[k]);
+            }
+        }
+        let along = dot(&s, &y);
+        if self.is_fresh && along > 0.0 {
+            let size = (dot(&y, &y) / along).clamp(1e-6, 1e6);
+            for (k, row) in self.hessian.iter_mut().enumerate() {
+                row[k] = size;
+            }
+        }
+        self.is_fresh = false;
+        let bend: Vec<f64> = self.hessian.iter().map(|row| dot(row, &s)).collect();
+        let curvature = dot(&s, &bend);
+        if curvature.is_nan() || curvature <= f64::MIN_POSITIVE {
+            return;
+        }
+        let damping = match along < DAMPED * curvature {
+            true => (1.0 - DAMPED) * curvature / (curvature - along),
+            false => 1.0,
+        };
+        for (y, bend) in y.iter_mut().zip(&bend) {
+            *y = damping * *y + (1.0 - damping) * bend;
+        }
+        let along = dot(&s, &y);
+        for (i, row) in self.hessian.iter_mut().enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                *entry += y[i] * y[j] / along - bend[i] * bend[j] / curvature;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Dual;
+
+    /// A problem of W. Hock and K. Schittkowski, *Test Examples for Nonlinear Programming Codes* (1981): goal, inequalities, equalities.
+    type Functions = fn(&[Dual]) -> (Dual, Vec<Dual>, Vec<Dual>);
+
+    struct Known {
+        number: usize,
+        functions: Functions,
+        start: &'static [f64],
+        bounds: &'static [[f64; 2]],
+        goal: f64,
+    }
+
+    fn evaluated(functions: Functions, x: &[f64]) -> Evaluation {
+        let by = |k: usize| {
+            let each = x.iter().enumerate();
+            let at = each.map(|(i, v)| Dual {
+                v: *v,
+                d: f64::from(u8::from(i == k)),
+            });
+            functions(&at.collect::<Vec<_>>())
+        };
+        let all: Vec<_> = (0..x.len()).map(by).collect();
+        let row =
+            |of: &dyn Fn(&(Dual, Vec<Dual>, Vec<Dual>)) -> Dual, family, is_equality| Constraint {
+                value: of(&all[0]).v,
+                slope: all.iter().map(|a| of(a).d).collect(),
+                is_equality,
+                family,
+                place: 0.0,
+            };
+        let inequalities = all[0].1.len();
+        let mut constraints: Vec<Constraint> = (0..inequalities)
+            .map(|k| row(&|a| a.1[k], k, false))
+            .collect();
+        let equalities = 0..all[0].2.len();
+        constraints.extend(equalities.map(|k| row(&|a| a.2[k], inequalities + k, true)));
+        Evaluation {
+            goal: all[0].0.v,
+            slope: all.iter().map(|a| a.0.d).collect(),
+            constraints,
+        }
+    }
+
+    fn number(value: f64) -> Dual {
+        Dual { v: value, d: 0.0 }
+    }
+
+    const WIDE: [f64; 2] = [-1e3, 1e3];
+
+    const KNOWN: &[Known] = &[
+        Known {
+            number: 6,
+            functions: |x| {
+                let e = x[0] - number(1.0);
+                (e * e, vec![], vec![number(10.0) * (x[1] - x[0] * x[0])])
+            },
+            start: &[-1.2, 1.0],
+            bounds: &[WIDE; 2],
+            goal: 0.0,
+        },
+        Known {
+            number: 35,
+            functions: |x| {
+                let [a, b, c] = [x[0], x[1], x[2]];
+                let n = number;
+                let goal = n(9.0) - n(8.0) * a - n(6.0) * b - n(4.0) * c
+                    + n(2.0) * a * a
+                    + n(2.0) * b * b
+                    + c * c
+                    + n(2.0) * a * b
+                    + n(2.0) * a * c;
+                (goal, vec![n(3.0) - a - b - n(2.0) * c], vec![])
+            },
+            start: &[0.5; 3],
+            bounds: &[[0.0, 1e3]; 3],
+            goal: 1.0 / 9.0,
+        },
+        Known {
+            number: 43,
+            functions: |x| {
+                let [a, b, c, d] = [x[0], x[1], x[2], x[3]];
+                let n = number;
+                let goal =
+                    a * a + b * b + n(2.0) * c * c + d * d - n(5.0) * a - n(5.0) * b - n(21.0) * c
+                        + n(7.0) * d;
+                let one = n(8.0) - a * a - b * b - c * c - d * d - a + b - c + d;
+                let two = n(10.0) - a * a - n(2.0) * b * b - c * c - n(2.0) * d * d + a + d;
+                let three = n(5.0) - n(2.0) * a * a - b * b - c * c - n(2.0) * a + b + d;
+                (goal, vec![one, two, three], vec![])
+            },
+            start: &[0.0; 4],
+            bounds: &[WIDE; 4],
+            goal: -44.0,
+        },
+        Known {
+            number: 71,
+            functions: |x| {
+                let [a, b, c, d] = [x[0], x[1], x[2], x[3]];
+                let squares = a * a + b * b + c * c + d * d;
+                let product = a * b * c * d - number(25.0);
+                (
+                    a * d * (a + b + c) + c,
+                    vec![product],
+                    vec![squares - number(40.0)],
+                )
+            },
+            start: &[1.0, 5.0, 5.0, 1.0],
+            bounds: &[[1.0, 5.0]; 4],
+            goal: 17.014_017_289_134_8,
+        },
+    ];
+
+    #[test]
+    fn problems_of_hock_and_schittkowski_have_their_optima() {
+        for known in KNOWN {
+            let settings = SequentialSettings {
+                tolerance: 1e-8,
+                iterations: 100,
+                families: 4,
+            };
+            let mut problem = |x: &[f64]| Some(evaluated(known.functions, x));
+            let found = minimise(
+                &mut problem,
+                known.start,
+                known.bounds,
+                settings,
+                &mut |_, _| true,
+            );
+            let found = found.expect("a start");
+            let error = (found.evaluation.goal - known.goal).abs() / (1.0 + known.goal.abs());
+            assert!(
+                found.is_converged && error < 1e-8,
+                "{}: {error:e} {found:?}",
+                known.number
+            );
+            assert!(
+                found.evaluations < 60,
+                "{}: {}",
+                known.number,
+                found.evaluations
+            );
+        }
+    }
+
+    #[test]
+    fn the_multiplier_is_the_price_of_a_constraint() {
+        // Problem 43: at the optimum (0, 1, 2, −1) the multipliers are 1, 0 and 2.
+        let known = &KNOWN[2];
+        let settings = SequentialSettings {
+            tolerance: 1e-9,
+            iterations: 100,
+            families: 3,
+        };
+        let mut problem = |x: &[f64]| Some(evaluated(known.functions, x));
+        let found = minimise(
+            &mut problem,
+            known.start,
+            known.bounds,
+            settings,
+            &mut |_, _| true,
+        );
+        for (found, expected) in found
+            .expect("a start")
+            .multipliers
+            .iter()
+            .zip([1.0, 0.0, 2.0])
+        {
+            // Seen: 2e-9.
+            assert!((found - expected).abs() < 1e-7, "{found}");
+        }
+    }
+
+    #[test]
+    fn a_least_peak_has_several_active_members_of_one_family() {
+        // The least level above x², (x − 2)² and 1 − x: two are active at x = 1.
+        let mut problem = |at: &[f64]| {
+            let (x, level) = (at[0], at[1]);
+            let all = [
+                (x * x, 2.0 * x),
+                ((x - 2.0).powi(2), 2.0 * (x - 2.0)),
+                (1.0 - x, -1.0),
+            ];
+            let member = |(k, (value, slope)): (usize, &(f64, f64))| Constraint {
+                value: level - value,
+                slope: vec![-slope, 1.0],
+                is_equality: false,
+                family: 0,
+                place: 0.3 * k as f64,
+            };
+            Some(Evaluation {
+                goal: level,
+                slope: vec![0.0, 1.0],
+                constraints: all.iter().enumerate().map(member).collect(),
+            })
+        };
+        let settings = SequentialSettings {
+            tolerance: 1e-10,
+            iterations: 50,
+            families: 1,
+        };
+        let found = minimise(
+            &mut problem,
+            &[5.0, 0.0],
+            &[WIDE; 2],
+            settings,
+            &mut |_, _| true,
+        );
+        let found = found.expect("a start");
+        assert!((found.evaluation.goal - 1.0).abs() < 1e-10 && found.is_converged);
+        for (found, expected) in found.multipliers.iter().zip([0.5, 0.5, 0.0]) {
+            assert!((found - expected).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn constraints_without_a_common_point_are_not_called_optimal() {
+        let mut problem = |x: &[f64]| {
+            let side = |sign: f64, family| Constraint {
+                value: sign * x[0] - 1.0,
+                slope: vec![sign],
+                is_equality: false,
+                family,
+                place: 0.0,
+            };
+            Some(Evaluation {
+                goal: x[0] * x[0],
+                slope: vec![2.0 * x[0]],
+                constraints: vec![side(1.0, 0), side(-1.0, 1)],
+            })
+        };
+        let settings = SequentialSettings {
+            tolerance: 1e-8,
+            iterations: 50,
+            families: 2,
+        };
+        let found = minimise(&mut problem, &[0.3], &[WIDE], settings, &mut |_, _| true);
+        let found = found.expect("a start");
+        assert!(!found.is_converged && found.evaluation.violation() >= 1.0);
+    }
+}
