@@ -7,10 +7,11 @@ use crate::diagnostics::Diagnostics;
 use crate::drives::{DriveReader, reject_drives_of_prescribed, reject_shared_names};
 use crate::error::{SceneError, Source};
 use crate::events::EventReader;
-use crate::file::SceneFile;
+use crate::file::{SceneFile, Searches};
 use crate::magnitude::Magnitudes;
 use crate::motion::{ParsedMotion, calibration};
 use crate::number_paths::{body_numbers, section_numbers};
+use crate::optimise::optimise_section;
 use crate::points::{planar_only, three_numbers};
 use crate::prescribed::{coordinate_sweep, prescribed_motion};
 use crate::read::{named_text, syntax, text_of_file};
@@ -261,6 +262,7 @@ fn read<D: Sections>(
     let section_numbers = section_numbers(fields);
     let numbers: Vec<_> = body_numbers.iter().chain(&section_numbers).collect();
     let swept = section("sweep").map(|f| sweep_section(&f, &numbers));
+    let jobs = section("optimise").map(|f| optimise_section(&f, &numbers));
     if log.count() > 0 {
         return None;
     }
@@ -284,7 +286,10 @@ fn read<D: Sections>(
             note.map(printable),
             fields,
             [body_numbers, section_numbers],
-            swept.unwrap_or_default(),
+            Searches {
+                sweep: swept.unwrap_or_default(),
+                jobs: jobs.unwrap_or_default(),
+            },
         ),
         masses: bodies.list.iter().map(|b| b.mass).collect(),
         points: bodies.named_points(),

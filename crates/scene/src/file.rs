@@ -2,6 +2,7 @@
 
 use crate::error::{SceneError, SceneWarning, Source};
 use crate::number_paths::SceneNumber;
+use crate::optimise::OptimiseJob;
 use crate::spans::{SceneLocation, SceneSpans};
 use crate::swept::SweepSection;
 use crate::table_reader::TableReader;
@@ -31,6 +32,14 @@ pub struct SceneFile {
     pub(crate) section_numbers: Vec<SceneNumber>,
     /// Tied numbers and limits of the variants in a sweep.
     pub sweep_section: SweepSection,
+    /// The searches for better designs.
+    pub jobs: Vec<OptimiseJob>,
+}
+
+/// What a scene says about its variants.
+pub(crate) struct Searches {
+    pub(crate) sweep: SweepSection,
+    pub(crate) jobs: Vec<OptimiseJob>,
 }
 
 impl SceneFile {
@@ -42,7 +51,7 @@ impl SceneFile {
         note: Option<String>,
         fields: &TableReader<'_>,
         [body_numbers, section_numbers]: [Vec<SceneNumber>; 2],
-        sweep_section: SweepSection,
+        searches: Searches,
     ) -> Self {
         let log = fields.log();
         Self {
@@ -55,7 +64,8 @@ impl SceneFile {
             spans: log.take_spans(),
             body_numbers,
             section_numbers,
-            sweep_section,
+            sweep_section: searches.sweep,
+            jobs: searches.jobs,
         }
     }
 

@@ -83,6 +83,7 @@ mod motion;
 mod names;
 mod number_paths;
 mod numbers;
+mod optimise;
 mod plane;
 mod points;
 mod prescribed;
@@ -111,6 +112,7 @@ pub use dimensions::{Dimensions, Plane, Space};
 pub use error::{SceneError, SceneWarning};
 pub use file::SceneFile;
 pub use key_uses::{KeyUse, PathStep, SceneKey, WrittenAs, key_uses, scene_keys};
+pub use optimise::{Choice, OptimiseJob, VariedNumber};
 pub use scene::Scene;
 pub use scene_data::{
     Assembly, Calibration, CoordinateSweep, DwellRequest, EventTrigger, FreeMotionSpec,
@@ -118,7 +120,7 @@ pub use scene_data::{
     PrescribedMotion, Requests, SceneIn, SectionRequest, SpacePathPoint, SpaceScene,
 };
 pub use schema::schema;
-pub use spans::SceneLocation;
+pub use spans::{JobPart, SceneLocation};
 pub use swept::{ResultLimit, SweepSection, SweepTarget, TiedNumber};
 pub use value::MAX_ANGLE;
 pub use wording::choices;

@@ -65,7 +65,14 @@ impl SceneFile {
         })
     }
 
-    /// The text with the numbers at some paths replaced by values in the scene's own unit.
+    /// The text with the numbers at some paths replaced by values in the scene's own unit; all else stays, comments too.
+    ///
+    /// # Errors
+    /// [`SceneError`] when a path does not exist or is named twice, or a value is not finite.
+    pub fn text_with(&self, values: &[(&str, f64)]) -> Result<String, SceneError> {
+        Ok(self.source_with(values)?.inner().clone())
+    }
+
     fn source_with(&self, values: &[(&str, f64)]) -> Result<Source, SceneError> {
         let mut changes = Vec::with_capacity(values.len());
         for &(path, value) in values {

@@ -91,6 +91,25 @@ pub enum SceneLocation {
     Limit(usize),
     /// The name of the k-th target of `[sweep]`.
     Target(usize),
+    /// The name of the k-th job of `[optimise]`.
+    Job(usize),
+    /// A part of such a job.
+    JobPart(usize, JobPart, usize),
+}
+
+/// The parts of a job of `[optimise]`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum JobPart {
+    /// A number that varies.
+    Vary,
+    /// A tied number.
+    Tied,
+    /// A summand of the goal.
+    Goal,
+    /// A condition.
+    Condition,
+    /// A part that is chosen.
+    Choice,
 }
 
 /// The places of the parts of a scene.
@@ -109,6 +128,7 @@ impl SceneLocation {
             Self::PrescribedLaw(_) => Self::Prescribed,
             Self::Swept(_) => Self::CoordinateSweep,
             Self::Magnitude(k) => Self::Load(k),
+            Self::JobPart(k, ..) => Self::Job(k),
             Self::AssemblyCoordinate(a) => Self::InitialCoordinate(a),
             Self::InitialCoordinate(a) | Self::InitialVelocity(a) => Self::Actuator(a),
             Self::InitialGuess(b) => Self::Body(b),

@@ -112,13 +112,22 @@ pub(crate) fn sweep_section(fields: &TableReader<'_>, numbers: &[&SceneNumber]) 
         entry.value.array(expected, "`subject-to` of [sweep]")
     });
     SweepSection {
-        tied: tied_numbers(&entries("tied").unwrap_or_default(), numbers),
+        tied: tied_numbers(
+            &entries("tied").unwrap_or_default(),
+            numbers,
+            &SceneLocation::Tied,
+        ),
         limits: limits_of(&limits.unwrap_or_default()),
         targets: targets(&entries("targets").unwrap_or_default()),
     }
 }
 
-fn tied_numbers(entries: &[Entry<'_>], numbers: &[&SceneNumber]) -> Vec<TiedNumber> {
+/// The tied numbers of some entries, each with its place.
+pub(crate) fn tied_numbers(
+    entries: &[Entry<'_>],
+    numbers: &[&SceneNumber],
+    place: &dyn Fn(usize) -> SceneLocation,
+) -> Vec<TiedNumber> {
     let variables = variables(numbers.iter().copied());
     let mut found = Vec::new();
     for entry in entries {
@@ -131,8 +140,7 @@ fn tied_numbers(entries: &[Entry<'_>], numbers: &[&SceneNumber]) -> Vec<TiedNumb
         if let Some(expression) = expression(entry.value, &variables, &what)
             && let Some(text) = entry.value.string(&what)
         {
-            let location = SceneLocation::Tied(found.len());
-            entry.log().place(location, &entry.span());
+            entry.place(place(found.len()));
             found.push(TiedNumber {
                 path: entry.name.to_owned(),
                 text: text.to_owned(),

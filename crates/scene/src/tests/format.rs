@@ -280,6 +280,18 @@ fn every_example_of_a_key_is_read() {
             "tied of [sweep]" => format!("sweep.tied = {inner}"),
             "targets of [sweep]" => format!("sweep.targets = {inner}"),
             "a target of [sweep]" => format!("sweep.targets.foot = {inner}"),
+            "a job of [optimise]" => format!("optimise.best = {inner}"),
+            "vary of a job" => {
+                format!("optimise.best = {{ vary = {inner}, minimise = \"m.max\" }}")
+            }
+            "minimise of a job" => {
+                let vary = "{ \"crank.mass\" = [1, 2] }";
+                format!("optimise.best = {{ vary = {vary}, minimise = {inner} }}")
+            }
+            "choose of a job" => {
+                let vary = "{ \"crank.mass\" = [1, 2] }, minimise = \"m.max\"";
+                format!("optimise.best = {{ vary = {vary}, choose = {inner} }}")
+            }
             "[stops.<stop>]" => format!("stops.other = {inner}"),
             "[friction.<pin>]" => format!("friction.A = {inner}"),
             "[friction.<slide>]" => format!("friction.slide = {inner}"),
