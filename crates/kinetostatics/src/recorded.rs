@@ -3,7 +3,8 @@
 //!
 //! ```text
 //! inputs    q, q̇, q̈, magnitudes of the loads, numbers p, solution u of the closures
-//! outputs   actuator forces τ, reactions, wanted coordinates s, ṡ, s̈, wanted points with velocity and acceleration
+//! outputs   actuator forces τ, reactions, wanted coordinates s, ṡ, s̈, wanted points with velocity and acceleration,
+//!           in the plane force and moment on the ground
 //! magnitude of a load    F + Σ F′ (s − s₀)    of its signals s, with its value F, its slopes F′ and the values s₀ as inputs
 //! ```
 //!
@@ -152,7 +153,7 @@ pub struct StateInputs<'a> {
 }
 
 /// Where the inputs and outputs of a recorded state are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct StateLayout {
     /// Number of coordinates.
     pub actuators: usize,
@@ -198,7 +199,7 @@ impl StateLayout {
 }
 
 /// A state of motion as operations.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct RecordedState {
     /// The operations.
     pub code: StraightLine,

@@ -15,6 +15,36 @@ use dwell_numerics::{Constant, RecordedNumber, Scalar};
 use std::sync::Arc;
 
 impl Model {
+    /// The force on the ground and its moment about the origin: the loads less the rate of change of momentum.
+    fn shaking(
+        &self,
+        weighted: &[(BodyId, Mass<RecordedNumber>)],
+        states: &BodyStates<RecordedNumber, RecordedNumber>,
+        loads: &LoadState<RecordedNumber>,
+    ) -> [RecordedNumber; 3] {
+        let zero = RecordedNumber::default();
+        let (mut force, mut moment) = (Vec2::zero(), zero);
+        for wrench in &loads.wrenches {
+            let body = states.body(wrench.body);
+            let at = states.origin().cast() + body.joint_origin + wrench.moment_arm;
+            force += wrench.force;
+            moment += at.cross(wrench.force) + wrench.couple;
+        }
+        for (body, mass) in weighted {
+            let center = states.point(*body, mass.center);
+            let rate = center.acceleration * mass.mass;
+            let angular = states.body(*body).angular_acceleration;
+            force += -rate;
+            moment -= center.position.cross(rate) + mass.inertia * angular;
+        }
+        for varying in &self.pass_model.varying_inertias {
+            let body = states.body(BodyId(varying.body));
+            let ([inertia, half_slope], w) = (varying.at(body.rotation), body.angular_velocity);
+            moment -= inertia * body.angular_acceleration + half_slope * w * w;
+        }
+        [force.x, force.y, moment]
+    }
+
     /// The coordinates that are wanted, as functions.
     fn wanted_functions(of: Described<'_, Self>) -> Option<Vec<CoordinateFunction>> {
         let coordinates = of.wanted.coordinates.iter();
@@ -135,6 +165,7 @@ impl RecordableModel for Model {
             let vectors = [point.position, point.velocity, point.acceleration];
             outputs.extend(vectors.into_iter().flat_map(|v| [v.x, v.y]));
         }
+        outputs.extend(self.shaking(&weighted, &states, &loads));
         Ok(outputs)
     }
 }

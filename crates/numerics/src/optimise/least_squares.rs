@@ -29,6 +29,7 @@ const DAMPING: f64 = 1e-3;
 const MOST_DAMPING: f64 = 1e12;
 
 /// Searches the least sum of squares between bounds, from a point, in at most so many evaluations; `None` if there are no residuals there.
+// Long because the iteration is one loop.
 pub fn least_squares(
     problem: &mut dyn FnMut(&[f64]) -> Option<Residuals>,
     start: &[f64],

@@ -101,6 +101,7 @@ impl ActiveSet {
 
 impl QuadraticProgram<'_> {
     /// Solves it; `None` if no point satisfies the constraints, or the Hessian is not positive definite.
+    // Long because the dual method is one loop in another.
     pub fn solve(&self) -> Option<QuadraticSolution> {
         let l = cholesky(self.hessian)?;
         let transformed = |vector: &Vec<f64>| {

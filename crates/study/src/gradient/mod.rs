@@ -7,6 +7,10 @@ pub use compute::{
     Spread, Tolerance, TolerancedNumber, compute_gradient, compute_tolerance,
 };
 
+pub(crate) use compute::{
+    DesignSlopes, RecordedMachine, RecordedOutputs, StateOfMotion, recorded_signal,
+};
+
 #[cfg(feature = "output")]
 pub(crate) mod output;
 #[cfg(feature = "output")]

@@ -166,7 +166,7 @@ fn listed(result: &ResultGradient) -> String {
 }
 
 /// Rows in columns, indented.
-pub(super) fn aligned<const COLUMNS: usize>(rows: &[[String; COLUMNS]]) -> String {
+pub(crate) fn aligned<const COLUMNS: usize>(rows: &[[String; COLUMNS]]) -> String {
     let length = |k: usize| rows.iter().map(move |row| row[k].chars().count()).max();
     let widths: Vec<usize> = (0..COLUMNS).map(|k| length(k).unwrap_or(0)).collect();
     let mut text = String::new();
@@ -245,7 +245,7 @@ fn bars(result: &ResultGradient, distance: f64) -> Drawing {
 }
 
 /// Bars of the first of named values, at a distance.
-pub(super) fn bars_of(title: String, named: &[(String, f64)], distance: f64) -> Drawing {
+pub(crate) fn bars_of(title: String, named: &[(String, f64)], distance: f64) -> Drawing {
     let listed = || named.iter().take(LISTED);
     let longest = listed().map(|(_, value)| value.abs()).fold(0.0, f64::max);
     let mut shapes = Vec::new();

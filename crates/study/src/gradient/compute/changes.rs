@@ -1,6 +1,6 @@
 //! What each number of a scene changes.
 
-use super::machine_numbers::{GradientScene, machine_numbers};
+use super::machine_numbers::GradientScene;
 use super::recorded_machine::RecordedMachine;
 use dwell_kinetostatics::MachineModel as _;
 use dwell_scene::SceneLocation;
@@ -66,7 +66,7 @@ fn around<S: GradientScene>(
         if machine.may_refuse_numbers() {
             varied.rows().map_err(|error| error.to_string())?;
         }
-        Ok(machine_numbers(&varied, structure, machine.wanted()))
+        Ok(machine.numbers_of(&varied))
     };
     let (after, before) = (at(number.value + step)?, at(number.value - step)?);
     Ok(after.zip(before).map(|(after, before)| [after, before]))

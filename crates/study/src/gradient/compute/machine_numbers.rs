@@ -3,7 +3,7 @@
 use crate::machines::{CoordinateOf, MachineScene};
 use crate::models::compile_model;
 use crate::sweep::compute::SweptScene;
-use crate::trajectory::compute::Quantity;
+use crate::trajectory::compute::{Dyad, Quantity, dyads};
 use dwell_geometry::{Component, JointId, Vec2, space};
 use dwell_kinetostatics::space::{Axes, Component as InSpace};
 use dwell_kinetostatics::{
@@ -38,6 +38,11 @@ pub trait GradientScene: SweptScene<Model: RecordableModel> {
 
     /// The reactions that are the components of the force of a joint, or of its moment; `None` if some are not among those of the model.
     fn components(model: &Self::Model, joint: JointId, is_moment: bool) -> Option<Vec<Quantity>>;
+
+    /// The dyads that have a transmission angle, of a model of the structure of this scene.
+    fn dyads(&self, _: &Self::Model) -> Vec<Dyad> {
+        Vec::new()
+    }
 
     /// The loads.
     fn loads(&self) -> &[ModelLoad<Self::Model>];
@@ -136,6 +141,11 @@ impl GradientScene for PlaneScene {
         };
         let places = all.iter().filter(|c| is_wanted(c)).map(place);
         places.map(|k| k.map(Quantity::Reaction)).collect()
+    }
+
+    fn dyads(&self, model: &Model) -> Vec<Dyad> {
+        let all = dyads(&self.mechanism, model.plan()).into_iter();
+        all.map(|(_, dyad)| dyad).collect()
     }
 
     fn loads(&self) -> &[ModelLoad<Model>] {

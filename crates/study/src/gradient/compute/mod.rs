@@ -7,13 +7,18 @@
 mod changes;
 mod differences;
 mod machine_numbers;
+mod outputs;
 mod recorded_machine;
 mod routes;
 mod slopes;
 mod tolerance;
 
 pub use machine_numbers::GradientScene;
+pub(crate) use outputs::RecordedOutputs;
+pub(crate) use recorded_machine::{RecordedMachine, StateOfMotion};
+pub(crate) use routes::recorded_signal;
 pub use slopes::{Gradient, NumberSlope, ResultGradient, SlopeMethod, compute_gradient};
+pub(crate) use tolerance::DesignSlopes;
 pub use tolerance::{
     LimitYield, ResultTolerance, Spread, Tolerance, TolerancedNumber, compute_tolerance,
 };

@@ -1,12 +1,12 @@
 //! The states of a machine as recorded operations, and the derivatives of weighted sums of their outputs.
 
 use super::machine_numbers::{GradientScene, WantedOf, machine_numbers};
+use super::outputs::RecordedOutputs;
 use crate::machines::MachineScene;
-use crate::trajectory::compute::{Quantity, RowScene, Signal};
-use dwell_geometry::JointId;
+use crate::trajectory::compute::Signal;
 use dwell_kinetostatics::{
     InverseDynamics, MachineModel, Magnitude, RecordableModel as _, RecordedState,
-    ReducibleModel as _, Signal as LoadSignal, StateLayout, WantedMotion,
+    ReducibleModel as _, Signal as LoadSignal, StateLayout,
 };
 use dwell_laws::HeldPieces;
 use dwell_numerics::{Lanes, ReverseSweep};
@@ -24,13 +24,13 @@ type WorkspaceOf<S> =
 
 /// A state of motion under loads.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct StateOfMotion<'a> {
+pub(crate) struct StateOfMotion<'a> {
     /// The time of the loads, s; `None` without loads.
-    pub(super) load_time: Option<f64>,
+    pub(crate) load_time: Option<f64>,
     /// By actuator: coordinate (rad or m), velocity and acceleration.
-    pub(super) q: &'a [f64],
-    pub(super) q_dot: &'a [f64],
-    pub(super) q_ddot: &'a [f64],
+    pub(crate) q: &'a [f64],
+    pub(crate) q_dot: &'a [f64],
+    pub(crate) q_ddot: &'a [f64],
 }
 
 /// A state that can be evaluated.
@@ -44,7 +44,7 @@ struct Prepared {
 }
 
 /// A machine whose states are recorded.
-pub(super) struct RecordedMachine<'a, S: GradientScene> {
+pub(crate) struct RecordedMachine<'a, S: GradientScene> {
     scene: &'a S,
     /// The model under its loads.
     model: &'a S::Model,
@@ -53,11 +53,8 @@ pub(super) struct RecordedMachine<'a, S: GradientScene> {
     /// The model of the recordings.
     structure: S::Model,
     structure_workspace: WorkspaceOf<S>,
+    outputs: RecordedOutputs,
     wanted: WantedOf<S>,
-    /// By wanted coordinate: its number among the measured ones.
-    measured: Vec<usize>,
-    /// By wanted point: its body, and its place there.
-    points: Vec<(usize, [f64; 3])>,
     /// The numbers of the machine, with the constant magnitudes of its loads.
     numbers: Vec<f64>,
     /// Recordings: where one's operations are not those of a pose, there is another.
@@ -72,7 +69,7 @@ pub(super) struct RecordedMachine<'a, S: GradientScene> {
 
 impl<'a, S: GradientScene> RecordedMachine<'a, S> {
     /// The machine of a scene whose rows have this model, for these signals of recorded quantities. `None` if it cannot be recorded.
-    pub(super) fn new(scene: &'a S, model: &'a S::Model, signals: &[Signal]) -> Option<Self> {
+    pub(crate) fn new(scene: &'a S, model: &'a S::Model, signals: &[Signal]) -> Option<Self> {
         let is_fixed = |m: &Magnitude<_>| !matches!(m, Magnitude::External(_));
         let is_recordable = model.frictions().len() == 0
             && model.loads().len() == scene.loads().len()
@@ -80,25 +77,9 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
         if !is_recordable {
             return None;
         }
-        let quantities = signals.iter().flat_map(Signal::quantities);
-        let (mut measured, mut points) = (Vec::new(), Vec::new());
-        for quantity in quantities {
-            match quantity {
-                Quantity::Measured(k, _) if !measured.contains(&k) => measured.push(k),
-                Quantity::Point(body, at, ..) if !points.contains(&(body.0, at)) => {
-                    points.push((body.0, at));
-                }
-                _ => {}
-            }
-        }
-        let coordinates = measured.iter().map(|&k| coordinate(scene, k));
-        let wanted = WantedMotion {
-            coordinates: coordinates.collect::<Option<_>>()?,
-            points: points
-                .iter()
-                .map(|&(b, at)| (b.into(), S::point(at)))
-                .collect(),
-        };
+        let counts = [model.actuators(), model.reaction_count()];
+        let outputs = RecordedOutputs::new(scene, model, counts, signals)?;
+        let wanted = outputs.wanted_in(scene, model)?;
         let structure = scene.with_all_places(model);
         Some(Self {
             numbers: machine_numbers(scene, &structure, &wanted)?,
@@ -111,9 +92,8 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
             structure,
             scene,
             model,
+            outputs,
             wanted,
-            measured,
-            points,
             recordings: Vec::new(),
             limited: None,
             sweep: ReverseSweep::default(),
@@ -123,7 +103,7 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
     }
 
     /// The model of the recordings.
-    pub(super) fn structure(&self) -> &S::Model {
+    pub(crate) fn structure(&self) -> &S::Model {
         &self.structure
     }
 
@@ -132,13 +112,27 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
         S::may_refuse_numbers(&self.structure)
     }
 
-    /// What is wanted of the states.
-    pub(super) fn wanted(&self) -> &WantedOf<S> {
-        &self.wanted
+    /// The outputs of its recordings.
+    pub(crate) fn outputs(&self) -> &RecordedOutputs {
+        &self.outputs
+    }
+
+    /// The numbers of the machine of a variant, in the order of [`numbers`](Self::numbers); `None` if it has another structure.
+    pub(crate) fn numbers_of(&self, variant: &S) -> Option<Vec<f64>> {
+        let wanted = self.outputs.wanted_in(variant, &self.structure)?;
+        machine_numbers(variant, &self.structure, &wanted)
+    }
+
+    /// The recording of a state, and its inputs; `None` if it has no recording or needs the solution of closures without closed form.
+    pub(crate) fn recorded(&mut self, at: StateOfMotion<'_>) -> Option<(RecordedState, Vec<f64>)> {
+        let prepared = self.prepare(at)?;
+        let k = self.recording(&prepared)?;
+        let is_closed = prepared.inputs.len() == prepared.known;
+        is_closed.then(|| (self.recordings[k].clone(), prepared.inputs))
     }
 
     /// The numbers by which derivatives are taken.
-    pub(super) fn numbers(&self) -> &[f64] {
+    pub(crate) fn numbers(&self) -> &[f64] {
         &self.numbers
     }
 
@@ -196,8 +190,7 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
         let recorded = match self.limited.take() {
             Some(known) => known,
             None => {
-                let quantities = signal.quantities();
-                let places: Vec<usize> = quantities.iter().filter_map(|q| self.place(*q)).collect();
+                let places = self.outputs.places(signal);
                 whole.limited_to(|k| k < self.model.actuators() || places.contains(&k))
             }
         };
@@ -211,7 +204,7 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
             if !agree(&outputs, &prepared.tau, self.largest) {
                 return None;
             }
-            for (output, slope) in self.slopes(signal, &outputs, at.q_dot) {
+            for (output, slope) in self.outputs.slopes(signal, &|k| outputs[k], at.q_dot) {
                 weights[output].0[lane] += weight * slope;
             }
         }
@@ -242,7 +235,7 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
         let recorded = &self.recordings[k];
         let outputs = self.sweep.outputs();
         let mut weights = vec![0.0; outputs.len()];
-        for (output, slope) in self.slopes(signal, outputs, at.q_dot) {
+        for (output, slope) in self.outputs.slopes(signal, &|k| outputs[k], at.q_dot) {
             weights[output] += weight * slope;
         }
         let layout = recorded.layout;
@@ -348,64 +341,12 @@ impl<'a, S: GradientScene> RecordedMachine<'a, S> {
         model.loaded_balance(workspace, forces);
         Some(())
     }
-
-    /// The outputs on which a signal depends, with its derivatives by them, where the outputs and velocities have these values.
-    fn slopes(&self, signal: &Signal, outputs: &[f64], q_dot: &[f64]) -> Vec<(usize, f64)> {
-        let place = |quantity: Quantity| self.place(quantity);
-        match signal {
-            Signal::Column(column) => place(column.quantity)
-                .map(|k| (k, 1.0))
-                .into_iter()
-                .collect(),
-            Signal::Norm(components) => {
-                let places: Vec<usize> = components.iter().filter_map(|c| place(*c)).collect();
-                let squares = places.iter().map(|k| outputs[*k] * outputs[*k]);
-                let norm = squares.sum::<f64>().sqrt();
-                places.into_iter().map(|k| (k, outputs[k] / norm)).collect()
-            }
-            Signal::Power(i) => vec![(*i, q_dot[*i])],
-            Signal::Distance(_) => Vec::new(),
-        }
-    }
-
-    /// The output that a quantity is; none of a coordinate of an actuator, which no number changes.
-    fn place(&self, quantity: Quantity) -> Option<usize> {
-        let (actuators, reactions) = (self.model.actuators(), self.model.reaction_count());
-        let coordinates = actuators + reactions;
-        let points = coordinates + 3 * self.measured.len();
-        match quantity {
-            Quantity::ActuatorForce(i) => Some(i),
-            Quantity::Reaction(k) => Some(actuators + k),
-            Quantity::Measured(k, order) => {
-                let at = self.measured.iter().position(|m| *m == k)?;
-                Some(coordinates + 3 * at + order)
-            }
-            Quantity::Point(body, at, order, axis) => {
-                let k = self.points.iter().position(|p| *p == (body.0, at))?;
-                Some(points + S::DIMENSION * (3 * k + order) + axis)
-            }
-            _ => None,
-        }
-    }
 }
 
 /// Whether the first outputs of a recording are these actuator forces, in parts of the largest force.
 fn agree(outputs: &[f64], tau: &[f64], largest: f64) -> bool {
     let mut pairs = outputs.iter().zip(tau);
     pairs.all(|(a, b)| (a - b).abs() <= SAME * largest)
-}
-
-/// Whether a quantity is an output of a recording, or depends on no number.
-pub(super) fn is_recorded(quantity: Quantity) -> bool {
-    matches!(
-        quantity,
-        Quantity::Time
-            | Quantity::ActuatorCoordinate(..)
-            | Quantity::ActuatorForce(_)
-            | Quantity::Reaction(_)
-            | Quantity::Measured(..)
-            | Quantity::Point(..)
-    )
 }
 
 /// By load: the place of its magnitude among the inputs of all.
@@ -418,13 +359,4 @@ fn magnitude_places<K, C: Copy>(loads: &[dwell_kinetostatics::Load<K, C>]) -> Ve
         at
     };
     loads.iter().map(place).collect()
-}
-
-/// A measured coordinate by its number, as of [`RowScene::measured`].
-fn coordinate<S: RowScene>(scene: &S, k: usize) -> Option<crate::machines::CoordinateOf<S>> {
-    let named = scene.named_coordinates();
-    match k.checked_sub(named.len()) {
-        None => Some(named[k].coordinate),
-        Some(joint) => (joint < scene.joint_names().len()).then(|| S::travel(JointId(joint))),
-    }
 }

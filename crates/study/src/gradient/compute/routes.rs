@@ -1,7 +1,8 @@
 //! The exact routes to gradients: a weighted sum of a signal at states of motion.
 
 use super::machine_numbers::GradientScene;
-use super::recorded_machine::{RecordedMachine, StateOfMotion, is_recorded};
+use super::outputs::is_recorded;
+use super::recorded_machine::{RecordedMachine, StateOfMotion};
 use crate::explain::StudyError;
 use crate::sweep::compute::{RequestedQuantities, ResultKind, signal_of};
 use crate::trajectory::compute::{
@@ -166,14 +167,17 @@ fn orbit_route<S: GradientScene>(
 }
 
 /// A signal of what is recorded: a magnitude by its components. `None` if it is of something else.
-fn recorded_signal<S: GradientScene>(model: &S::Model, signal: &Signal) -> Option<Signal> {
+pub(crate) fn recorded_signal<S: GradientScene>(
+    model: &S::Model,
+    signal: &Signal,
+) -> Option<Signal> {
     let own = match signal.quantity() {
         Some(Quantity::ForceMagnitude(joint)) => Signal::Norm(S::components(model, joint, false)?),
         Some(Quantity::MomentMagnitude(joint)) => Signal::Norm(S::components(model, joint, true)?),
         _ => signal.clone(),
     };
     let is_distance = matches!(own, Signal::Distance(_));
-    let is_recorded = own.quantities().iter().all(|q| is_recorded(*q));
+    let is_recorded = own.quantities().iter().all(|q| is_recorded::<S>(*q));
     (is_recorded && !is_distance).then_some(own)
 }
 

@@ -121,7 +121,7 @@ pub fn compute_tolerance<S: GradientScene>(
     let (design, mut requested) = request.prepare(scene)?;
     // Samples beyond a limit count, too.
     let limits = std::mem::take(&mut requested.limits);
-    let study = Study {
+    let study = DesignSlopes {
         scene,
         design: &design,
         requested: &requested,
@@ -207,17 +207,18 @@ fn toleranced(axis: &Axis, given: &str) -> Result<TolerancedNumber, SweepError> 
 }
 
 /// The derivatives of results by numbers.
-struct Study<'a, S> {
-    scene: &'a S,
-    design: &'a Design,
-    requested: &'a RequestedQuantities,
-    numbers: &'a [TolerancedNumber],
+pub(crate) struct DesignSlopes<'a, S> {
+    pub(crate) scene: &'a S,
+    pub(crate) design: &'a Design,
+    pub(crate) requested: &'a RequestedQuantities,
+    /// The numbers that vary; their deviations are the steps of differences.
+    pub(crate) numbers: &'a [TolerancedNumber],
 }
 
 /// By result and number.
 type Matrix = Vec<Vec<f64>>;
 
-impl<S: GradientScene> Study<'_, S> {
+impl<S: GradientScene> DesignSlopes<'_, S> {
     /// The means, of which one number may be displaced by a multiple of its deviation.
     fn away(&self, displaced: Option<(usize, f64)>) -> Vec<f64> {
         let mut values: Vec<f64> = self.numbers.iter().map(|of| of.mean).collect();
@@ -228,7 +229,7 @@ impl<S: GradientScene> Study<'_, S> {
     }
 
     /// The gradient at some values of the numbers, and the derivatives by these with all that follows from them.
-    fn slopes(&self, values: &[f64]) -> Result<(Gradient, Matrix), StudyError> {
+    pub(crate) fn slopes(&self, values: &[f64]) -> Result<(Gradient, Matrix), StudyError> {
         let numbers = self.design.numbers(values);
         let assigned = self.design.assigned(&numbers);
         let varied = self.scene.varied(&assigned)?;

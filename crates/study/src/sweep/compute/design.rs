@@ -98,11 +98,15 @@ impl Design {
         slopes
     }
 
+    /// The paths of these numbers.
+    pub(crate) fn paths(&self) -> impl Iterator<Item = &str> {
+        let axes = self.axes.iter().map(|axis| axis.path.as_str());
+        axes.chain(self.ties.iter().map(|tie| tie.number.path.as_str()))
+    }
+
     /// Numbers of a variant with their paths.
     pub(crate) fn assigned(&self, numbers: &[f64]) -> Vec<(&str, f64)> {
-        let axes = self.axes.iter().map(|axis| axis.path.as_str());
-        let tied = self.ties.iter().map(|tie| tie.number.path.as_str());
-        axes.chain(tied).zip(numbers.iter().copied()).collect()
+        self.paths().zip(numbers.iter().copied()).collect()
     }
 
     /// The values of point `k`, by axis, in the scene's units.

@@ -38,18 +38,18 @@ pub struct VariantFamily {
 
 /// Numbers that are affine functions of the varied ones.
 #[derive(Debug)]
-struct AffineNumbers {
+pub(crate) struct AffineNumbers {
     /// The varied numbers at which the others are `constant`.
     reference: Vec<f64>,
     constant: Vec<f64>,
     /// By axis: which numbers change, and how fast.
-    slopes: Vec<Vec<(usize, f64)>>,
+    pub(crate) slopes: Vec<Vec<(usize, f64)>>,
 }
 
 impl AffineNumbers {
     /// The affine function through the values at the reference and at displacements of each varied number; `None` if its
     /// value `elsewhere` is wrong.
-    fn find(
+    pub(crate) fn find(
         reference: Vec<f64>,
         displaced: &[f64],
         elsewhere: &[f64],
@@ -80,7 +80,7 @@ impl AffineNumbers {
     }
 
     /// Writes the numbers at some values of the varied ones.
-    fn fill(&self, values: &[f64], numbers: &mut [f64]) {
+    pub(crate) fn fill(&self, values: &[f64], numbers: &mut [f64]) {
         numbers.copy_from_slice(&self.constant);
         for ((value, reference), slopes) in values.iter().zip(&self.reference).zip(&self.slopes) {
             let change = value - reference;

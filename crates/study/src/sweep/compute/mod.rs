@@ -22,12 +22,14 @@ pub(crate) use axis::{Axis, VariationKind};
 pub use design::Design;
 pub use design::Shard;
 pub(crate) use extremes::{ExtremeValues, RangeCurves};
+pub(crate) use family::AffineNumbers;
 pub use family::VariantFamily;
 pub(crate) use motions::NamedUnit;
 pub use point::{RequestedQuantities, Results};
 pub(crate) use point::{ResultKind, Row};
 pub(crate) use random::{normal, uniform};
-pub(crate) use signals::signal_of;
+pub(crate) use scene_results::result_names;
+pub(crate) use signals::{signal_along, signal_of};
 pub use swept_scene::SweptScene;
 #[cfg(feature = "output")]
 pub(crate) use table::block_length;

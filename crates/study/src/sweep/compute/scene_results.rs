@@ -49,6 +49,15 @@ pub(super) fn available_quantities(scene: &impl SweptScene) -> Result<Available,
     Ok(all)
 }
 
+/// The names of all results of a scene.
+///
+/// # Errors
+/// As of [`available_quantities`].
+pub(crate) fn result_names(scene: &impl SweptScene) -> Result<Vec<String>, StudyError> {
+    let all = available_quantities(scene)?.quantities.into_iter();
+    Ok(all.map(|quantity| quantity.name).collect())
+}
+
 /// Computes the requested quantities of a scene, which is compiled once for all of them.
 ///
 /// # Errors

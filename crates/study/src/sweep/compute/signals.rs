@@ -64,11 +64,7 @@ pub(crate) fn signal_of<S: SweptScene>(
     name: &str,
 ) -> Option<Signal> {
     let (of, _) = Statistic::of_name(name)?;
-    let all = signals(scene, rows, analysis, &[]).into_iter();
-    let mut named = all.map(|named| (named.name, named.signal));
-    let found = named.find(|(name, _)| name == of);
-    let found = found.or_else(|| forces(scene, rows).into_iter().find(|(name, _)| name == of));
-    found.map(|(_, signal)| signal)
+    signal_among(scene, rows, analysis, of, &[])
 }
 
 /// Actuator forces and requested reactions, which need no list of columns.
@@ -132,4 +128,30 @@ pub(super) fn along_values<S: SweptScene>(
     }
     all.extend(found.into_iter().zip(values));
     Ok(all)
+}
+
+/// The signal of a requested statistic along the trajectory of an analysis, also of a distance from a table.
+pub(crate) fn signal_along<S: SweptScene>(
+    scene: &S,
+    rows: &S::Rows,
+    analysis: Analysis,
+    name: &str,
+    requested: &RequestedQuantities,
+) -> Option<Signal> {
+    let (of, _) = Statistic::of_name(name)?;
+    signal_among(scene, rows, analysis, of, &requested.targets)
+}
+
+fn signal_among<S: SweptScene>(
+    scene: &S,
+    rows: &S::Rows,
+    analysis: Analysis,
+    of: &str,
+    targets: &[Target],
+) -> Option<Signal> {
+    let all = signals(scene, rows, analysis, targets).into_iter();
+    let mut named = all.map(|named| (named.name, named.signal));
+    let found = named.find(|(name, _)| name == of);
+    let found = found.or_else(|| forces(scene, rows).into_iter().find(|(name, _)| name == of));
+    found.map(|(_, signal)| signal)
 }

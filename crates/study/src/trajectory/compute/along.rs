@@ -56,6 +56,24 @@ pub(crate) fn statistics_along<S: RowScene>(
     )
 }
 
+/// The values of a signal at the positions of the scene's trajectory.
+///
+/// # Errors
+/// As of [`statistics_along`].
+#[cfg(feature = "output")]
+pub(crate) fn curve_along<S: RowScene>(
+    scene: &S,
+    rows: &S::Rows,
+    analysis: Analysis,
+    signal: &Signal,
+) -> Result<Vec<Point>, StudyError> {
+    let wanted = [(signal.clone(), Statistic::Max)];
+    search_along(scene, rows, analysis, &wanted, |_, curves, _, _| {
+        let first = curves.first();
+        first.map_or_else(Vec::new, |curve| curve.points.clone())
+    })
+}
+
 /// What a search finds among the curves of some signals along the scene's trajectory. It takes the curves, the wanted statistics with the
 /// signals that they sum up, and the duration, s.
 pub(super) fn search_along<S: RowScene, R>(

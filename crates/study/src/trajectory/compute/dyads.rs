@@ -27,6 +27,12 @@ impl Dyad {
         a.cross(b).abs().atan2(a.dot(b))
     }
 
+    /// Its lines: their bodies, and their vectors in the frames of these, m.
+    pub(crate) fn lines(&self) -> [(BodyId, [f64; 2]); 2] {
+        self.lines
+            .map(|line| (line.body, [line.along.x, line.along.y]))
+    }
+
     /// Its two bodies.
     pub(crate) fn bodies(&self) -> [BodyId; 2] {
         self.lines.map(|line| line.body)

@@ -34,6 +34,8 @@ mod unit_references;
 mod unit_scales;
 mod weighted;
 
+#[cfg(feature = "output")]
+pub(crate) use along::curve_along;
 pub(crate) use along::{analysis_along, peak_analysis, statistics_along};
 pub use analysis::Analysis;
 pub(crate) use column::{Column, ColumnList, Quantity, is_prefix_of, units};

@@ -101,7 +101,7 @@ impl Signal {
     }
 
     /// The signal whose values a statistic sums up: of the work of an actuator force its power.
-    pub(super) fn summed_by(&self, statistic: Statistic) -> Self {
+    pub(crate) fn summed_by(&self, statistic: Statistic) -> Self {
         match (self.quantity(), statistic) {
             (Some(Quantity::ActuatorForce(i)), Statistic::Work | Statistic::PeakPower) => {
                 Self::Power(i)
