@@ -37,6 +37,7 @@ mod motion;
 mod motor;
 mod multibody;
 mod mutations;
+mod optimise;
 mod orbits;
 mod pictures;
 mod published;

@@ -13,6 +13,7 @@ mod init;
 mod instants;
 mod interface;
 mod long_runs;
+mod optimise;
 mod options;
 mod reduction;
 mod simulation;

@@ -3,6 +3,7 @@
 use crate::export::ExportArgs;
 use crate::gradient::GradientArgs;
 use crate::import::ImportArgs;
+use crate::optimise::OptimiseArgs;
 use crate::reduction::ReduceArgs;
 use crate::simulation::{METHODS, SimulateArgs};
 use crate::sweep::SweepArgs;
@@ -128,6 +129,8 @@ pub(crate) enum Command {
     /// Parameter study over many variants of a scene, on all cores, stored in Parquet files; an interrupted run can be
     /// resumed
     Sweep(SweepArgs),
+    /// Best design of a job of [optimise], with a certificate and the price of each condition
+    Optimise(OptimiseArgs),
     /// Run all checks on all cases, or on the named ones; exit status 1 if a check fails
     Validate {
         /// Names of cases, or folders with a scene.toml (default: all cases)
@@ -176,6 +179,7 @@ impl Command {
             Self::Reduce(arguments) => arguments.scene.as_deref(),
             Self::Simulate(arguments) => Some(&arguments.scene),
             Self::Sweep(arguments) => Some(&arguments.scene),
+            Self::Optimise(arguments) => Some(&arguments.scene),
             Self::Gradient(arguments) => Some(&arguments.scene),
             Self::Check { scene }
             | Self::Cycle { scene, .. }

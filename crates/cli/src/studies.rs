@@ -80,6 +80,7 @@ fn request<'a>(command: &'a Command, out: &'a Path) -> Result<Option<Request<'a>
             period: *period,
         },
         Command::Sweep(given) => Request::Sweep(given.sweep(out)),
+        Command::Optimise(given) => given.request(),
         Command::WorkPrecision { .. } => return Ok(None),
         // The others were handled before, or are no studies of a scene.
         Command::Kinematics(_) | Command::Statics(_) | Command::Kinetostatics(_) => Request::Check,

@@ -9,6 +9,7 @@ use dwell_dynamics::DynamicsError;
 use dwell_kinetostatics::{InverseDynamics, ReducibleModel as _};
 use dwell_study::assembled::{AssembledModel, FoundStates};
 use dwell_study::gradient::{Gradient, compute_gradient};
+use dwell_study::optimise::{Optimised, job_number, optimise};
 use dwell_study::{
     Analysis, SceneTask, StudyError, StudyScene, compute_free_motion, compute_period,
     compute_trajectory, no_progress,
@@ -105,6 +106,8 @@ pub(crate) trait Assembled: fmt::Debug + Send + Sync {
     fn linearise(&self) -> Result<StateSpace, Error>;
 
     fn gradient(&self, results: &[String]) -> Result<Gradient, Error>;
+
+    fn optimise(&self, job: Option<&str>, seed: u64) -> Result<Optimised, Error>;
 
     fn cycle(&self, solver: &Solver, fluctuation: Option<f64>) -> Result<Cycle, Error>;
 }
@@ -263,6 +266,11 @@ impl<S: StudyScene> Assembled for AssembledScene<S> {
 
     fn linearise(&self) -> Result<StateSpace, Error> {
         linearisation_of(&*self.scene)
+    }
+
+    fn optimise(&self, job: Option<&str>, seed: u64) -> Result<Optimised, Error> {
+        let job = job_number(&self.scene, job)?;
+        Ok(optimise(&*self.scene, job, seed, &no_progress)?)
     }
 
     fn gradient(&self, results: &[String]) -> Result<Gradient, Error> {

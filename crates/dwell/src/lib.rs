@@ -142,6 +142,7 @@ pub use dwell_export::FmiVersion;
 /// # Ok::<(), dwell::Error>(())
 /// ```
 pub use dwell_study::Language;
+pub use dwell_study::gradient::{Gradient, NumberSlope, ResultGradient, SlopeMethod};
 /// Results with their derivatives by all numbers of a scene.
 ///
 /// ```
@@ -154,7 +155,9 @@ pub use dwell_study::Language;
 /// assert!((sum - inertia.value).abs() < 1e-12 * inertia.value);
 /// # Ok::<(), dwell::Error>(())
 /// ```
-pub use dwell_study::gradient::{Gradient, NumberSlope, ResultGradient, SlopeMethod};
+pub use dwell_study::optimise::{
+    ActivePeak, Certificate, ConditionReport, MetOptimum, Optimised, OptimisedNumber,
+};
 pub use equation::EquationOfMotion;
 pub use error::Error;
 pub use export::ExportTarget;

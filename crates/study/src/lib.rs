@@ -54,6 +54,7 @@ pub mod gradient;
 mod in_plane;
 pub mod linearise;
 pub mod machines;
+pub mod optimise;
 pub mod reduce;
 #[cfg(feature = "output")]
 mod run;

@@ -15,6 +15,7 @@ use crate::gradient::tolerance_output::tolerance;
 use crate::linearise::compute::OperatingPoint;
 use crate::linearise::output::linearise;
 use crate::models::SolverSettings;
+use crate::optimise::output::optimise_job;
 use crate::output::Outcome;
 use crate::progress::Progress;
 use crate::reduce::compute::TableRequest;
@@ -107,6 +108,13 @@ pub enum Request<'a> {
         /// Whether each derivative is compared with differences.
         has_check: bool,
     },
+    /// The best design of a job.
+    Optimise {
+        /// The name of the job; `None` for the only one.
+        job: Option<&'a str>,
+        /// The seed of random designs.
+        seed: u64,
+    },
     /// The spread of results by random numbers: `vary` are their distributions, `requests` the results.
     Tolerance(SweepRequest<'a>),
 }
@@ -169,6 +177,7 @@ impl SceneTask for Study<'_> {
             Request::Gradient { results, has_check } => {
                 gradient(scene, results, *has_check, progress)?
             }
+            Request::Optimise { job, seed } => optimise_job(scene, *job, *seed, progress)?,
             Request::Tolerance(asked) => tolerance(scene, asked, progress)?,
         };
         Ok(TrajectoryOutcome::from(outcome))

@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::machine::{Cycle, Equilibrium, StateSpace};
 use crate::motion::Solver;
 use dwell_study::gradient::Gradient;
+use dwell_study::optimise::Optimised;
 
 impl Mechanism {
     /// The equilibria: with one coordinate all in its range, with several those that Newton's method reaches from many initial positions.
@@ -46,6 +47,14 @@ impl Mechanism {
     pub fn gradient(&self, results: &[&str]) -> Result<Gradient, Error> {
         let results: Vec<String> = results.iter().map(|name| (*name).to_owned()).collect();
         self.assembled.gradient(&results)
+    }
+
+    /// The best design of a job of `[optimise]`, as of `dwell optimise`: of the only one if none is named. Random designs depend on the seed.
+    ///
+    /// # Errors
+    /// [`Error::Study`] if there is no such job, it is at fault, or no design can be evaluated.
+    pub fn optimise(&self, job: Option<&str>, seed: u64) -> Result<Optimised, Error> {
+        self.assembled.optimise(job, seed)
     }
 
     /// Small motions about the equilibrium nearest to the initial state, as ẋ = A x + B u, z = C x + D u.
