@@ -13,7 +13,7 @@ fn file(name: &str) -> PathBuf {
 }
 
 fn scene(name: &str) -> PlaneScene {
-    PlaneScene::read(&file(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    PlaneScene::read(file(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 fn job(scene: &PlaneScene, name: &str) -> Optimised {
