@@ -259,7 +259,8 @@ fn compare_forces(scene: &SpaceScene, row: &Row<'_>, dense: &DenseSpace, found: 
         match reaction.component {
             Component::Force(Axes::Ground, k) => found.add("N", value, part(wrench.force, k)),
             Component::Moment(Axes::Ground, k) => found.add("N m", value, part(wrench.moment, k)),
-            Component::Force(Axes::Joint, _) | Component::Moment(Axes::Joint, _) => {
+            Component::Force(Axes::Joint | Axes::Line, _)
+            | Component::Moment(Axes::Joint | Axes::Line, _) => {
                 panic!("not requested here")
             }
         }
