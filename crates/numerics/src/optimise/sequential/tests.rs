@@ -4,7 +4,9 @@ use super::*;
 use crate::Dual;
 
 /// A problem of W. Hock and K. Schittkowski, *Test Examples for Nonlinear Programming Codes* (1981): goal, inequalities, equalities.
-type Functions = fn(&[Dual]) -> (Dual, Vec<Dual>, Vec<Dual>);
+/// Goal, inequalities and equalities at a point.
+type Values = (Dual, Vec<Dual>, Vec<Dual>);
+type Functions = fn(&[Dual]) -> Values;
 
 struct Known {
     number: usize,
@@ -24,14 +26,13 @@ fn evaluated(functions: Functions, x: &[f64]) -> Evaluation {
         functions(&at.collect::<Vec<_>>())
     };
     let all: Vec<_> = (0..x.len()).map(by).collect();
-    let row =
-        |of: &dyn Fn(&(Dual, Vec<Dual>, Vec<Dual>)) -> Dual, family, is_equality| Constraint {
-            value: of(&all[0]).v,
-            slope: all.iter().map(|a| of(a).d).collect(),
-            is_equality,
-            family,
-            place: 0.0,
-        };
+    let row = |of: &dyn Fn(&Values) -> Dual, family, is_equality| Constraint {
+        value: of(&all[0]).v,
+        slope: all.iter().map(|a| of(a).d).collect(),
+        is_equality,
+        family,
+        place: 0.0,
+    };
     let inequalities = all[0].1.len();
     let mut constraints: Vec<Constraint> = (0..inequalities)
         .map(|k| row(&|a| a.1[k], k, false))
