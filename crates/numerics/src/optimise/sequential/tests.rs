@@ -3,9 +3,10 @@
 use super::*;
 use crate::Dual;
 
-/// A problem of W. Hock and K. Schittkowski, *Test Examples for Nonlinear Programming Codes* (1981): goal, inequalities, equalities.
 /// Goal, inequalities and equalities at a point.
 type Values = (Dual, Vec<Dual>, Vec<Dual>);
+
+/// A problem of W. Hock and K. Schittkowski, *Test Examples for Nonlinear Programming Codes* (1981): goal, inequalities, equalities.
 type Functions = fn(&[Dual]) -> Values;
 
 struct Known {
