@@ -142,7 +142,6 @@ pub use dwell_export::FmiVersion;
 /// # Ok::<(), dwell::Error>(())
 /// ```
 pub use dwell_study::Language;
-pub use dwell_study::gradient::{Gradient, NumberSlope, ResultGradient, SlopeMethod};
 /// Results with their derivatives by all numbers of a scene.
 ///
 /// ```
@@ -153,6 +152,17 @@ pub use dwell_study::gradient::{Gradient, NumberSlope, ResultGradient, SlopeMeth
 /// let of_masses = inertia.numbers.iter().filter(|n| n.path.ends_with(".mass") || n.path.ends_with(".inertia"));
 /// let sum: f64 = of_masses.map(|n| n.slope * n.value).sum();
 /// assert!((sum - inertia.value).abs() < 1e-12 * inertia.value);
+/// # Ok::<(), dwell::Error>(())
+/// ```
+pub use dwell_study::gradient::{Gradient, NumberSlope, ResultGradient, SlopeMethod};
+/// The best design of a job with its certificate.
+///
+/// ```
+/// // A spring that carries a lamp in every position: its stiffness is m g r / (h a).
+/// let scene = dwell::Scene::read("../../tests/all/optimise/lamp.toml")?;
+/// let best: dwell::Optimised = scene.assemble()?.optimise(Some("stiffness"), 1)?;
+/// assert_eq!(best.certificate.doubt, None);
+/// assert!((best.numbers[0].after - 220.725).abs() < 1e-6);
 /// # Ok::<(), dwell::Error>(())
 /// ```
 pub use dwell_study::optimise::{

@@ -53,6 +53,14 @@ impl Mechanism {
     ///
     /// # Errors
     /// [`Error::Study`] if there is no such job, it is at fault, or no design can be evaluated.
+    ///
+    /// ```
+    /// let scene = dwell::Scene::read("../../tests/all/optimise/lamp.toml")?;
+    /// let best = scene.assemble()?.optimise(Some("stiffness"), 1)?;
+    /// // The spring balances the lamp: no torque is left.
+    /// assert!(best.after < 1e-9 && best.is_admissible());
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
     pub fn optimise(&self, job: Option<&str>, seed: u64) -> Result<Optimised, Error> {
         self.assembled.optimise(job, seed)
     }
