@@ -3,7 +3,7 @@
 
 use super::assembled::{Assembled, DrivenBy, Random};
 use dwell_geometry::space::{
-    Assembly, JointKind, Mechanism, Placement, Rotation, Side, Vec3, vec3,
+    Assembly, Coordinate, JointKind, Mechanism, Placement, Rotation, Side, Vec3, vec3,
 };
 use dwell_geometry::{JointId, Range};
 use dwell_kinetostatics::Coefficients;
@@ -58,8 +58,22 @@ impl Setup {
                 joint.sides[side].point = change(body, joint.sides[side].point);
             }
         }
+        self.each_coupled_point(&change);
         for (body, mass) in self.masses.iter_mut().enumerate() {
             mass.center = change(body, mass.center);
+        }
+    }
+
+    /// Changes the points of coupled distances.
+    fn each_coupled_point(&mut self, change: impl Fn(usize, Vec3) -> Vec3) {
+        for coupling in &mut self.mechanism.couplings {
+            for coordinate in [&mut coupling.dependent, &mut coupling.independent] {
+                if let Coordinate::Distance { bodies, points } = coordinate {
+                    for (body, point) in bodies.iter().zip(points) {
+                        *point = change(body.0, *point);
+                    }
+                }
+            }
         }
     }
 
@@ -82,6 +96,13 @@ impl Setup {
                 }
             }
         }
+        self.each_coupled_point(|body, point| {
+            if body == ground {
+                to.point(point)
+            } else {
+                point
+            }
+        });
         let bodies = self.mechanism.bodies.len();
         self.assembly
             .placements
@@ -216,7 +237,7 @@ fn difference(setup: &Setup, [one, other]: [&Model; 2], factor: f64) -> Option<f
 }
 
 /// The changes of place, orientation and size, each with the factor of the size and whether it is exact.
-fn changes(setup: &Setup) -> [(&'static str, Setup, f64, bool); 5] {
+fn changes(setup: &Setup) -> Vec<(&'static str, Setup, f64, bool)> {
     let at = |x: f64, y: f64, z: f64| Placement {
         position: vec3(x, y, z),
         rotation: Rotation::IDENTITY,
@@ -228,7 +249,7 @@ fn changes(setup: &Setup) -> [(&'static str, Setup, f64, bool); 5] {
     let million = 2_f64.powi(20);
     let far = at(million, -2.0 * million, 0.5 * million);
     let frames = |body: usize| vec3(-million, 3.0 + body as f64, 0.25 * million);
-    [
+    let mut all = vec![
         ("far away", setup.clone().moved(far), 1.0, true),
         (
             "frames far away",
@@ -249,7 +270,10 @@ fn changes(setup: &Setup) -> [(&'static str, Setup, f64, bool); 5] {
             2_f64.powi(10),
             true,
         ),
-    ]
+    ];
+    // A law between two lengths is that of one size.
+    all.retain(|(.., factor, _)| *factor == 1.0 || setup.mechanism.couplings.is_empty());
+    all
 }
 
 /// The scenes of `validation/spatial` with one coordinate.
