@@ -220,7 +220,12 @@ fn difference(setup: &Setup, [one, other]: [&Model; 2], factor: f64) -> Option<f
             (0, first.m, second.m * scaled(power)),
             (0, first.half_dm, second.half_dm * scaled(half)),
         ];
-        for (k, _) in determined.iter().enumerate().filter(|(_, known)| **known) {
+        // How a body that turns idly stands about its line, and with it the axes of its joints, nothing determines.
+        let idle = &one.plan().mobility().idle;
+        let is_idle = |body: usize| idle.iter().any(|idle| idle.body.0 == body);
+        let axes_of = |k: usize| setup.mechanism.joints[k / 6].side_body(0).0;
+        let known = determined.iter().enumerate().filter(|(_, known)| **known);
+        for (k, _) in known.filter(|(k, _)| !is_idle(axes_of(*k))) {
             let moment = i32::from(k % 6 >= 3);
             let by = if setup.is_angle() { [1, 1] } else { [0, -1] };
             let [a, b] = by.map(|p| scaled(p + moment));
