@@ -124,6 +124,7 @@ def add_reactions(judge, balance, suffix="", parts_teeth=True):
     """Adds the reactions of all joints from the columns with this ending, and the separating forces of teeth, which count as loads."""
     motion = balance.motion
     rows = motion.rows
+    vectors = {}
     for joint in motion.scene.joints:
         units = unit_reactions(joint, motion)
         columns = {name: rows.get(f"{joint.name}.{name}{suffix}") for name in units}
@@ -138,23 +139,27 @@ def add_reactions(judge, balance, suffix="", parts_teeth=True):
             balance.add_unknown(apart)
         elif apart:
             balance.add(apart, slope * np.abs(columns["tooth"]))
-        if not motion.scene.is_plane:
-            vectors = [np.stack([zero_if_none(columns[c], motion.count) for c in part], -1)
-                       for part in (SPACE_COMPONENTS[:3], SPACE_COMPONENTS[3:])]
-            add_free_directions(judge, balance, joint, vectors, unknown, suffix)
+        if all(component in units for component in SPACE_COMPONENTS):
+            force, moment = (np.stack([zero_if_none(columns[c], motion.count) for c in part], -1)
+                             for part in (SPACE_COMPONENTS[:3], SPACE_COMPONENTS[3:]))
+            vectors[joint.name] = (joint, force, moment, unknown)
+    add_free_directions(judge, balance, vectors.values(), suffix)
 
 
-def add_free_directions(judge, balance, joint, vectors, unknown, suffix):
-    """Adds the conditions that a joint transmits no force along its free directions, and no moment about them."""
-    force, moment = vectors
-    for direction in free_directions(joint, balance.motion):
-        condition = (direction, force, moment, unknown)
-        if unknown:
-            balance.conditions.append(condition)
-            continue
-        value, _ = balance.condition(condition)
-        scale = max(largest(force), largest(moment) / balance.size)
-        judge.compare("free-directions", value, scale, "N", f"joint {joint.name}{suffix}")
+def add_free_directions(judge, balance, reactions, suffix):
+    """Adds the conditions that joints transmit no force along their free directions, and no moment about them.
+
+    Their scale is the largest reaction of all joints: that of a joint which a load does not reach is rounding.
+    """
+    scale = max((max(largest(force), largest(moment) / balance.size) for _, force, moment, _ in reactions), default=0.0)
+    for joint, force, moment, unknown in reactions:
+        for direction in free_directions(joint, balance.motion):
+            condition = (direction, force, moment, unknown)
+            if unknown:
+                balance.conditions.append(condition)
+                continue
+            value, _ = balance.condition(condition)
+            judge.compare("free-directions", value, scale, "N", f"joint {joint.name}{suffix}")
 
 
 def reaction(motion, joint):
