@@ -3,7 +3,7 @@
 use super::position::TABLE_HELP;
 use crate::explain::{Labels, StudyError, labels, scene_error};
 use crate::number_format::{digits, number};
-use dwell_geometry::{JointId, JointKind, Mechanism, space};
+use dwell_geometry::{Coupling, JointId, JointKind, Mechanism, space};
 use dwell_laws::Law;
 use dwell_scene::{SceneFile, SceneLocation};
 
@@ -38,23 +38,31 @@ pub(crate) trait CoupledMechanism {
     fn joint_name(&self, joint: JointId) -> &str;
 }
 
+/// The laws of couplings, of joints that have these numbers among them.
+fn laws_of<K: Copy>(
+    couplings: &[Coupling<K>],
+    of_joints: impl Iterator<Item = Option<usize>>,
+) -> Vec<CouplingLaw<'_, K>> {
+    let laws = of_joints.enumerate().filter_map(|(j, index)| {
+        let coupling = couplings.get(index?)?;
+        Some(CouplingLaw {
+            joint: JointId(j),
+            law: &coupling.law,
+            variable: coupling.independent,
+        })
+    });
+    laws.collect()
+}
+
 impl CoupledMechanism for Mechanism {
     type Coordinate = dwell_geometry::Coordinate;
 
     fn coupling_laws(&self) -> Vec<CouplingLaw<'_, Self::Coordinate>> {
-        let joints = self.joints.iter().enumerate();
-        let laws = joints.filter_map(|(j, joint)| {
-            let JointKind::Coupling(index) = joint.kind else {
-                return None;
-            };
-            let coupling = self.couplings.get(index)?;
-            Some(CouplingLaw {
-                joint: JointId(j),
-                law: &coupling.law,
-                variable: coupling.independent,
-            })
+        let joints = self.joints.iter().map(|joint| match joint.kind {
+            JointKind::Coupling(index) => Some(index),
+            _ => None,
         });
-        laws.collect()
+        laws_of(&self.couplings, joints)
     }
 
     fn driven_coordinates(&self) -> Vec<Self::Coordinate> {
@@ -70,19 +78,11 @@ impl CoupledMechanism for space::Mechanism {
     type Coordinate = space::Coordinate;
 
     fn coupling_laws(&self) -> Vec<CouplingLaw<'_, Self::Coordinate>> {
-        let joints = self.joints.iter().enumerate();
-        let laws = joints.filter_map(|(j, joint)| {
-            let space::JointKind::Coupling { index, .. } = joint.kind else {
-                return None;
-            };
-            let coupling = self.couplings.get(index)?;
-            Some(CouplingLaw {
-                joint: JointId(j),
-                law: &coupling.law,
-                variable: coupling.independent,
-            })
+        let joints = self.joints.iter().map(|joint| match joint.kind {
+            space::JointKind::Coupling { index, .. } => Some(index),
+            _ => None,
         });
-        laws.collect()
+        laws_of(&self.couplings, joints)
     }
 
     fn driven_coordinates(&self) -> Vec<Self::Coordinate> {
