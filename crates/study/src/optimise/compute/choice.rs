@@ -3,7 +3,7 @@
 use super::optimised::{Optimised, optimise};
 use crate::explain::StudyError;
 use crate::gradient::GradientScene;
-use crate::progress::Progress;
+use crate::progress::{Progress, Step};
 use dwell_dynamics::interruption;
 use dwell_scene::{JobPart, SceneLocation};
 use std::path::Path;
@@ -72,7 +72,13 @@ pub fn optimise_choices<S: GradientScene>(
             })
             .collect();
         let found = scene.varied(&numbers).map_err(StudyError::from);
-        let found = found.and_then(|variant| optimise(&variant, job, seed, progress));
+        let of_all = |step: Step<'_>| {
+            progress(Step {
+                total: count * step.total,
+                ..step
+            });
+        };
+        let found = found.and_then(|variant| optimise(&variant, job, seed, &of_all));
         let goal = match found {
             Ok(mut found) if found.is_admissible() => {
                 found.assigned.extend(

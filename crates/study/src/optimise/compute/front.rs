@@ -123,7 +123,7 @@ impl<S: GradientScene> Search<'_, '_, S> {
             Some([a.value(&at), b.value(&at)])
         };
         found.before = self.own.and_then(|own| both(&mut worker, own));
-        let mut ends = Vec::new();
+        let (mut ends, mut total) = (Vec::new(), BETWEEN);
         for of in [a, b] {
             let summands = vec![(of.clone(), 1.0)];
             let mut problem = self.prepared.problem(Goal { summands });
@@ -131,7 +131,9 @@ impl<S: GradientScene> Search<'_, '_, S> {
             scaled.ok_or_else(|| refuse("no design has derivatives"))?;
             let own = Some(self.own.unwrap_or(self.first));
             let starts = starts(&problem, self.engine, own, job.starts.unwrap_or(STARTS));
-            let ended = search(&problem, self.engine, &starts, progress);
+            total = 2 * starts.len() + BETWEEN;
+            let of_all = |step: Step<'_>| progress(Step { total, ..step });
+            let ended = search(&problem, self.engine, &starts, &of_all);
             found.evaluations += ended.iter().map(|of| of.optimum.evaluations).sum::<usize>();
             let feasible = ended.iter().filter(|of| of.is_feasible());
             let best = feasible
@@ -168,7 +170,7 @@ impl<S: GradientScene> Search<'_, '_, S> {
             let limit = from[1] + (to[1] - from[1]) * part;
             let ended = self.between(limit, &near, &mut found.evaluations);
             progress(Step {
-                total: BETWEEN,
+                total,
                 done: "points of the front",
             });
             if let Some((ended, values, slope)) = ended.filter(|(ended, ..)| ended.is_feasible()) {

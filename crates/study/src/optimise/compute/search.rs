@@ -159,15 +159,17 @@ pub(super) fn search(
     starts: &[Vec<f64>],
     progress: Progress<'_>,
 ) -> Vec<Ended> {
-    let starts = match fits_table(problem) {
-        true => fitted(problem, engine, starts),
-        false => starts.to_vec(),
+    let starts = if fits_table(problem) {
+        fitted(problem, engine, starts)
+    } else {
+        starts.to_vec()
     };
     let ended = starts.par_iter().enumerate().map(|(number, start)| {
         let mut worker = engine.worker();
-        let ended = match interruption::is_requested() {
-            true => None,
-            false => from_start(problem, &mut worker, start, number),
+        let ended = if interruption::is_requested() {
+            None
+        } else {
+            from_start(problem, &mut worker, start, number)
         };
         progress(Step {
             total: starts.len(),
