@@ -9,7 +9,7 @@ use dwell_study::no_progress;
 use dwell_tests::fixtures;
 
 /// Cases with results that are stationary or summed over a turn: dyads, guided points, constructions, groups solved by iterations.
-const PLANE: [(&str, &str); 8] = [
+const PLANE: [(&str, &str); 9] = [
     ("crank-rocker", "m.max,m.min,half_dm.max,period,energy"),
     ("single-dwell", "m.max,half_dm.min,period"),
     ("slider-crank", "m.min,half_dm.max"),
@@ -18,6 +18,8 @@ const PLANE: [(&str, &str); 8] = [
     ("jansen", "m.max,half_dm.max"),
     ("stephenson-six-bar", "m.min,half_dm.max"),
     ("andrews", "m.max"),
+    // A point that depends on its own place, too.
+    ("four-bar", "coupler.P.x.rms"),
 ];
 /// Rods, groups solved by iterations, planar loops in space, under their weight.
 const SPACE: [(&str, &str); 4] = [

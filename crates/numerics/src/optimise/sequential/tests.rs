@@ -134,13 +134,14 @@ fn problems_of_hock_and_schittkowski_have_their_optima() {
         );
         let found = found.expect("a start");
         let error = (found.evaluation.goal - known.goal).abs() / (1.0 + known.goal.abs());
+        // Seen: 1.2e-12 (71, the digits of the source).
         assert!(
-            found.is_converged && error < 1e-8,
+            found.is_converged && error < 1e-10,
             "{}: {error:e} {found:?}",
             known.number
         );
         assert!(
-            found.evaluations < 60,
+            found.evaluations < 30,
             "{}: {}",
             known.number,
             found.evaluations
