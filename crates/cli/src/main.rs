@@ -12,6 +12,7 @@ mod import;
 mod init;
 mod instants;
 mod interface;
+mod interrupt;
 mod long_runs;
 mod optimise;
 mod options;
@@ -110,6 +111,9 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
             let progress = |step: Step<'_>| show_step(&bar, step);
             let done = read(options, study, &bar);
             let done = done.and_then(|scene| {
+                if matches!(study, Command::Optimise(_)) {
+                    interrupt::keep_best_so_far();
+                }
                 let done = studies::run(study, &scene, &options.out, &progress);
                 times.add("computing");
                 let TrajectoryOutcome {

@@ -81,7 +81,11 @@ fn summary(title: &str, found: &Front) -> String {
         rows.push([x, y, String::new(), "the scene".to_owned()]);
     }
     text += &aligned(&rows);
-    text += &format!("  {}\n", count(found.evaluations, "evaluation"));
+    text += &format!("  {}", count(found.evaluations, "evaluation"));
+    if found.is_interrupted {
+        text += "; interrupted";
+    }
+    text.push('\n');
     text
 }
 

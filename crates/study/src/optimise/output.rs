@@ -125,7 +125,9 @@ fn record(found: &Optimised) -> Record {
         record.add("certificate.least_eigenvalue", "", least);
         record.add("certificate.largest_eigenvalue", "", largest);
     }
-    record.add("certificate.sweep_difference", "", of.sweep_difference);
+    if let Some(difference) = of.sweep_difference {
+        record.add("certificate.sweep_difference", "", difference);
+    }
     for (name, probes) in ["computed", "admissible", "better"].iter().zip(of.probes) {
         record.add(format!("certificate.probes.{name}"), "", probes as f64);
     }
@@ -256,7 +258,9 @@ fn certificate(of: &Certificate, found: &Optimised) -> String {
     if let Some([least, largest]) = of.curvature {
         text += &format!(", curvature {} to {}", digits(least, 3), digits(largest, 3));
     }
-    text += &format!("\n  the sweep agrees within {:.0e}", of.sweep_difference);
+    if let Some(difference) = of.sweep_difference {
+        text += &format!("\n  the sweep agrees within {difference:.0e}");
+    }
     let [_, admissible, better] = of.probes;
     if admissible > 0 {
         text += &format!(
@@ -292,7 +296,10 @@ fn share(change: f64, of: &OptimisedNumber) -> f64 {
 
 fn starts(found: &Optimised) -> String {
     let [all, open] = found.starts;
-    let mut text = format!("  {}: ", count(all, "start"));
+    let mut text = format!("  {}", count(all, "start"));
+    if !found.optima.is_empty() {
+        text += ": ";
+    }
     let optima = found.optima.iter().take(1 + OTHER_OPTIMA);
     let optima = optima.map(|of| format!("{} ({} times)", digits(of.goal, 6), of.count));
     text += &optima.collect::<Vec<_>>().join(", ");

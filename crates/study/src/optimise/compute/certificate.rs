@@ -6,6 +6,7 @@ use super::problem::Problem;
 use super::search::{CONVERGED, Ended};
 use crate::explain::StudyError;
 use crate::sweep::compute::{Design, RequestedQuantities, SweptScene};
+use dwell_dynamics::interruption;
 use dwell_numerics::dense::Matrix;
 use dwell_numerics::optimise::Constraint;
 
@@ -26,8 +27,8 @@ pub struct Certificate {
     /// The directions along which the goal does not change to second order: changes of the numbers, in their units, for the largest
     /// admissible one of 1 % of its range.
     pub flat: Vec<Vec<f64>>,
-    /// The largest difference of a result from that of the sweep, in parts of it.
-    pub sweep_difference: f64,
+    /// The largest difference of a result from that of the sweep, in parts of it; `None` if the sweep has none, or was not asked.
+    pub sweep_difference: Option<f64>,
     /// Random designs nearby that the sweep computed, that satisfy the conditions, and that are better.
     pub probes: [usize; 3],
 }
@@ -59,6 +60,10 @@ pub(super) fn certify(
         complementarity: optimum.complementarity,
         ..Certificate::default()
     };
+    if interruption::is_requested() {
+        found.doubt = Some("the search was interrupted".to_owned());
+        return found;
+    }
     if !of.is_feasible() {
         let violation = found.violation;
         found.doubt = Some(format!(
@@ -238,7 +243,6 @@ pub(super) fn probe<S: SweptScene>(
     let numbers = problem.design.numbers(values);
     let swept = requested.evaluate(scene, &problem.design.assigned(&numbers));
     if let Some(message) = swept.message {
-        found.sweep_difference = f64::NAN;
         found
             .doubt
             .get_or_insert(format!("the sweep does not compute it: {message}"));
@@ -250,11 +254,11 @@ pub(super) fn probe<S: SweptScene>(
         let size = own.abs().max(swept.abs()).max(1e-9 * problem.goal_size());
         (own - swept).abs() / size
     });
-    found.sweep_difference = differences.fold(0.0, f64::max);
-    if found.sweep_difference > SAME {
+    let difference = differences.fold(0.0, f64::max);
+    found.sweep_difference = Some(difference);
+    if difference > SAME {
         let text = format!(
-            "the sweep has other results there, by {:.1e} of them: the scene is assembled in another way, or its curves need more positions",
-            found.sweep_difference
+            "the sweep has other results there, by {difference:.1e} of them: the scene is assembled in another way, or its curves need more positions"
         );
         found.doubt.get_or_insert(text);
         return Ok(());

@@ -109,9 +109,13 @@ pub fn optimise_choices<S: GradientScene>(
         (Some(best), _) => Ok((best, all)),
         (None, Some(error)) => Err(error),
         (None, None) => {
-            let message = "no combination of parts satisfies the conditions".to_owned();
+            let message = if interruption::is_requested() {
+                "the search was interrupted before it had a design"
+            } else {
+                "no combination of parts satisfies the conditions"
+            };
             let place = (SceneLocation::Job(job), "this job".to_owned());
-            Err(scene.error(message, None, &[place]).into())
+            Err(scene.error(message.to_owned(), None, &[place]).into())
         }
     }
 }

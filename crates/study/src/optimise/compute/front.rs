@@ -40,6 +40,8 @@ pub struct Front {
     pub points: Vec<FrontPoint>,
     /// The number of evaluations of a design with its derivatives.
     pub evaluations: usize,
+    /// Whether the computation was interrupted.
+    pub is_interrupted: bool,
 }
 
 impl Front {
@@ -111,6 +113,7 @@ impl<S: GradientScene> Search<'_, '_, S> {
             before: None,
             points: Vec::new(),
             evaluations: 0,
+            is_interrupted: false,
         };
         let both = |worker: &mut super::engine::Worker<'_, '_>, values: &[f64]| {
             let results = worker.evaluate(values, false)?;
@@ -189,6 +192,7 @@ impl<S: GradientScene> Search<'_, '_, S> {
             None => (last, ends[1].2),
         };
         found.points.extend(point(values, None, is_converged));
+        found.is_interrupted = interruption::is_requested();
         Ok(found)
     }
 

@@ -307,13 +307,19 @@ pub(super) fn optimise_goal<S: GradientScene>(
             dwell_scene::SceneLocation::Job(of.job),
             "this job".to_owned(),
         );
-        let message = "no start of the job has results with derivatives".to_owned();
-        return Err(of.scene.error(message, None, &[place]).into());
+        let message = if interruption::is_requested() {
+            "the search was interrupted before it had a design"
+        } else {
+            "no start of the job has results with derivatives"
+        };
+        return Err(of.scene.error(message.to_owned(), None, &[place]).into());
     };
     let mut found = report(of, &problem, &mut worker, best);
     found.certificate = certify(&problem, &mut worker, best);
     let values: Vec<f64> = found.numbers.iter().map(|number| number.after).collect();
-    if let Some(results) = worker.evaluate(&values, false) {
+    found.is_interrupted = interruption::is_requested();
+    let results = worker.evaluate(&values, false);
+    if let Some(results) = results.filter(|_| !found.is_interrupted) {
         let results: Vec<f64> = results.iter().map(|of| of.value).collect();
         let requested = &of.prepared.requested;
         probe(
@@ -332,7 +338,6 @@ pub(super) fn optimise_goal<S: GradientScene>(
     ];
     found.evaluations = ended.iter().map(|of| of.optimum.evaluations).sum();
     found.is_exact = of.engine.is_recorded();
-    found.is_interrupted = interruption::is_requested();
     found.history = best.history.clone();
     found.job.clone_from(&job.name);
     Ok(found)

@@ -166,7 +166,8 @@ pub(super) fn search(
     };
     let ended = starts.par_iter().enumerate().map(|(number, start)| {
         let mut worker = engine.worker();
-        let ended = if interruption::is_requested() {
+        // The scene itself and the best of the pool have at least one step.
+        let ended = if interruption::is_requested() && number > 1 {
             None
         } else {
             from_start(problem, &mut worker, start, number)
