@@ -102,10 +102,11 @@ fn record(found: &Optimised) -> Record {
             record.add(format!("{}.price", of.path), "", price);
         }
     }
-    for of in &found.conditions {
-        record.add(of.text.clone(), &of.unit, of.after);
+    // By number: several conditions may have one expression.
+    for (k, of) in found.conditions.iter().enumerate() {
+        record.add(format!("condition[{k}]"), &of.unit, of.after);
         if let Some(price) = of.price {
-            record.add(format!("{}.price", of.text), "", price);
+            record.add(format!("condition[{k}].price"), "", price);
         }
     }
     for (k, peak) in found.peaks.iter().enumerate() {
