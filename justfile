@@ -32,9 +32,9 @@ trials *options:
 alias validate-long := validate-slow
 alias faults := mutations
 
-# All tests, every number of docs/theory.md, 2000 mutated scenes with random commands, and 200 motions under nested laws
+# All tests, every number of docs/theory.md, 2000 mutated scenes with random commands, 200 motions under nested laws, and 12 random jobs of optimise
 [group('main')]
-test: && fuzz laws
+test: && fuzz laws jobs
     python3 tests/handout/theory_numbers.py
     cargo test --release --workspace
 
@@ -51,6 +51,12 @@ laws count="200" seed="1":
     cargo build --release --workspace --bins
     python3 tests/laws/selftest.py 20 {{ seed }}
     python3 tests/laws/run.py {{ count }} {{ seed }}
+
+# Random jobs of optimise (goals, conditions, mechanisms in the plane and in space), judged by sweeps of the scenes that it wrote
+[group('main')]
+jobs count="12" seed="1":
+    cargo build --release --workspace --bins
+    python3 tests/jobs/run.py {{ count }} {{ seed }}
 
 # Format, lints with warnings denied, no circle of imports between folders, no long file or function without a reason, and a place for every named fault
 [group('care')]
@@ -169,7 +175,7 @@ audit *scenes:
 
 # What takes too long for each change, as a whole in a night: its parts are the six recipes below
 [group('care')]
-nightly: nightly-validation nightly-tests nightly-imports && nightly-laws nightly-others
+nightly: nightly-validation nightly-tests nightly-imports && nightly-laws nightly-jobs nightly-others
     seed=$(date +%j); for part in 0 1 2 3 4; do just nightly-fuzz $part $seed || exit 1; done
 
 # Of `nightly`: 1e5 revolutions, 1000 pulses, 200 random machines, all deliberate faults, also those in files, and the computing half by itself
@@ -196,6 +202,10 @@ nightly-fuzz part="0" seed=`date +%j`:
 # Of `nightly`: 20 000 motions under nested laws, of the day's seed or another
 [group('care')]
 nightly-laws seed=`date +%j`: (laws "20000" seed)
+
+# Of `nightly`: 300 random jobs of optimise, of the day's seed or another
+[group('care')]
+nightly-jobs seed=`date +%j`: (jobs "300" seed)
 
 # Of `nightly`: ten million designs, other programs, the reference values, the dependencies' advisories. Installs what these need
 [group('care')]

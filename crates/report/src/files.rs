@@ -23,6 +23,8 @@ pub struct Files {
 pub(crate) enum Content {
     /// These bytes.
     Bytes(Vec<u8>),
+    /// These bytes, of a file that others refer to: one that exists is not replaced.
+    Kept(Vec<u8>),
     /// A table that is not in memory.
     LongTable(LongExport),
 }
@@ -31,7 +33,7 @@ impl Content {
     /// Writes a new file.
     pub(crate) fn write(&self, file: &mut File) -> io::Result<()> {
         match self {
-            Self::Bytes(bytes) => file.write_all(bytes),
+            Self::Bytes(bytes) | Self::Kept(bytes) => file.write_all(bytes),
             Self::LongTable(table) => table.write(file).map_err(io::Error::other),
         }
     }
@@ -46,6 +48,12 @@ impl Files {
     /// Adds a file; one of the same path is replaced.
     pub fn add(&mut self, path: impl Into<PathBuf>, bytes: impl Into<Vec<u8>>) {
         let content = Content::Bytes(bytes.into());
+        self.files.insert(path.into(), content);
+    }
+
+    /// Adds a file that another one refers to. One that exists is not replaced; with other bytes it is an error.
+    pub fn add_kept(&mut self, path: impl Into<PathBuf>, bytes: impl Into<Vec<u8>>) {
+        let content = Content::Kept(bytes.into());
         self.files.insert(path.into(), content);
     }
 
@@ -102,7 +110,7 @@ impl Files {
     /// written.
     pub fn iter(&self) -> impl Iterator<Item = (&Path, &[u8])> {
         self.contents().filter_map(|(path, content)| match content {
-            Content::Bytes(bytes) => Some((path, bytes.as_slice())),
+            Content::Bytes(bytes) | Content::Kept(bytes) => Some((path, bytes.as_slice())),
             Content::LongTable(_) => None,
         })
     }

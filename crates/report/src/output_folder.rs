@@ -130,6 +130,14 @@ impl OutputFolder {
             if target.is_dir() {
                 return Err(file_error(&target)(io::ErrorKind::IsADirectory.into()));
             }
+            if let Content::Kept(bytes) = content
+                && target.exists()
+            {
+                if fs::read(&target).map_err(file_error(&target))? == *bytes {
+                    continue;
+                }
+                return Err(file_error(&target)(io::ErrorKind::AlreadyExists.into()));
+            }
             let Some(parent) = target.parent() else {
                 return Err(file_error(&target)(io::ErrorKind::InvalidFilename.into()));
             };

@@ -28,6 +28,11 @@ impl Constraint {
         }
     }
 
+    /// Whether it has the same value at all points nearby.
+    fn is_constant(&self) -> bool {
+        self.slope.iter().all(|part| *part == 0.0)
+    }
+
     /// The member of the same family among others that is nearest.
     pub fn counterpart<'c>(&self, others: &'c [Self]) -> Option<&'c Self> {
         let distance = |other: &Self| {
@@ -224,7 +229,10 @@ impl Search<'_> {
         let own: Vec<f64> = constraints.iter().map(|c| c.value).collect();
         let values = values.unwrap_or(&own);
         let mut normals: Vec<Vec<f64>> = constraints.iter().map(|c| c.slope.clone()).collect();
-        let mut limits: Vec<f64> = values.iter().map(|v| -v).collect();
+        // No step changes a constant constraint, which therefore limits none.
+        let mut limits: Vec<f64> = (constraints.iter().zip(values))
+            .map(|(of, v)| if of.is_constant() { 0.0 } else { -v })
+            .collect();
         let mut are_equalities: Vec<bool> = constraints.iter().map(|c| c.is_equality).collect();
         for (k, [from, to]) in self.bounds.iter().enumerate() {
             for (sign, room) in [(1.0, from - x[k]), (-1.0, x[k] - to)] {
@@ -267,7 +275,8 @@ impl Search<'_> {
         last[x.len()] = PRICE * (1.0 + largest(&at.slope));
         hessian.push(last);
         for (k, normal) in normals.iter_mut().enumerate() {
-            let is_left = k < values.len() && (are_equalities[k] || values[k] < 0.0);
+            let is_open = k < values.len() && !at.constraints[k].is_constant();
+            let is_left = is_open && (are_equalities[k] || values[k] < 0.0);
             normal.push(if is_left { -values[k] } else { 0.0 });
         }
         let mut normal = vec![0.0; x.len() + 1];

@@ -1,6 +1,7 @@
 //! Writes a Pareto front: summary, table, picture, the scene of its knee.
 
 use super::compute::{Front, FrontPoint, optimise_front};
+use super::output::add_scene;
 use crate::explain::StudyError;
 use crate::gradient::output::aligned;
 use crate::number_format::{count, digits};
@@ -37,9 +38,7 @@ pub(super) fn front<S: StudyScene>(
             .iter()
             .map(|(p, v)| (p.as_str(), *v))
             .collect();
-        outcome
-            .files
-            .add(format!("{stem}.toml"), scene.text_with(&values)?);
+        add_scene(&mut outcome.files, scene, job, &stem, &values)?;
     }
     outcome.summary = summary(&scene.title, &found);
     let figure = figure(scene, &found);

@@ -13,6 +13,8 @@ use crate::output::{Outcome, add_results_page};
 use crate::progress::Progress;
 use crate::study_scene::StudyScene;
 use dwell_findings::{Check, Finding, Record};
+use dwell_report::Files;
+use std::path::{Component, Path};
 
 /// Numbers, conditions and other optima that the summary lists.
 const LISTED: usize = 10;
@@ -48,14 +50,39 @@ pub(crate) fn optimise_job<S: StudyScene>(
         .iter()
         .map(|(p, v)| (p.as_str(), *v))
         .collect();
-    outcome
-        .files
-        .add(format!("{stem}.toml"), scene.text_with(&values)?);
+    add_scene(&mut outcome.files, scene, number, &stem, &values)?;
     let better = scene.varied(&values)?;
     outcome.findings.extend(finding(&found));
     let figure = figure(scene, &found, &better)?;
     add_results_page(&mut outcome, scene, "better design", &stem, figure);
     Ok(outcome)
+}
+
+/// Adds the scene with other numbers, and the tables that it names: it is read from where it is written.
+pub(super) fn add_scene<S: StudyScene>(
+    files: &mut Files,
+    scene: &S,
+    job: usize,
+    stem: &str,
+    values: &[(&str, f64)],
+) -> Result<(), StudyError> {
+    files.add(format!("{stem}.toml"), scene.text_with(values)?);
+    let targets = scene.sweep_section.targets.iter().map(|of| &of.table);
+    let choices = scene.jobs[job].choose.iter().map(|of| &of.table);
+    let folder = Path::new(scene.source.name()).parent();
+    for table in targets.chain(choices) {
+        let path = Path::new(table);
+        let is_below = path
+            .components()
+            .all(|part| matches!(part, Component::Normal(_)));
+        // Another path leads to the same table from anywhere, or the reader says that there is none.
+        if let Ok(bytes) = std::fs::read(folder.unwrap_or(Path::new("")).join(path))
+            && is_below
+        {
+            files.add_kept(path, bytes);
+        }
+    }
+    Ok(())
 }
 
 /// The best combinations of parts.
@@ -79,14 +106,11 @@ fn chosen(all: &[Combination], unit: &str) -> String {
 /// Where no start converged, a check that fails.
 fn finding(found: &Optimised) -> Option<Finding> {
     let has_converged = found.starts[1] < found.starts[0];
+    let of = &found.certificate;
+    let worst = of.residual.max(of.violation).max(of.complementarity);
     (!has_converged).then(|| Finding {
         comparison: "conditions of an optimum from every start".to_owned(),
-        ..Finding::new(
-            "optimum",
-            Check::default(),
-            [found.certificate.residual; 2],
-            1e-6,
-        )
+        ..Finding::new("optimum", Check::default(), [worst; 2], 1e-6)
     })
 }
 

@@ -244,3 +244,36 @@ fn constraints_without_a_common_point_are_not_called_optimal() {
     let found = found.expect("a start");
     assert!(!found.is_converged && found.evaluation.violation() >= 1.0);
 }
+
+#[test]
+fn a_constant_constraint_has_no_multiplier() {
+    // (x − 1)², where something that no variable changes is off its limit by a rounding error, and by more.
+    let search = |off: f64| {
+        let mut problem = |x: &[f64]| {
+            Some(Evaluation {
+                goal: (x[0] - 1.0).powi(2),
+                slope: vec![2.0 * (x[0] - 1.0)],
+                constraints: vec![Constraint {
+                    value: off,
+                    slope: vec![0.0],
+                    is_equality: true,
+                    family: 0,
+                    place: 0.0,
+                }],
+            })
+        };
+        let settings = SequentialSettings {
+            tolerance: 1e-8,
+            iterations: 50,
+            families: 1,
+        };
+        let found = minimise(&mut problem, &[0.3], &[WIDE], settings, &mut |_, _| true);
+        found.expect("a start")
+    };
+    let [near, far] = [1e-9, 1e-3].map(search);
+    for found in [&near, &far] {
+        // Seen: 0.
+        assert!((found.x[0] - 1.0).abs() < 1e-12 && found.multipliers == [0.0]);
+    }
+    assert!(near.is_converged && !far.is_converged);
+}

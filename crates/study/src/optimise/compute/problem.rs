@@ -6,6 +6,9 @@ use super::measured::{Measured, Peak};
 use crate::sweep::compute::Design;
 use dwell_numerics::optimise::{Constraint, Evaluation, Residuals};
 
+/// A condition that changes by less than this part of its limit over the whole ranges is constant: its derivatives are rounding.
+const CONSTANT: f64 = 1e-9;
+
 /// How an expression is bounded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Sense {
@@ -57,7 +60,16 @@ impl Problem<'_> {
     /// The numbers of a design whose parts of their ranges are these.
     pub(super) fn values(&self, parts: &[f64]) -> Vec<f64> {
         let each = parts.iter().zip(&self.bounds);
-        each.map(|(x, [from, to])| from + x * (to - from)).collect()
+        // Second derivatives take designs beyond the bounds; rounding does not.
+        let value = |(x, [from, to]): (&f64, &[f64; 2])| {
+            let value = from + x * (to - from);
+            if (0.0..=1.0).contains(x) {
+                value.clamp(*from, *to)
+            } else {
+                value
+            }
+        };
+        each.map(value).collect()
     }
 
     /// The number of families of constraints.
@@ -235,9 +247,13 @@ impl Problem<'_> {
         for (family, of) in self.conditions.iter().enumerate() {
             let sign = if of.sense == Sense::AtMost { -1.0 } else { 1.0 };
             let mut add = |value: f64, slope: &[f64], place: f64| {
+                let mut slope = self.scaled(slope, sign / of.scale, levels);
+                if slope.iter().all(|part| part.abs() < CONSTANT) {
+                    slope.fill(0.0);
+                }
                 rows.push(Constraint {
                     value: sign * (value - of.limit) / of.scale,
-                    slope: self.scaled(slope, sign / of.scale, levels),
+                    slope,
                     is_equality: of.sense == Sense::Equal,
                     family,
                     place,

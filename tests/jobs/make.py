@@ -187,6 +187,8 @@ def draw_conditions(rng, scene, job, sample):
         values = sorted(value_of(text, row) for row in rows)
         sign, part = rng.choice(["<=", ">=", "<=", ">=", "="]), rng.uniform(0.25, 0.75)
         extent = values[-1] - values[0]
+        if max(map(abs, values)) < 1e-9:
+            continue  # rounding, as the work of a mechanism without loads
         if job.kind == "infeasible" and k == 0:
             off = 3 * extent + 0.5 * abs(values[0]) + 1e-3
             limit = values[0] - off if sign == "<=" else values[-1] + off

@@ -6,7 +6,7 @@ import shutil
 import signal
 import subprocess
 
-LONGEST = 20
+LONGEST = 30
 LARGEST_MEMORY = 4 << 30
 # On the clock, s.
 MOST_PATIENCE = 240
