@@ -10,6 +10,7 @@ use crate::explain::StudyError;
 use crate::gradient::{DesignSlopes, GradientScene, TolerancedNumber};
 use crate::progress::Progress;
 use dwell_dynamics::interruption;
+use dwell_scene::SceneLocation;
 
 /// Random designs among which one is searched that can be evaluated, if the scene cannot.
 const ATTEMPTS: u64 = 2000;
@@ -227,7 +228,7 @@ pub(super) fn with_engine<S: GradientScene, R>(
         design.points.min(ATTEMPTS),
         last.unwrap_or_default()
     );
-    let place = (dwell_scene::SceneLocation::Job(job), "this job".to_owned());
+    let place = (SceneLocation::Job(job), "this job".to_owned());
     let help = "change the bounds, or start from a scene that moves along the whole trajectory";
     Err(scene.error(message, Some(help.to_owned()), &[place]).into())
 }
@@ -303,16 +304,7 @@ pub(super) fn optimise_goal<S: GradientScene>(
     };
     let best = ended.iter().min_by(|a, b| rank(a).total_cmp(&rank(b)));
     let Some(best) = best.filter(|_| scaled.is_some()) else {
-        let place = (
-            dwell_scene::SceneLocation::Job(of.job),
-            "this job".to_owned(),
-        );
-        let message = if interruption::is_requested() {
-            "the search was interrupted before it had a design"
-        } else {
-            "no start of the job has results with derivatives"
-        };
-        return Err(of.scene.error(message.to_owned(), None, &[place]).into());
+        return Err(no_design(of));
     };
     let mut found = report(of, &problem, &mut worker, best);
     found.certificate = certify(&problem, &mut worker, best);
@@ -341,6 +333,18 @@ pub(super) fn optimise_goal<S: GradientScene>(
     found.history = best.history.clone();
     found.job.clone_from(&job.name);
     Ok(found)
+}
+
+/// The error of a search without a design.
+fn no_design<S: GradientScene>(of: &Search<'_, '_, S>) -> StudyError {
+    let message = if interruption::is_requested() {
+        "the search was interrupted before it had a design"
+    } else {
+        "no start of the job has results with derivatives"
+    };
+    let place = SceneLocation::Job(of.job);
+    let place = (place, "this job".to_owned());
+    of.scene.error(message.to_owned(), None, &[place]).into()
 }
 
 /// The best design with its conditions and prices.
