@@ -16,7 +16,7 @@ const LIGHTER: f64 = 0.55;
 /// Positions between which paths are drawn.
 const DRAWN: usize = 72;
 /// The distance of bars in lengths of the longest.
-const DISTANCE: f64 = 0.13;
+const DISTANCE: f64 = 0.22;
 /// Changes of the goal below this part of it are none.
 const VANISHING: f64 = 1e-5;
 
