@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 mod assembly;
+mod designs;
 mod endings;
 mod exported_runs;
 mod friction;
