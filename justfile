@@ -173,7 +173,7 @@ audit *scenes:
     cargo build --release --workspace --bins
     python3 validation/audit/selftest.py target/release/dwell {{ scenes }}
 
-# What takes too long for each change, as a whole in a night: its parts are the six recipes below
+# What takes too long for each change, as a whole in a night: its parts are the seven recipes below
 [group('care')]
 nightly: nightly-validation nightly-tests nightly-imports && nightly-laws nightly-jobs nightly-others
     seed=$(date +%j); for part in 0 1 2 3 4; do just nightly-fuzz $part $seed || exit 1; done

@@ -28,7 +28,7 @@ impl Constraint {
         }
     }
 
-    /// Whether it has the same value at all points nearby.
+    /// Whether no step changes it, to first order.
     fn is_constant(&self) -> bool {
         self.slope.iter().all(|part| *part == 0.0)
     }

@@ -38,7 +38,7 @@ pub(super) fn front<S: StudyScene>(
             .iter()
             .map(|(p, v)| (p.as_str(), *v))
             .collect();
-        add_scene(&mut outcome.files, scene, job, &stem, &values)?;
+        add_scene(&mut outcome.files, scene, &stem, &values)?;
     }
     outcome.summary = summary(&scene.title, &found);
     let figure = figure(scene, &found);

@@ -50,7 +50,7 @@ pub(crate) fn optimise_job<S: StudyScene>(
         .iter()
         .map(|(p, v)| (p.as_str(), *v))
         .collect();
-    add_scene(&mut outcome.files, scene, number, &stem, &values)?;
+    add_scene(&mut outcome.files, scene, &stem, &values)?;
     let better = scene.varied(&values)?;
     outcome.findings.extend(finding(&found));
     let figure = figure(scene, &found, &better)?;
@@ -58,27 +58,25 @@ pub(crate) fn optimise_job<S: StudyScene>(
     Ok(outcome)
 }
 
-/// Adds the scene with other numbers, and the tables that it names: it is read from where it is written.
+/// Adds the scene with other numbers, and the tables beside or below it that it names: it is read from where it is written.
 pub(super) fn add_scene<S: StudyScene>(
     files: &mut Files,
     scene: &S,
-    job: usize,
     stem: &str,
     values: &[(&str, f64)],
 ) -> Result<(), StudyError> {
     files.add(format!("{stem}.toml"), scene.text_with(values)?);
     let targets = scene.sweep_section.targets.iter().map(|of| &of.table);
-    let choices = scene.jobs[job].choose.iter().map(|of| &of.table);
+    let choices = scene.jobs.iter().flat_map(|job| &job.choose);
+    let choices = choices.map(|of| &of.table);
     let folder = Path::new(scene.source.name()).parent();
     for table in targets.chain(choices) {
         let path = Path::new(table);
         let is_below = path
             .components()
             .all(|part| matches!(part, Component::Normal(_)));
-        // Another path leads to the same table from anywhere, or the reader says that there is none.
-        if let Ok(bytes) = std::fs::read(folder.unwrap_or(Path::new("")).join(path))
-            && is_below
-        {
+        // The table of another job may be missing.
+        if is_below && let Ok(bytes) = std::fs::read(folder.unwrap_or(Path::new("")).join(path)) {
             files.add_kept(path, bytes);
         }
     }
